@@ -1,0 +1,27 @@
+//! Open lines cut by a region.
+
+use crate::Region;
+use crate::grid::{from_grid, region_to_grid, to_grid};
+use glam::DVec2;
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::string::clip::{ClipRule, IntClip};
+
+/// Which part of a line remains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// What lies inside the region, its boundary included.
+    Inside,
+    /// What lies outside, its boundary excluded.
+    Outside,
+}
+
+impl Region {
+    /// The pieces of the open line through `points` inside or outside this region, in no fixed order; each runs
+    /// in the direction of the line.
+    pub fn clip_line(&self, points: &[DVec2], keep: Keep) -> Vec<Vec<DVec2>> {
+        let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: keep == Keep::Inside };
+        let path: Vec<_> = points.iter().map(|&p| to_grid(p)).collect();
+        let pieces = region_to_grid(self).clip_path(&path, FillRule::NonZero, rule);
+        pieces.into_iter().map(|piece| piece.into_iter().map(from_grid).collect()).collect()
+    }
+}

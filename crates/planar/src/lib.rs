@@ -1,0 +1,38 @@
+//! Two-dimensional geometry for planning: regions with holes, booleans, offsets, scan lines, hulls.
+//!
+//! Everything is in millimetres as `f64` ([`glam::DVec2`]); no word of welding occurs here, and no type of
+//! the polygon library underneath leaves the crate.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | [`ring`] | [`Ring`], [`Polygon`], [`Region`]: the shapes and their measures |
+//! | [`boolean`] | union, difference, intersection of regions |
+//! | [`offset`](mod@offset) | growing and shrinking, with round or mitred joins |
+//! | [`clip`] | open lines cut by a region |
+//! | [`scan`] | parallel scan lines through a region, and how their ends hang together along its boundary |
+//! | [`polyline`] | length, simplification |
+//! | [`hull`] | convex hull, minimum-area rectangle |
+//! | [`triangulate`] | triangles that fill a polygon |
+//!
+//! # The grid underneath
+//!
+//! Booleans and offsets run on exact integer arithmetic (`i_overlay`, 32-bit coordinates) with a grid of
+//! [`GRID_MM`] = 0.1 µm. A vertex moves by at most half a grid step per axis when it enters an operation,
+//! 0.07 µm, wherever it lies; coordinates may reach ±[`MAX_COORDINATE_MM`] = 50 m and are clamped there.
+//! An offset is then simplified by [`offset::SIMPLIFY_MM`].
+
+pub mod boolean;
+pub mod clip;
+mod grid;
+pub mod hull;
+pub mod offset;
+pub mod polyline;
+pub mod ring;
+pub mod scan;
+pub mod triangulate;
+
+pub use glam::DVec2;
+pub use grid::{GRID_MM, MAX_COORDINATE_MM};
+pub use hull::{OrientedRect, convex_hull, min_area_rect};
+pub use offset::Join;
+pub use ring::{Bounds, FillRule, Polygon, Region, Ring};

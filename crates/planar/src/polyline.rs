@@ -1,0 +1,72 @@
+//! Open and closed lines: length and simplification.
+
+use crate::Ring;
+use glam::DVec2;
+
+/// Length of the open line through `points`, mm.
+pub fn length(points: &[DVec2]) -> f64 {
+    points.windows(2).map(|w| w[0].distance(w[1])).sum()
+}
+
+/// Drops every point within `tolerance` (mm) of the line that remains (Douglas–Peucker); the ends stay.
+pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
+    let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
+    let mut keep = vec![false; points.len()];
+    keep[0] = true;
+    keep[last] = true;
+    mark_kept(points, 0, last, tolerance * tolerance, &mut keep);
+    points.iter().zip(&keep).filter(|&(_, &k)| k).map(|(&p, _)| p).collect()
+}
+
+/// [`simplify`] for a closed ring, anchored at two far points so that the start vertex does not matter.
+/// `None` when fewer than three points remain.
+pub fn simplify_ring(ring: Ring, tolerance: f64) -> Option<Ring> {
+    let mut points = ring.into_points();
+    if points.len() > 3 {
+        let low = (0..points.len()).min_by(|&i, &j| lexicographic(points[i], points[j]))?;
+        points.rotate_left(low);
+        let start = points[0];
+        let distance = |p: DVec2| p.distance_squared(start);
+        let far = (0..points.len()).max_by(|&i, &j| {
+            distance(points[i]).total_cmp(&distance(points[j])).then(lexicographic(points[i], points[j]))
+        })?;
+        points.push(start);
+        let mut kept = simplify(&points[..=far], tolerance);
+        kept.pop();
+        kept.extend(simplify(&points[far..], tolerance));
+        kept.pop();
+        points = kept;
+    }
+    (points.len() >= 3).then(|| Ring::new(points))
+}
+
+fn lexicographic(a: DVec2, b: DVec2) -> std::cmp::Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+}
+
+/// Marks what must stay between `first` and `last`; own stack, so that long lines cannot overflow the real one.
+fn mark_kept(points: &[DVec2], first: usize, last: usize, tolerance_squared: f64, keep: &mut [bool]) {
+    let mut open = vec![(first, last)];
+    while let Some((a, b)) = open.pop() {
+        let mut worst = (tolerance_squared, None);
+        for i in a + 1..b {
+            let d = distance_squared_to_segment(points[i], points[a], points[b]);
+            if d > worst.0 {
+                worst = (d, Some(i));
+            }
+        }
+        if let Some(i) = worst.1 {
+            keep[i] = true;
+            open.push((a, i));
+            open.push((i, b));
+        }
+    }
+}
+
+/// Squared distance, mm², from `p` to the segment `a`–`b`.
+pub fn distance_squared_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let ab = b - a;
+    let length_squared = ab.length_squared();
+    let t = if length_squared > 0.0 { ((p - a).dot(ab) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance_squared(a + ab * t)
+}

@@ -1,0 +1,237 @@
+//! Parallel scan lines through a region, and how their ends hang together along its boundary.
+//!
+//! The region is turned so that the lines run along x. Every crossing of a line with a ring remembers its place
+//! on the ring; two crossings that follow each other there are joined by a piece of boundary (a *chain*) that
+//! meets no scan line in between. A path that goes from line to line along chains can therefore neither leave
+//! the region nor cross another line: no geometric test is needed.
+
+use crate::{Region, Ring};
+use glam::DVec2;
+
+/// Lines are moved off exact vertices by this, mm.
+const NUDGE_MM: f64 = 5e-4;
+
+/// A stretch of one scan line inside the region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Index of the scan line.
+    pub line: usize,
+    /// Crossing where the span begins (lower x in the turned frame).
+    left: usize,
+    /// Crossing where it ends.
+    right: usize,
+}
+
+/// One of the two ends of a span.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Lower x in the turned frame.
+    Left,
+    /// Higher x in the turned frame.
+    Right,
+}
+
+impl End {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
+/// The way along the boundary from the end of one span to the same end of a span on the next line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// Index of the span it leads to.
+    pub to: usize,
+    /// Boundary vertices between the two ends, in the turned frame; often none.
+    pub via: Vec<DVec2>,
+}
+
+struct Crossing {
+    line: usize,
+    at: DVec2,
+    ring: usize,
+    edge: usize,
+    upward: bool,
+    /// Span of which this is an end.
+    span: Option<usize>,
+}
+
+/// Scan lines of one angle through one region.
+pub struct Scan {
+    rings: Vec<Ring>,
+    /// First crossing of each ring, and one past the last ring.
+    ring_starts: Vec<usize>,
+    crossings: Vec<Crossing>,
+    spans: Vec<Span>,
+    axis: DVec2,
+}
+
+/// Distance between lines and where they lie, in the frame turned by the raster angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spacing {
+    /// Lines spread evenly from edge to edge, at most this far apart, mm.
+    AtMost(f64),
+    /// Lines exactly this far apart, mm, the first one on the lower edge (Liu et al. 2022, eq 11).
+    Exact(f64),
+}
+
+impl Spacing {
+    /// Positions of the lines across an extent from `low` to `high`.
+    fn lines(self, low: f64, high: f64) -> Vec<f64> {
+        let extent = high - low;
+        let (count, step) = match self {
+            Self::AtMost(d) => {
+                let gaps = (extent / d - 1e-9).ceil().max(1.0);
+                (gaps, extent / gaps)
+            }
+            Self::Exact(d) => ((extent / d + 1e-9).floor(), d),
+        };
+        let (Self::AtMost(d) | Self::Exact(d)) = self;
+        if extent < d / 2.0 {
+            return vec![(low + high) / 2.0];
+        }
+        let place = |i: usize| (low + i as f64 * step).clamp(low + NUDGE_MM, high - NUDGE_MM);
+        (0..=count as usize).map(place).collect()
+    }
+}
+
+impl Scan {
+    /// Lays scan lines at `angle` (radians from x) through `region`.
+    pub fn new(region: &Region, angle: f64, spacing: Spacing) -> Self {
+        let axis = snapped_axis(angle);
+        // Turning back by the conjugate: x' = p·axis, y' = axis × p.
+        let turn =
+            |ring: &Ring| Ring::new(ring.points().iter().map(|&p| DVec2::new(p.dot(axis), axis.perp_dot(p))).collect());
+        let rings: Vec<Ring> = region.rings().map(turn).collect();
+        let ys = rings.iter().flat_map(|r| r.points()).map(|p| p.y);
+        let (low, high) = ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
+        let lines = if low < high { spacing.lines(low, high) } else { Vec::new() };
+
+        let mut scan = Self { rings, ring_starts: vec![0], crossings: Vec::new(), spans: Vec::new(), axis };
+        scan.find_crossings(&lines);
+        scan.pair_spans(lines.len());
+        scan
+    }
+
+    /// Crossings in the order in which each ring meets them.
+    fn find_crossings(&mut self, lines: &[f64]) {
+        for (ring_index, ring) in self.rings.iter().enumerate() {
+            for (edge, (a, b)) in ring.edges().enumerate() {
+                let (low, high) = (lines_up_to(lines, a.y), lines_up_to(lines, b.y));
+                let crossing = |line: usize| {
+                    let t = ((lines[line] - a.y) / (b.y - a.y)).clamp(0.0, 1.0);
+                    let at = DVec2::new(a.x + (b.x - a.x) * t, lines[line]);
+                    Crossing { line, at, ring: ring_index, edge, upward: b.y > a.y, span: None }
+                };
+                if low < high {
+                    self.crossings.extend((low..high).map(crossing));
+                } else {
+                    self.crossings.extend((high..low).rev().map(crossing));
+                }
+            }
+            self.ring_starts.push(self.crossings.len());
+        }
+    }
+
+    /// Left of an upward crossing and right of a downward one lies the inside.
+    fn pair_spans(&mut self, line_count: usize) {
+        let mut by_line: Vec<Vec<usize>> = vec![Vec::new(); line_count];
+        for (i, crossing) in self.crossings.iter().enumerate() {
+            by_line[crossing.line].push(i);
+        }
+        for (line, mut on_line) in by_line.into_iter().enumerate() {
+            let key = |i: usize| self.crossings[i].at.x;
+            on_line.sort_by(|&i, &j| {
+                key(i).total_cmp(&key(j)).then(self.crossings[i].upward.cmp(&self.crossings[j].upward))
+            });
+            let mut open = None;
+            for i in on_line {
+                match (self.crossings[i].upward, open) {
+                    (false, _) => open = Some(i),
+                    (true, Some(left)) => {
+                        self.crossings[left].span = Some(self.spans.len());
+                        self.crossings[i].span = Some(self.spans.len());
+                        self.spans.push(Span { line, left, right: i });
+                        open = None;
+                    }
+                    (true, None) => {}
+                }
+            }
+        }
+    }
+
+    /// All spans, by line from low to high and along each line.
+    pub fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// Where a span ends, in the turned frame.
+    pub fn end(&self, span: usize, end: End) -> DVec2 {
+        self.crossings[self.crossing(span, end)].at
+    }
+
+    /// Length of a span, mm.
+    pub fn length(&self, span: usize) -> f64 {
+        self.end(span, End::Right).x - self.end(span, End::Left).x
+    }
+
+    /// The chain from one end of a span up to the same end of a span on the next line, if the boundary leads there.
+    pub fn chain_up(&self, span: usize, end: End) -> Option<Chain> {
+        let from = self.crossing(span, end);
+        let crossing = &self.crossings[from];
+        let range = self.ring_starts[crossing.ring]..self.ring_starts[crossing.ring + 1];
+        let ring = self.rings[crossing.ring].points();
+        // Right ends lie on upward edges: the ring itself leads up. Left ends lie on downward edges: go against it.
+        let to = match end {
+            End::Right if from + 1 == range.end => range.start,
+            End::Right => from + 1,
+            End::Left if from == range.start => range.end - 1,
+            End::Left => from - 1,
+        };
+        let target = &self.crossings[to];
+        if target.line != crossing.line + 1 || target.upward != crossing.upward {
+            return None;
+        }
+        let to_span = target.span?;
+        let n = ring.len();
+        let via = match end {
+            End::Right => {
+                let count = (target.edge + n - crossing.edge) % n;
+                (1..=count).map(|k| ring[(crossing.edge + k) % n]).collect()
+            }
+            End::Left => {
+                let count = (crossing.edge + n - target.edge) % n;
+                (0..count).map(|k| ring[(crossing.edge + n - k) % n]).collect()
+            }
+        };
+        Some(Chain { to: to_span, via })
+    }
+
+    /// From the turned frame back to the region's own.
+    pub fn turn_back(&self, p: DVec2) -> DVec2 {
+        self.axis * p.x + self.axis.perp() * p.y
+    }
+
+    fn crossing(&self, span: usize, end: End) -> usize {
+        match end {
+            End::Left => self.spans[span].left,
+            End::Right => self.spans[span].right,
+        }
+    }
+}
+
+/// Number of lines at or below `y`: a vertex on a line counts as above it, for both of its edges alike.
+fn lines_up_to(lines: &[f64], y: f64) -> usize {
+    lines.partition_point(|&line| line <= y)
+}
+
+/// Cosine and sine of `angle`, exact at multiples of 90° so that axis-parallel parts stay axis-parallel.
+fn snapped_axis(angle: f64) -> DVec2 {
+    let exact = |v: f64| if v.abs() < 1e-12 { 0.0 } else { v };
+    let axis = DVec2::from_angle(angle);
+    DVec2::new(exact(axis.x), exact(axis.y)).normalize()
+}
