@@ -1,0 +1,195 @@
+//! Import: bytes become a [`Mesh`], and a [`RepairReport`] says what had to be mended.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | [`stl`] | binary and ASCII STL, told apart by content |
+//! | `weld` | equal corners become one vertex |
+//! | `adjacency` | which triangle lies across each edge |
+//! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
+//! | [`units`] | millimetres or inches? |
+
+pub(crate) mod adjacency;
+pub mod repair;
+pub mod stl;
+pub mod units;
+pub(crate) mod weld;
+
+pub use repair::RepairReport;
+pub use units::Units;
+
+use crate::task::{Cancelled, Task};
+use glam::{DMat3, DVec3};
+
+/// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
+pub const MAX_REACH_MM: f64 = 20_000.0;
+
+/// Stands for "no triangle" in [`Mesh::neighbours`].
+pub const NO_NEIGHBOUR: u32 = u32::MAX;
+
+/// A triangle mesh, mm, wound counter-clockwise seen from outside.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Welded vertices, mm.
+    pub vertices: Vec<DVec3>,
+    /// Corners of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle, the one across its edges 0–1, 1–2 and 2–0, or [`NO_NEIGHBOUR`].
+    pub neighbours: Vec<[u32; 3]>,
+}
+
+/// A model as it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Import {
+    /// The mended mesh, in the units of the file.
+    pub mesh: Mesh,
+    /// What was found and mended.
+    pub repair: RepairReport,
+    /// The format, for people: `binary STL`.
+    pub format: &'static str,
+}
+
+/// Why a model was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ImportError {
+    /// The file is empty.
+    #[error("the file is empty (0 bytes). Export the model again.")]
+    Empty,
+    /// A format that is known but not read.
+    #[error(
+        "this is {found}, which Beadwright does not read yet. Save the model as STL (binary or ASCII) and try again."
+    )]
+    OtherFormat {
+        /// What the content looks like.
+        found: &'static str,
+    },
+    /// Nothing known.
+    #[error("this is not an STL file: {reason}. Save the model as STL (binary or ASCII) and try again.")]
+    NotStl {
+        /// What speaks against it, with the byte or line.
+        reason: String,
+    },
+    /// The file ends too early.
+    #[error("the STL file is cut short: {reason}. Copy or export it again.")]
+    Truncated {
+        /// Where it ends and where it should.
+        reason: String,
+    },
+    /// A line of an ASCII STL that cannot be read.
+    #[error("line {line} of the ASCII STL file cannot be read: {reason}.")]
+    Line {
+        /// Line number, from 1.
+        line: usize,
+        /// What was expected and what stands there.
+        reason: String,
+    },
+    /// A coordinate that is no number.
+    #[error("triangle {triangle} has a coordinate that is not a finite number ({place}). Export the model again.")]
+    NotFinite {
+        /// Triangle number, from 1.
+        triangle: usize,
+        /// Byte or line.
+        place: String,
+    },
+    /// No triangle has an area.
+    #[error("the model has no triangle with an area ({triangles} read, all degenerate), so there is nothing to build.")]
+    NoTriangles {
+        /// Number read.
+        triangles: usize,
+    },
+    /// The part is too far out.
+    #[error("the model reaches {reach_m:.1} m from the origin; at most {} m are supported. Move it to the origin, or check --units.", MAX_REACH_MM / 1000.0)]
+    TooFar {
+        /// Largest coordinate, m.
+        reach_m: f64,
+    },
+    /// Stopped by the caller.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Reads a model from the bytes of a file; the content decides the format, never a name.
+///
+/// # Errors
+/// [`ImportError`], with the byte or line and the reason.
+pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    if bytes.is_empty() {
+        return Err(ImportError::Empty);
+    }
+    if let Some(found) = other_format(bytes) {
+        return Err(ImportError::OtherFormat { found });
+    }
+    stl::read(bytes, task)
+}
+
+/// Formats that people hand over by mistake.
+fn other_format(bytes: &[u8]) -> Option<&'static str> {
+    let head = &bytes[..bytes.len().min(400)];
+    let has = |needle: &[u8]| head.windows(needle.len()).any(|w| w == needle);
+    if head.starts_with(b"PK\x03\x04") {
+        Some("a ZIP archive, such as 3MF")
+    } else if head.starts_with(b"\x1f\x8b") {
+        Some("a gzip archive (unpack it first)")
+    } else if head.starts_with(b"ISO-10303-21") {
+        Some("a STEP file")
+    } else if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
+        Some("a PLY file")
+    } else if head.get(72) == Some(&b'S') && has(b"S      1") {
+        Some("an IGES file")
+    } else if head.starts_with(b"v ") || has(b"\nv ") || has(b"\nmtllib ") {
+        Some("an OBJ file")
+    } else {
+        None
+    }
+}
+
+impl Mesh {
+    /// A mesh from vertices and triangles, mended like an imported one.
+    pub fn from_triangles(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Self, RepairReport) {
+        repair::mend(vertices, triangles)
+    }
+
+    /// Lowest and highest coordinates, mm.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+    }
+
+    /// Extent along x, y and z, mm.
+    pub fn size(&self) -> DVec3 {
+        let (low, high) = self.bounds();
+        high - low
+    }
+
+    /// Signed volume, mm³, by the divergence theorem; exact only when the mesh is closed.
+    pub fn volume(&self) -> f64 {
+        let (low, high) = self.bounds();
+        let origin = (low + high) / 2.0;
+        let corner = |i: u32| self.vertices[i as usize] - origin;
+        self.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
+    }
+
+    /// Scales by `factor`, turns by `degrees` about x, then y, then z, and sets the part onto z = 0.
+    pub fn place(&mut self, factor: f64, degrees: DVec3) {
+        let radians = degrees * std::f64::consts::PI / 180.0;
+        let turn =
+            DMat3::from_rotation_z(radians.z) * DMat3::from_rotation_y(radians.y) * DMat3::from_rotation_x(radians.x);
+        if degrees != DVec3::ZERO || factor != 1.0 {
+            for vertex in &mut self.vertices {
+                *vertex = turn * *vertex * factor;
+            }
+        }
+        let floor = self.bounds().0.z;
+        for vertex in &mut self.vertices {
+            vertex.z -= floor;
+        }
+    }
+
+    /// Refuses a part that lies farther out than the 2-D grid reaches.
+    ///
+    /// # Errors
+    /// [`ImportError::TooFar`].
+    pub fn check_reach(&self) -> Result<(), ImportError> {
+        let (low, high) = self.bounds();
+        let reach = low.abs().max(high.abs()).max_element();
+        if reach > MAX_REACH_MM { Err(ImportError::TooFar { reach_m: reach / 1000.0 }) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,178 @@
+//! STL, binary and ASCII.
+//!
+//! A file is binary when its size is 84 + 50 · n for the count n that it announces, whatever its header says:
+//! binary files that begin with "solid" are common.
+
+use super::weld::Welder;
+use super::{Import, ImportError, repair};
+use crate::task::{Stage, Task};
+
+const HEADER: usize = 84;
+const RECORD: usize = 50;
+
+/// Reads a binary or ASCII STL file.
+///
+/// # Errors
+/// [`ImportError`] with the byte or line.
+pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    if announced_size(bytes) == Some(bytes.len()) {
+        return read_binary(bytes, task);
+    }
+    if looks_ascii(bytes) {
+        return read_ascii(bytes, task);
+    }
+    match announced_size(bytes) {
+        None => Err(ImportError::NotStl {
+            reason: format!("it has {} bytes, and a binary STL has at least {HEADER}", bytes.len()),
+        }),
+        Some(size) if size > bytes.len() && plausible(bytes) => Err(ImportError::Truncated {
+            reason: format!(
+                "it announces {} triangles, which take {size} bytes, but ends at byte {}, in triangle {}",
+                (size - HEADER) / RECORD,
+                bytes.len(),
+                (bytes.len() - HEADER) / RECORD + 1
+            ),
+        }),
+        // Some programs append their own data; the announced triangles are all there.
+        Some(size) if size < bytes.len() && size > HEADER && plausible(bytes) => read_binary(&bytes[..size], task),
+        Some(size) => Err(ImportError::NotStl {
+            reason: format!(
+                "bytes 80–83 announce {} triangles, but the file has {} bytes and no \"facet\" lines either",
+                (size - HEADER) / RECORD,
+                bytes.len()
+            ),
+        }),
+    }
+}
+
+/// Size that the triangle count at byte 80 asks for.
+fn announced_size(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(80..HEADER)?;
+    let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
+    Some(HEADER + RECORD * count as usize)
+}
+
+/// Whether the first facet holds numbers of a usual size, as random bytes hardly ever do.
+fn plausible(bytes: &[u8]) -> bool {
+    let Some(first) = bytes.get(HEADER..HEADER + 48) else { return false };
+    let mut numbers = first.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
+    numbers.all(|v| v == 0.0 || (1e-12..1e9).contains(&v.abs()))
+}
+
+fn looks_ascii(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    let start = head.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
+    let word = |w: &[u8]| head[start..].len() >= w.len() && head[start..start + w.len()].eq_ignore_ascii_case(w);
+    word(b"solid") && !head.contains(&0)
+}
+
+fn read_binary(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let records = bytes[HEADER..].as_chunks::<RECORD>().0;
+    let facets = records.iter().map(|raw| {
+        let number = |i: usize| f32::from_le_bytes([raw[4 * i], raw[4 * i + 1], raw[4 * i + 2], raw[4 * i + 3]]);
+        let triple = |i: usize| [number(i), number(i + 1), number(i + 2)];
+        (triple(0), [triple(3), triple(6), triple(9)])
+    });
+    let place = |i: usize| format!("byte {}", HEADER + RECORD * i);
+    build(facets, records.len(), "binary STL", place, task)
+}
+
+fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let (facets, lines) = parse_ascii(bytes, task)?;
+    if facets.is_empty() {
+        return Err(ImportError::NotStl { reason: "it begins with \"solid\" but holds no \"facet\"".to_owned() });
+    }
+    let count = facets.len();
+    build(facets.into_iter(), count, "ASCII STL", |i| format!("line {}", lines[i]), task)
+}
+
+type Facet = ([f32; 3], [[f32; 3]; 3]);
+
+/// Facets and the line on which each begins. Names of solids may be any bytes; several solids may follow.
+fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>), ImportError> {
+    let (mut facets, mut lines): (Vec<Facet>, Vec<u32>) = (Vec::new(), Vec::new());
+    let mut open: Option<([f32; 3], Vec<[f32; 3]>)> = None;
+    let mut line_number = 0;
+    for line in bytes.split(|&b| b == b'\n') {
+        line_number += 1;
+        if line_number % 100_000 == 0 {
+            task.check()?;
+        }
+        let error = |reason: String| ImportError::Line { line: line_number, reason };
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
+        let Some(first) = words.next() else { continue };
+        if first.eq_ignore_ascii_case(b"vertex") {
+            let Some((_, corners)) = &mut open else { return Err(error("a vertex outside a facet".to_owned())) };
+            corners.push(triple(words).map_err(error)?);
+        } else if first.eq_ignore_ascii_case(b"facet") {
+            if open.is_some() {
+                return Err(error("a facet begins before the last one has ended (endfacet is missing)".to_owned()));
+            }
+            // The normal is not needed: a missing or broken one is no reason to refuse the part.
+            let normal = triple(words.skip(1)).unwrap_or_default();
+            open = Some((normal, Vec::with_capacity(3)));
+            lines.push(line_number as u32);
+        } else if first.eq_ignore_ascii_case(b"endfacet") {
+            let Some((normal, corners)) = open.take() else {
+                return Err(error("endfacet without a facet".to_owned()));
+            };
+            let corners = <[[f32; 3]; 3]>::try_from(corners)
+                .map_err(|c| error(format!("the facet that ends here has {} vertices, not 3", c.len())))?;
+            facets.push((normal, corners));
+        }
+    }
+    if open.is_some() {
+        return Err(ImportError::Truncated {
+            reason: format!("it ends at line {line_number} in triangle {}", facets.len() + 1),
+        });
+    }
+    Ok((facets, lines))
+}
+
+fn triple<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; 3], String> {
+    let mut number = || {
+        let word = words.next().ok_or("three numbers are expected and one is missing")?;
+        let text = std::str::from_utf8(word).unwrap_or("?");
+        text.parse::<f32>().map_err(|_| format!("\"{}\" is not a number", String::from_utf8_lossy(word)))
+    };
+    Ok([number()?, number()?, number()?])
+}
+
+fn build(
+    facets: impl Iterator<Item = Facet>,
+    count: usize,
+    format: &'static str,
+    place: impl Fn(usize) -> String,
+    task: &Task,
+) -> Result<Import, ImportError> {
+    task.step(Stage::Import, 0.0)?;
+    let mut welder = Welder::for_triangles(count);
+    let mut triangles = Vec::with_capacity(count);
+    let mut against = 0;
+    for (i, (normal, corners)) in facets.enumerate() {
+        if i % 65_536 == 0 {
+            task.step(Stage::Import, 0.6 * i as f64 / count as f64)?;
+        }
+        if !corners.as_flattened().iter().all(|v| v.is_finite()) {
+            return Err(ImportError::NotFinite { triangle: i + 1, place: place(i) });
+        }
+        against += usize::from(opposes(normal, corners));
+        triangles.push(corners.map(|corner| welder.add(corner)));
+    }
+    task.step(Stage::Import, 0.6)?;
+    let (mesh, mut repair) = repair::mend(welder.into_vertices(), triangles);
+    if mesh.triangles.is_empty() {
+        return Err(ImportError::NoTriangles { triangles: count });
+    }
+    repair.normals_against_winding = against;
+    task.step(Stage::Import, 1.0)?;
+    Ok(Import { mesh, repair, format })
+}
+
+/// Whether a stored normal points against the winding of its corners.
+fn opposes(normal: [f32; 3], [a, b, c]: [[f32; 3]; 3]) -> bool {
+    let sub = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let (u, v) = (sub(b, a), sub(c, a));
+    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    cross[0] * normal[0] + cross[1] * normal[1] + cross[2] * normal[2] < 0.0
+}

@@ -1,0 +1,65 @@
+//! STL has no units. Millimetres are assumed unless the part would then be smaller than a few beads.
+
+use glam::DVec3;
+
+/// The unit of a model's coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Units {
+    /// Millimetres.
+    Millimetre,
+    /// Centimetres.
+    Centimetre,
+    /// Metres.
+    Metre,
+    /// Inches.
+    Inch,
+}
+
+/// A part narrower than this many beads is asked about.
+const MIN_BEADS: f64 = 3.0;
+
+impl Units {
+    /// All of them with the names people type.
+    pub const ALL: [(&'static str, Self); 4] =
+        [("mm", Self::Millimetre), ("cm", Self::Centimetre), ("m", Self::Metre), ("in", Self::Inch)];
+
+    /// Millimetres in one unit.
+    pub fn in_mm(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+}
+
+/// The part is so small under this bead that its unit must be another one.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "the part measures {} in the file's units. As millimetres it would be smaller than {MIN_BEADS} beads of {bead_width} mm. \
+     Say which unit is meant: --units in makes it {} mm, --units cm {} mm, --units m {} mm; \
+     --units mm keeps it as it is, --scale enlarges it.",
+    size_text(*.size, 1.0), size_text(*.size, 25.4), size_text(*.size, 10.0), size_text(*.size, 1000.0)
+)]
+pub struct UnitsUnclear {
+    /// Extent in file units.
+    pub size: DVec3,
+    /// Bead width, mm.
+    pub bead_width: f64,
+}
+
+fn size_text(size: DVec3, factor: f64) -> String {
+    let s = size * factor;
+    let digits = if s.max_element() < 10.0 { 2 } else { 0 };
+    format!("{:.digits$} × {:.digits$} × {:.digits$}", s.x, s.y, s.z)
+}
+
+/// Asks for the unit when the part, taken as millimetres, is narrower than three beads in x and y.
+///
+/// # Errors
+/// [`UnitsUnclear`], whose text tells the sizes in the other units.
+pub fn guess(size: DVec3, bead_width: f64) -> Result<Units, UnitsUnclear> {
+    let widest = size.x.max(size.y);
+    if widest < MIN_BEADS * bead_width { Err(UnitsUnclear { size, bead_width }) } else { Ok(Units::Millimetre) }
+}

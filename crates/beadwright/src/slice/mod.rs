@@ -1,0 +1,204 @@
+//! A mesh cut into layers of equal thickness.
+//!
+//! Layer k fills the heights k·h … (k+1)·h and is cut at its middle. Every triangle knows which planes cross it,
+//! so the cost grows with triangles plus segments; on each plane the contour walks from triangle to triangle
+//! across shared edges (Zhao et al. 2023, section 1: slicing by triangle adjacency), and no point is ever
+//! searched for. A vertex exactly on a plane counts as above it, for all its triangles alike.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `trace` | walks the contours of one plane |
+//! | `close` | joins what is left open in a broken mesh |
+
+mod close;
+mod trace;
+
+use crate::model::Mesh;
+use crate::task::{Cancelled, Stage, Task};
+use crate::warning::{Warning, WarningKind};
+use glam::DVec2;
+use planar::{FillRule, Polygon, Region, Ring};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Mutex;
+use trace::{Scratch, Trace};
+
+/// Layers cut together, so that memory stays proportional to the mesh.
+pub const BATCH: usize = 32;
+
+/// How to cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SliceOptions {
+    /// Thickness of a layer, mm.
+    pub layer_height: f64,
+    /// Widest gap in an open contour that is bridged, mm.
+    pub close_gap: f64,
+    /// Contour vertices within this distance of the line that remains are dropped, mm.
+    pub simplify: f64,
+}
+
+/// One cut, ready to be filled.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layer {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// Thickness, mm.
+    pub height: f64,
+    /// Connected pieces with their holes.
+    pub islands: Vec<Polygon>,
+    /// What was closed, dropped or united here.
+    pub warnings: Vec<Warning>,
+}
+
+impl Layer {
+    /// Area of the slice, mm².
+    pub fn area(&self) -> f64 {
+        self.islands.iter().map(Polygon::area).sum()
+    }
+}
+
+/// A mesh prepared for cutting; layers can be cut in any order.
+pub struct Slicer<'a> {
+    mesh: &'a Mesh,
+    options: SliceOptions,
+    /// Height of each plane, mm.
+    planes: Vec<f64>,
+    /// For each batch, where its triangles begin in `items`.
+    starts: Vec<usize>,
+    items: Vec<u32>,
+    scratch: Mutex<Vec<Scratch>>,
+}
+
+impl<'a> Slicer<'a> {
+    /// Sorts the triangles of a mesh that stands on z = 0 into batches of layers.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn new(mesh: &'a Mesh, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
+        task.step(Stage::Slice, 0.0)?;
+        let h = options.layer_height;
+        let top = mesh.bounds().1.z.max(0.0);
+        // A last layer that would be less than half full is left out: its middle lies above the part.
+        let count = (top / h - 0.5).ceil().max(1.0) as usize;
+        let planes: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * h).collect();
+        let batches = |t: &[u32; 3]| {
+            let range = crossed(&planes, t.map(|v| mesh.vertices[v as usize].z));
+            if range.is_empty() { 0..0 } else { range.start / BATCH..(range.end - 1) / BATCH + 1 }
+        };
+        let ranges: Vec<Range<usize>> = mesh.triangles.par_iter().map(batches).collect();
+        task.check()?;
+        let mut starts = vec![0; count.div_ceil(BATCH) + 2];
+        for batch in ranges.iter().cloned().flatten() {
+            starts[batch + 2] += 1;
+        }
+        for i in 2..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut items = vec![0; starts[starts.len() - 1]];
+        for (triangle, range) in ranges.into_iter().enumerate() {
+            for batch in range {
+                items[starts[batch + 1]] = triangle as u32;
+                starts[batch + 1] += 1;
+            }
+        }
+        starts.pop();
+        Ok(Self { mesh, options, planes, starts, items, scratch: Mutex::default() })
+    }
+
+    /// Number of layers.
+    pub fn layer_count(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// Number of batches of [`BATCH`] layers.
+    pub fn batch_count(&self) -> usize {
+        self.planes.len().div_ceil(BATCH)
+    }
+
+    /// Cuts one batch of layers in parallel.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn batch(&self, batch: usize, task: &Task) -> Result<Vec<Layer>, Cancelled> {
+        let layers = batch * BATCH..((batch + 1) * BATCH).min(self.planes.len());
+        let by_layer = self.triangles_by_layer(batch, layers.clone());
+        layers
+            .into_par_iter()
+            .zip(by_layer)
+            .map(|(index, triangles)| {
+                task.check()?;
+                Ok(self.cut(index, &triangles))
+            })
+            .collect()
+    }
+
+    /// Cuts all layers. Long parts are better taken [batch](Self::batch) by batch.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn all(&self, task: &Task) -> Result<Vec<Layer>, Cancelled> {
+        let mut layers = Vec::with_capacity(self.layer_count());
+        for batch in 0..self.batch_count() {
+            task.step(Stage::Slice, batch as f64 / self.batch_count() as f64)?;
+            layers.extend(self.batch(batch, task)?);
+        }
+        Ok(layers)
+    }
+
+    fn triangles_by_layer(&self, batch: usize, layers: Range<usize>) -> Vec<Vec<u32>> {
+        let mut by_layer = vec![Vec::new(); layers.len()];
+        let planes = &self.planes[layers];
+        for &triangle in &self.items[self.starts[batch]..self.starts[batch + 1]] {
+            let corners = self.mesh.triangles[triangle as usize];
+            for layer in crossed(planes, corners.map(|v| self.mesh.vertices[v as usize].z)) {
+                by_layer[layer].push(triangle);
+            }
+        }
+        by_layer
+    }
+
+    fn cut(&self, index: usize, triangles: &[u32]) -> Layer {
+        let SliceOptions { layer_height: height, close_gap, simplify } = self.options;
+        let mut layer = Layer { index, z: (index + 1) as f64 * height, height, ..Layer::default() };
+        let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
+        let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
+        let Trace { mut rings, open } = trace::trace(self.mesh, self.planes[index], triangles, &mut scratch);
+        if let Ok(mut pool) = self.scratch.lock() {
+            pool.push(scratch);
+        }
+        if !open.is_empty() {
+            close::close(open, close_gap, &mut rings, |kind, place, size| {
+                layer.warnings.push(Warning { kind, layer: index, place, size });
+            });
+        }
+        let rings: Vec<Ring> = rings.into_iter().filter_map(|r| planar::polyline::simplify_ring(r, simplify)).collect();
+        let region = Region::from_rings(&rings, FillRule::NonZero);
+        layer.warnings.extend(area_balance(index, &rings, &region));
+        layer.islands = region.into_polygons();
+        layer
+    }
+}
+
+/// The planes that cross a triangle: those above its lowest corner and not above its highest.
+fn crossed(planes: &[f64], z: [f64; 3]) -> Range<usize> {
+    let low = z[0].min(z[1]).min(z[2]);
+    let high = z[0].max(z[1]).max(z[2]);
+    let start = planes.partition_point(|&plane| plane <= low);
+    start..start + planes[start..].partition_point(|&plane| plane <= high)
+}
+
+/// Well-wound contours keep their area when they are united; a difference tells of overlaps or wrong winding.
+fn area_balance(layer: usize, rings: &[Ring], region: &Region) -> Option<Warning> {
+    let signed: f64 = rings.iter().map(Ring::area).sum();
+    let area = region.area();
+    let size = (signed - area).abs();
+    let place =
+        || rings.iter().max_by(|a, b| a.area().abs().total_cmp(&b.area().abs())).map(center).unwrap_or_default();
+    (size > 0.01 * area.max(1.0)).then(|| Warning { kind: WarningKind::ContoursUnited, layer, place: place(), size })
+}
+
+fn center(ring: &Ring) -> DVec2 {
+    planar::Bounds::of(ring.points().iter().copied()).map(|b| b.center()).unwrap_or_default()
+}

@@ -1,0 +1,76 @@
+//! One handle for long calls: it reports progress and carries the wish to stop.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a long call is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Reading a model and repairing it.
+    Import,
+    /// Cutting a mesh into layers.
+    Slice,
+    /// Laying passes into layers.
+    Plan,
+}
+
+impl Stage {
+    /// A short word for a progress bar.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Import => "import",
+            Self::Slice => "slice",
+            Self::Plan => "plan",
+        }
+    }
+}
+
+/// The call was stopped through its [`Task`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+type Progress = dyn Fn(Stage, f64) + Send + Sync;
+
+/// Progress out, cancellation in. Clones share both, so one clone can stay with the caller.
+#[derive(Clone, Default)]
+pub struct Task {
+    cancelled: Arc<AtomicBool>,
+    progress: Option<Arc<Progress>>,
+}
+
+impl Task {
+    /// A task that nobody watches; it can still be cancelled.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A task whose stage and fraction (0 to 1) go to `progress`, possibly from several threads.
+    pub fn with_progress(progress: impl Fn(Stage, f64) + Send + Sync + 'static) -> Self {
+        Self { progress: Some(Arc::new(progress)), ..Self::default() }
+    }
+
+    /// Asks the running call to stop; it returns [`Cancelled`] at its next check.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Reports how far a stage has come, and fails when the task was cancelled.
+    pub fn step(&self, stage: Stage, fraction: f64) -> Result<(), Cancelled> {
+        if let Some(progress) = &self.progress {
+            progress(stage, fraction);
+        }
+        self.check()
+    }
+
+    /// Fails when the task was cancelled.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+impl std::fmt::Debug for Task {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Task").field("cancelled", &self.cancelled).finish_non_exhaustive()
+    }
+}
