@@ -1,5 +1,51 @@
-//! Beadwright
+//! Beadwright turns a part into a weld-deposition program, and tells beforehand what that program would build.
+//!
+//! A file's bytes become a [`Mesh`](model::Mesh) ([`model::import`]), the mesh is cut into [layers](slice), every
+//! island of a layer is [filled](fill) with passes, the passes are put in [order](order), and a [`plan`](plan::plan)
+//! holds the result. A plan becomes a neutral [`program`], and a [`post`] writes that in a robot's language. All
+//! values of the process come from a [`profile`]. Data goes down this table only:
+//!
+//! | stage | module |
+//! | --- | --- |
+//! | import | [`model`] |
+//! | slice | [`slice`] |
+//! | bead | [`bead`] |
+//! | fill | [`fill`] |
+//! | order | [`order`] |
+//! | plan | [`plan`], [`metrics`], [`plan_file`] |
+//! | program | [`program`] |
+//! | post | [`post`] |
+//! | show | [`report`] |
+//!
+//! Beside it stand [`task`] (progress and cancelling), [`warning`] (what was lost or mended), [`profile`] and
+//! [`example`] (parts to try). The library does no I/O and never panics on input.
+//!
+//! ```
+//! use beadwright::{example, plan, profile::Profile, task::Task};
+//!
+//! let mesh = example::find("cross").ok_or("no such example")?.mesh();
+//! let profile = Profile::built_in("plasma-304-cnc")?;
+//! let plan = plan::plan("cross", &mesh, &profile, &Task::new())?;
+//! assert_eq!(plan.layers.len(), 15);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod bead;
+pub mod example;
+pub mod fill;
+pub mod metrics;
 pub mod model;
+pub mod number;
+pub mod order;
+pub mod plan;
+pub mod plan_file;
+pub mod post;
+pub mod profile;
+pub mod program;
+pub mod report;
 pub mod slice;
 pub mod task;
+pub mod template;
 pub mod warning;
+
+pub use planar;

@@ -1,0 +1,57 @@
+//! The command `beadwright`: arguments, files and progress. All planning is in the library.
+//!
+//! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage.
+
+mod example;
+mod inspect;
+mod model;
+mod output;
+mod plan;
+mod profile;
+mod progress;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Plans weld deposition: a model becomes a robot program with a report.
+#[derive(Parser)]
+#[command(version, about, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Plan a model: writes the program, plan.json, metrics.json and report.html.
+    Plan(plan::Arguments),
+    /// Tell what a model holds and what is wrong with it.
+    Inspect(inspect::Arguments),
+    /// Write one of the example parts as STL; without a name, list them.
+    Example(example::Arguments),
+    /// List, print or check profiles, or print their JSON schema.
+    #[command(subcommand)]
+    Profile(profile::Command),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Plan(arguments) => plan::run(&arguments),
+        Command::Inspect(arguments) => inspect::run(&arguments),
+        Command::Example(arguments) => example::run(&arguments),
+        Command::Profile(command) => profile::run(&command),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        // Whoever reads our output may stop reading: that is no failure of ours.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+}

@@ -1,0 +1,202 @@
+//! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
+
+use crate::output::Output;
+use crate::{model, profile, progress};
+use beadwright::metrics::Metrics;
+use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
+use beadwright::post::{self, Chunk, Post};
+use beadwright::profile::Profile;
+use beadwright::program::Programmer;
+use beadwright::report::{self, Report};
+use beadwright::{model::Import, plan_file};
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: model::Arguments,
+    /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
+    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
+    profile: String,
+    /// Strategy instead of the profile's: raster, zigzag, contour or compound.
+    #[arg(long, short, value_name = "NAME")]
+    strategy: Option<String>,
+    /// Dialect instead of the profile's; may be given several times: krl, gcode.
+    #[arg(long, value_name = "NAME")]
+    post: Vec<String>,
+    /// A value of the profile, such as fill.raster_angle=45; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Folder for the files.
+    #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]
+    output: PathBuf,
+    /// Also write a picture of this layer, counted from 1, as SVG.
+    #[arg(long, value_name = "LAYER")]
+    picture: Vec<usize>,
+    /// Print the metrics as JSON instead of the summary.
+    #[arg(long)]
+    json: bool,
+    /// Threads; all of the machine's when left out. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+    }
+    let mut settings = arguments.set.clone();
+    settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
+    let profile = profile::load(&arguments.profile, &settings)?;
+    let part = arguments.model.part();
+    let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };
+    let posts = names.iter().map(|name| post::post(name, &part, &profile)).collect::<Result<Vec<_>, _>>()?;
+
+    let (task, bar) = progress::task()?;
+    let import = arguments.model.placed(profile.bead.width, &task)?;
+    let output = Output::new(&arguments.output)?;
+    let programmer = Programmer::new(profile.travel.clearance);
+    let mut files = Files { output, posts, programmer, pictures: arguments.picture.clone(), report: None, first: true };
+    let planned = plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files);
+    bar.finish_and_clear();
+    let summary = planned.map_err(|error| match error {
+        PlanError::Sink(error) => error,
+        other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
+    })?;
+    let names = files.finish(&summary, &profile, &import)?;
+
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", serde_json::to_string_pretty(&metrics_json(&summary))?)?;
+    } else {
+        print_summary(&mut out, &part, arguments, &profile, &import, &summary, &names)?;
+    }
+    Ok(())
+}
+
+/// Where the layers go.
+struct Files {
+    output: Output,
+    posts: Vec<Box<dyn Post>>,
+    programmer: Programmer,
+    pictures: Vec<usize>,
+    report: Option<Report>,
+    first: bool,
+}
+
+impl Files {
+    fn chunks(&mut self, chunks: Vec<Chunk>) -> anyhow::Result<()> {
+        chunks.iter().try_for_each(|c| self.output.append(&c.file, &c.text))
+    }
+
+    fn each_post(&mut self, mut write: impl FnMut(&mut dyn Post) -> Vec<Chunk>) -> anyhow::Result<()> {
+        let chunks = self.posts.iter_mut().flat_map(|post| write(post.as_mut())).collect();
+        self.chunks(chunks)
+    }
+
+    /// Writes what comes last, and moves everything to its place.
+    fn finish(mut self, summary: &Summary, profile: &Profile, import: &Import) -> anyhow::Result<Vec<String>> {
+        let leave = self.programmer.leave();
+        self.each_post(|post| post.end(leave))?;
+        self.output.append("plan.json", plan_file::tail())?;
+        self.output.append("metrics.json", &format!("{:#}\n", metrics_json(summary)))?;
+        let mut names = self.output.names();
+        names.push("report.html".to_owned());
+        if let Some(report) = self.report.take() {
+            self.output.append("report.html", &report.finish(summary, profile, &import.repair, &names))?;
+        }
+        self.output.commit()?;
+        Ok(names)
+    }
+}
+
+impl Sink for Files {
+    type Error = anyhow::Error;
+
+    fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
+        self.report = Some(Report::new(header));
+        self.output.append("plan.json", &plan_file::head(header))?;
+        self.each_post(|post| post.begin(header.layers))
+    }
+
+    fn layer(&mut self, layer: Layer) -> anyhow::Result<()> {
+        self.output.append("plan.json", &plan_file::layer(&layer, self.first))?;
+        self.first = false;
+        let program = self.programmer.layer(&layer);
+        self.each_post(|post| post.layer(&program))?;
+        if self.pictures.contains(&(layer.index + 1)) {
+            let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
+            self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
+        }
+        if let Some(report) = &mut self.report {
+            report.layer(&layer);
+        }
+        Ok(())
+    }
+}
+
+fn metrics_json(summary: &Summary) -> serde_json::Value {
+    let warnings: Vec<_> = summary.warnings.summaries().collect();
+    let mut value = serde_json::json!(summary.metrics);
+    value["coverage"] = summary.metrics.coverage().into();
+    value["warnings"] = serde_json::json!(warnings);
+    value["notes"] = serde_json::json!(summary.notes);
+    value
+}
+
+fn print_summary(
+    out: &mut impl Write,
+    part: &str,
+    arguments: &Arguments,
+    profile: &Profile,
+    import: &Import,
+    summary: &Summary,
+    files: &[String],
+) -> std::io::Result<()> {
+    let (size, m) = (import.mesh.size(), &summary.metrics);
+    writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {} triangles", size.x, size.y, size.z, import.repair.triangles)?;
+    writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
+    writeln!(out)?;
+    for (name, value) in totals(m) {
+        writeln!(out, "  {name:<22} {value}")?;
+    }
+    writeln!(out)?;
+    let repairs = import.repair.sentences();
+    let events = summary.warnings.summaries().map(|w| w.sentence());
+    for line in repairs.into_iter().chain(events).chain(summary.notes.iter().cloned()) {
+        writeln!(out, "warning: {line}")?;
+    }
+    writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))
+}
+
+/// The totals as people read them.
+fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
+    let mut rows = vec![
+        ("layers", format!("{}", m.layers)),
+        ("passes (arc starts)", format!("{}", m.passes)),
+        ("deposited length", format!("{:.2} m", m.deposited_length_mm / 1000.0)),
+        ("travel length", format!("{:.2} m", m.travel_length_mm / 1000.0)),
+        ("arc time", hours(m.arc_time_s)),
+        ("total time", hours(m.total_time_s)),
+        ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
+        ("deposited / part volume", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
+        ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
+    ];
+    rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
+    rows
+}
+
+fn hours(seconds: f64) -> String {
+    let s = seconds.round() as u64;
+    format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)
+}
+
+/// All names, or the first and the last of many.
+fn shorten(files: &[String]) -> String {
+    const SHOWN: usize = 8;
+    match files {
+        [first @ .., last] if files.len() > SHOWN => format!("{}, …, {last}", first[..SHOWN - 2].join(", ")),
+        _ => files.join(", "),
+    }
+}

@@ -1,0 +1,19 @@
+//! The progress bar and Ctrl-C, both through the library's task handle.
+
+use beadwright::task::Task;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+
+/// A task that draws a bar when standard error is a terminal, and that Ctrl-C cancels.
+pub(crate) fn task() -> anyhow::Result<(Task, ProgressBar)> {
+    let bar = if std::io::stderr().is_terminal() { ProgressBar::new(1000) } else { ProgressBar::hidden() };
+    bar.set_style(ProgressStyle::with_template("{msg:>8} {wide_bar} {percent:>3} %")?);
+    let shown = bar.clone();
+    let task = Task::with_progress(move |stage, fraction| {
+        shown.set_message(stage.name());
+        shown.set_position((fraction * 1000.0) as u64);
+    });
+    let handle = task.clone();
+    ctrlc::set_handler(move || handle.cancel())?;
+    Ok((task, bar))
+}

@@ -1,0 +1,91 @@
+//! Example parts, made from their measures: to try the program, to test it, to compare settings.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | `cross`, `gear`, `plate`, `propeller`, `star`, `tian`, `vase` | one part each |
+//! | `outline` | points on circles and arcs |
+//! | `solid` | outlines become closed triangle meshes |
+
+mod cross;
+mod gear;
+mod outline;
+mod plate;
+mod propeller;
+mod solid;
+mod star;
+mod tian;
+mod vase;
+
+use crate::model::Mesh;
+use glam::DVec3;
+use solid::Solid;
+
+/// A part that the program can make by itself; it stands on z = 0, centred about the z axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Example {
+    /// What people type: `propeller`.
+    pub name: &'static str,
+    /// One line that ends with the extent along x, y and z, mm.
+    pub about: &'static str,
+    build: fn() -> Solid,
+}
+
+/// Every example, by name.
+pub const ALL: &[Example] = &[
+    Example { name: "cross", about: "cross with 36 mm wide arms, 100 × 100 × 20 mm", build: cross::build },
+    Example {
+        name: "gear",
+        about: "gear with 12 trapezoidal teeth and a 40 mm bore, 140 × 140 × 20 mm",
+        build: gear::build,
+    },
+    Example {
+        name: "plate",
+        about: "plate with rounded corners and five holes from 10 to 30 mm, 120 × 80 × 12 mm",
+        build: plate::build,
+    },
+    Example {
+        name: "propeller",
+        about: "ship propeller, four twisted blades on an 80 mm hub with a 36 mm bore, 260 × 260 × 20 mm",
+        build: propeller::build,
+    },
+    Example { name: "star", about: "five-pointed star of 80 mm radius, 152.2 × 144.7 × 20 mm", build: star::build },
+    Example {
+        name: "tian",
+        about: "frame like the character 田, four openings between 16 mm walls, 120 × 120 × 26 mm",
+        build: tian::build,
+    },
+    Example {
+        name: "vase",
+        about: "vase with a 14 mm wall and a closed 12 mm bottom, 104 × 104 × 120 mm",
+        build: vase::build,
+    },
+];
+
+/// The example of that name.
+pub fn find(name: &str) -> Option<&'static Example> {
+    ALL.iter().find(|example| example.name == name)
+}
+
+impl Example {
+    /// The part as a binary STL file, mm.
+    pub fn stl(&self) -> Vec<u8> {
+        let solid = (self.build)();
+        let mut bytes = format!("beadwright example {}", self.name).into_bytes();
+        bytes.resize(80, 0);
+        bytes.extend((solid.triangles.len() as u32).to_le_bytes());
+        for triangle in &solid.triangles {
+            let [a, b, c] = triangle.map(|i| solid.vertices[i as usize].as_vec3());
+            let [p, q, r] = [a, b, c].map(|v| v.as_dvec3());
+            let normal = (q - p).cross(r - p).normalize_or(DVec3::Z).as_vec3();
+            bytes.extend([normal, a, b, c].iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
+            bytes.extend([0, 0]);
+        }
+        bytes
+    }
+
+    /// The part as a mesh, mm.
+    pub fn mesh(&self) -> Mesh {
+        let Solid { vertices, triangles } = (self.build)();
+        Mesh::from_triangles(vertices, triangles).0
+    }
+}

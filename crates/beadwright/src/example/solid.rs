@@ -1,0 +1,115 @@
+//! Outlines become closed triangle meshes, wound counter-clockwise seen from outside.
+
+use glam::{DVec2, DVec3};
+use planar::triangulate::triangulate;
+use planar::{Polygon, Ring};
+use std::f64::consts::TAU;
+
+/// A closed surface of triangles, mm.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Solid {
+    /// Corners, mm.
+    pub(crate) vertices: Vec<DVec3>,
+    /// Corners of each triangle, counter-clockwise seen from outside.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Solid {
+    /// A prism over `base` from height `z0` up to `z1`, mm.
+    pub(crate) fn extrude(base: &Polygon, z0: f64, z1: f64) -> Self {
+        Self::loft(base, &[z0, z1], |p, _| p)
+    }
+
+    /// A body whose outline at each height of `levels` (mm, ascending) is `base` with its points moved by
+    /// `place(point, height)`. The motion must leave the outline free of crossings, as turning and scaling do.
+    pub(crate) fn loft(base: &Polygon, levels: &[f64], place: impl Fn(DVec2, f64) -> DVec2) -> Self {
+        let points: Vec<DVec2> = base.rings().flat_map(Ring::points).copied().collect();
+        let vertices = levels.iter().flat_map(|&z| points.iter().map(move |&p| (p, z)));
+        let mut solid = Self { vertices: vertices.map(|(p, z)| place(p, z).extend(z)).collect(), triangles: vec![] };
+        for level in 1..levels.len() {
+            let mut below = (level - 1) * points.len();
+            for ring in base.rings() {
+                let count = ring.points().len();
+                solid.wall(below, below + points.len(), count);
+                below += count;
+            }
+        }
+        solid.caps(&cap(base, &points), solid.vertices.len().saturating_sub(points.len()));
+        solid
+    }
+
+    /// The body that the closed loop `profile` of (radius, height), mm, sweeps around the z axis in `segments`
+    /// steps. Points on the axis have radius 0.
+    pub(crate) fn revolve(profile: &[DVec2], segments: u32) -> Self {
+        let profile = Polygon::simple(Ring::new(profile.to_vec())).outer.into_points();
+        let mut solid = Self::default();
+        let starts: Vec<u32> = profile.iter().map(|&p| solid.circle(p, segments)).collect();
+        let vertex = |i: usize, k: u32| starts[i] + if profile[i].x == 0.0 { 0 } else { k % segments };
+        for i in 0..profile.len() {
+            let j = (i + 1) % profile.len();
+            for k in 0..segments {
+                let [a, b, c, d] = [vertex(i, k), vertex(i, k + 1), vertex(j, k + 1), vertex(j, k)];
+                let halves = [[a, b, c], [a, c, d]].into_iter();
+                solid.triangles.extend(halves.filter(|&[a, b, c]| a != b && b != c && c != a));
+            }
+        }
+        solid
+    }
+
+    /// The wall between a ring of `count` vertices that begins at `low` and the one above that begins at `high`.
+    fn wall(&mut self, low: usize, high: usize, count: usize) {
+        for i in 0..count {
+            let j = (i + 1) % count;
+            let [a, b, c, d] = [low + i, low + j, high + j, high + i].map(|v| v as u32);
+            self.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+
+    /// Closes the bottom, whose vertices come first, and the top, whose vertices begin at `top`.
+    fn caps(&mut self, cap: &[[usize; 3]], top: usize) {
+        for &[a, b, c] in cap {
+            self.triangles.push([a, c, b].map(|i| i as u32));
+            self.triangles.push([a, b, c].map(|i| (i + top) as u32));
+        }
+    }
+
+    /// Vertices on the circle that `p` (radius, height) sweeps, a single one on the axis; returns the first index.
+    fn circle(&mut self, p: DVec2, segments: u32) -> u32 {
+        let first = self.vertices.len() as u32;
+        let count = if p.x == 0.0 { 1 } else { segments };
+        let at = |k: u32| (DVec2::from_angle(TAU * f64::from(k) / f64::from(count)) * p.x).extend(p.y);
+        self.vertices.extend((0..count).map(at));
+        first
+    }
+}
+
+/// How far a point may lie beside an edge and still be on it, mm.
+const ON_EDGE_MM: f64 = 1e-9;
+
+/// Triangles over `base`, whose points are `points`. Ear clipping passes over points in line with their
+/// neighbours; each edge is split there, so that the cap has the same edges as the walls.
+fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
+    let mut open = triangulate(base);
+    let mut done = Vec::with_capacity(open.len());
+    while let Some([a, b, c]) = open.pop() {
+        let edges = [[a, b, c], [b, c, a], [c, a, b]];
+        let split = edges.iter().find_map(|&[i, j, k]| Some(([i, j, k], point_within(points, i, j)?)));
+        match split {
+            Some(([i, j, k], middle)) => {
+                open.extend([[i, middle, k], [middle, j, k]].iter().filter(|t| !t[..2].contains(&k)));
+            }
+            None => done.push([a, b, c]),
+        }
+    }
+    done
+}
+
+/// A point on the edge from `i` to `j`, strictly between the two.
+fn point_within(points: &[DVec2], i: usize, j: usize) -> Option<usize> {
+    let along = points[j] - points[i];
+    let length = along.length();
+    points.iter().position(|&p| {
+        let (beside, ahead) = (along.perp_dot(p - points[i]), along.dot(p - points[i]));
+        beside.abs() < ON_EDGE_MM * length && ahead > ON_EDGE_MM * length && ahead < length * (length - ON_EDGE_MM)
+    })
+}

@@ -1,0 +1,22 @@
+//! A frame with a cross inside, like the character 田: outer walls and two inner ones that cross.
+
+use super::solid::Solid;
+use glam::DVec2;
+use planar::{Polygon, Ring};
+
+const SIZE: f64 = 120.0;
+const WALL: f64 = 16.0;
+const HEIGHT: f64 = 26.0;
+
+pub(super) fn build() -> Solid {
+    let opening = (SIZE - 3.0 * WALL) / 2.0;
+    let off = (opening + WALL) / 2.0;
+    let centers = [DVec2::new(-off, -off), DVec2::new(off, -off), DVec2::new(off, off), DVec2::new(-off, off)];
+    let holes = centers.iter().map(|&c| square(c, opening).reversed()).collect();
+    Solid::extrude(&Polygon { outer: square(DVec2::ZERO, SIZE), holes }, 0.0, HEIGHT)
+}
+
+fn square(center: DVec2, side: f64) -> Ring {
+    let corners = [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+    Ring::new(corners.map(|corner| center + corner * side / 2.0).to_vec())
+}

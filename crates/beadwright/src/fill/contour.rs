@@ -1,0 +1,35 @@
+//! Rings parallel to the boundary, one stepover apart, until nothing is left.
+
+use super::{Fill, FillSettings, Pass, Strategy};
+use planar::{Join, Polygon, Region};
+
+/// Contour-parallel rings.
+pub struct Contour;
+
+impl Strategy for Contour {
+    fn name(&self) -> &'static str {
+        "contour"
+    }
+
+    fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
+        let (rings, _) = rings(settings.outermost(island), settings.stepover, u32::MAX);
+        Fill { stages: settings.ordered(rings), fixed_order: false }
+    }
+}
+
+/// Up to `count` rings from `outermost` inwards, and the region that the innermost ones bound.
+pub(super) fn rings(outermost: Region, stepover: f64, count: u32) -> (Vec<Vec<Pass>>, Region) {
+    let mut stages = Vec::new();
+    let mut region = outermost;
+    for done in 1.. {
+        stages.push(region.rings().cloned().map(Pass::ring).collect());
+        if done == count {
+            break;
+        }
+        region = region.offset(-stepover, Join::ROUND);
+        if region.is_empty() {
+            break;
+        }
+    }
+    (stages, region)
+}

@@ -1,0 +1,165 @@
+//! Filling: one island becomes passes, the centre-lines along which metal is laid.
+//!
+//! A strategy is one file and one line in [`STRATEGIES`]. It returns *stages*: passes of one stage may be laid in
+//! any order, stages one after another.
+//!
+//! | strategy | what it lays |
+//! | --- | --- |
+//! | [`raster`] | parallel scan lines, all in one direction |
+//! | [`zigzag`] | scan lines joined along the boundary |
+//! | [`contour`] | rings parallel to the boundary, until nothing is left |
+//! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
+
+pub mod compound;
+pub mod contour;
+pub mod raster;
+pub mod zigzag;
+
+use glam::DVec2;
+use planar::scan::Spacing;
+use planar::{Join, Polygon, Region, Ring};
+use serde::{Deserialize, Serialize};
+
+/// The strategies by name.
+pub const STRATEGIES: [&dyn Strategy; 4] = [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound];
+
+/// The strategy of that name.
+pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
+    STRATEGIES.into_iter().find(|s| s.name() == name)
+}
+
+/// A way to fill an island.
+pub trait Strategy: Sync {
+    /// The name people type.
+    fn name(&self) -> &'static str;
+
+    /// Lays passes into one island.
+    fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill;
+}
+
+/// What a pass is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PassKind {
+    /// Parallel to the boundary.
+    Contour,
+    /// Scan lines.
+    Infill,
+}
+
+impl PassKind {
+    /// The word in plan.json and in programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contour => "contour",
+            Self::Infill => "infill",
+        }
+    }
+}
+
+/// One path with the arc on, in the plane of its layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// What it is for.
+    pub kind: PassKind,
+    /// Whether it ends where it began; the first point is then not repeated.
+    pub closed: bool,
+    /// Centre-line, mm.
+    pub points: Vec<DVec2>,
+    /// Whether it may be laid from its end to its start.
+    pub reversible: bool,
+}
+
+impl Pass {
+    fn ring(ring: Ring) -> Self {
+        Self { kind: PassKind::Contour, closed: true, points: ring.into_points(), reversible: true }
+    }
+
+    fn infill(points: Vec<DVec2>, reversible: bool) -> Self {
+        Self { kind: PassKind::Infill, closed: false, points, reversible }
+    }
+
+    /// Length of the centre-line, mm.
+    pub fn length(&self) -> f64 {
+        let closing = match (self.closed, &self.points[..]) {
+            (true, [first, .., last]) => first.distance(*last),
+            _ => 0.0,
+        };
+        planar::polyline::length(&self.points) + closing
+    }
+}
+
+/// The passes of one island.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fill {
+    /// Groups of passes to be laid one group after another.
+    pub stages: Vec<Vec<Pass>>,
+    /// Whether the passes of a stage must stay in the order in which they stand.
+    pub fixed_order: bool,
+}
+
+/// Order of contours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum ContourOrder {
+    /// The outermost contour first.
+    OutsideIn,
+    /// The outermost contour last.
+    InsideOut,
+}
+
+/// How scan lines are spread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum RasterSpacing {
+    /// Evenly from edge to edge, at most one stepover apart.
+    Even,
+    /// Exactly one stepover apart (Liu et al. 2022, eq 11).
+    Exact,
+}
+
+/// What a strategy needs to know; lengths in mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FillSettings {
+    /// Bead width, mm.
+    pub bead_width: f64,
+    /// Distance between neighbouring centre-lines, mm.
+    pub stepover: f64,
+    /// Distance from the innermost perimeter to the infill, mm.
+    pub contour_gap: f64,
+    /// Perimeters around the infill of `compound`.
+    pub perimeters: u32,
+    /// Order of contours.
+    pub contour_order: ContourOrder,
+    /// How far beads may reach outside the island, mm.
+    pub machining_allowance: f64,
+    /// Angle of the scan lines, radians from x.
+    pub raster_angle: f64,
+    /// How scan lines are spread.
+    pub raster_spacing: RasterSpacing,
+    /// Shorter passes are left out, mm.
+    pub min_pass_length: f64,
+}
+
+impl FillSettings {
+    /// The outermost centre-line: half a bead inside the island, less the machining allowance.
+    pub fn outermost(&self, island: &Polygon) -> Region {
+        island.offset(self.machining_allowance - self.bead_width / 2.0, Join::ROUND)
+    }
+
+    fn spacing(&self) -> Spacing {
+        match self.raster_spacing {
+            RasterSpacing::Even => Spacing::AtMost(self.stepover),
+            RasterSpacing::Exact => Spacing::Exact(self.stepover),
+        }
+    }
+
+    fn ordered(&self, mut outside_in: Vec<Vec<Pass>>) -> Vec<Vec<Pass>> {
+        if self.contour_order == ContourOrder::InsideOut {
+            outside_in.reverse();
+        }
+        outside_in
+    }
+}

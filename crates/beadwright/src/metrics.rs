@@ -1,0 +1,123 @@
+//! The totals of a plan: passes, lengths, times, wire, heat.
+
+use crate::bead::wire_area;
+use crate::plan::Layer;
+use crate::profile::Profile;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Totals of a plan, or of some of its layers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Metrics {
+    /// Layers with at least one pass.
+    pub layers: usize,
+    /// Passes.
+    pub passes: usize,
+    /// Arc starts, one for each pass.
+    pub arc_starts: usize,
+    /// Length of all passes, mm.
+    pub deposited_length_mm: f64,
+    /// Length of all moves without arc, mm.
+    pub travel_length_mm: f64,
+    /// Time with the arc on and the torch moving, s.
+    pub arc_time_s: f64,
+    /// Whole time with travels, delays and gas, s; without acceleration.
+    pub total_time_s: f64,
+    /// Wire, m.
+    pub wire_length_m: f64,
+    /// Wire, kg.
+    pub wire_mass_kg: f64,
+    /// Heat per length of bead, J/mm, where the profile gives current and voltage.
+    pub heat_input_j_per_mm: Option<f64>,
+    /// Sum of the slice areas, mm².
+    pub slice_area_mm2: f64,
+    /// Sum of the areas within reach of a bead, mm².
+    pub planned_area_mm2: f64,
+    /// Volume of the layers, mm³.
+    pub part_volume_mm3: f64,
+    /// Volume of the beads, mm³.
+    pub deposited_volume_mm3: f64,
+    #[serde(skip)]
+    rates: Rates,
+    #[serde(skip)]
+    torch: Option<DVec3>,
+}
+
+/// What the totals need from the profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Rates {
+    bead_area: f64,
+    travel_speed: f64,
+    clearance: f64,
+    delay: f64,
+    wire_feed_speed: f64,
+    wire_grams_per_mm: f64,
+}
+
+impl Metrics {
+    /// Totals of nothing yet.
+    pub fn new(profile: &Profile) -> Self {
+        let process = &profile.process;
+        let rates = Rates {
+            bead_area: profile.bead().area(),
+            travel_speed: profile.travel.speed,
+            clearance: profile.travel.clearance,
+            delay: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
+            wire_feed_speed: process.wire_feed_speed * 1000.0 / 60.0,
+            wire_grams_per_mm: wire_area(profile.wire.diameter) * profile.wire.density / 1000.0,
+        };
+        Self {
+            layers: 0,
+            passes: 0,
+            arc_starts: 0,
+            deposited_length_mm: 0.0,
+            travel_length_mm: 0.0,
+            arc_time_s: 0.0,
+            total_time_s: 0.0,
+            wire_length_m: 0.0,
+            wire_mass_kg: 0.0,
+            heat_input_j_per_mm: profile.heat_input(),
+            slice_area_mm2: 0.0,
+            planned_area_mm2: 0.0,
+            part_volume_mm3: 0.0,
+            deposited_volume_mm3: 0.0,
+            rates,
+            torch: None,
+        }
+    }
+
+    /// Counts the next layer.
+    pub fn add(&mut self, layer: &Layer) {
+        self.layers += usize::from(!layer.passes.is_empty());
+        self.slice_area_mm2 += layer.slice_area;
+        self.planned_area_mm2 += layer.planned_area;
+        self.part_volume_mm3 += layer.slice_area * layer.height;
+        for pass in &layer.passes {
+            let (Some(start), Some(end)) = (pass.start(), pass.end()) else { continue };
+            let travel = self.torch.map_or(0.0, |from| travel_length(from, start, self.rates.clearance));
+            let (length, seconds) = (pass.length(), pass.length() / pass.speed);
+            let wire = self.rates.wire_feed_speed * seconds;
+            self.passes += 1;
+            self.arc_starts += 1;
+            self.deposited_length_mm += length;
+            self.deposited_volume_mm3 += length * self.rates.bead_area;
+            self.travel_length_mm += travel;
+            self.arc_time_s += seconds;
+            self.total_time_s += seconds + travel / self.rates.travel_speed + self.rates.delay;
+            self.wire_length_m += wire / 1000.0;
+            self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
+            self.torch = Some(end);
+        }
+    }
+
+    /// Planned area over slice area, 0 to 1.
+    pub fn coverage(&self) -> f64 {
+        if self.slice_area_mm2 > 0.0 { self.planned_area_mm2 / self.slice_area_mm2 } else { 0.0 }
+    }
+}
+
+/// Length of a move without arc, mm: up to the clearance above the higher end, across, and down.
+pub fn travel_length(from: DVec3, to: DVec3, clearance: f64) -> f64 {
+    let top = from.z.max(to.z) + clearance;
+    (top - from.z) + (top - to.z) + from.truncate().distance(to.truncate())
+}

@@ -1,0 +1,38 @@
+//! Numbers as programs and files want them: fixed decimals, a point, no exponent, no negative zero.
+
+/// Appends `value` with that many decimals (at most 9). What is not finite is written as 0; callers keep such
+/// values out.
+pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
+    const POWERS: [u64; 10] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
+    let power = POWERS[decimals.min(9)];
+    let scaled = (value * power as f64).round();
+    debug_assert!(value.is_finite());
+    let digits = scaled.abs() as u64;
+    if scaled < 0.0 {
+        text.push('-');
+    }
+    push_digits(text, digits / power, 1);
+    if decimals > 0 {
+        text.push('.');
+        push_digits(text, digits % power, decimals.min(9));
+    }
+}
+
+/// `value` with that many decimals.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let mut text = String::with_capacity(12);
+    push_fixed(&mut text, value, decimals);
+    text
+}
+
+/// Appends digits, with zeros in front up to `width`.
+fn push_digits(text: &mut String, mut value: u64, width: usize) {
+    let mut digits = [b'0'; 20];
+    let mut start = digits.len();
+    while value > 0 || digits.len() - start < width {
+        start -= 1;
+        digits[start] = b'0' + (value % 10) as u8;
+        value /= 10;
+    }
+    text.extend(digits[start..].iter().map(|&d| char::from(d)));
+}

@@ -1,0 +1,343 @@
+//! The front door: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
+//!
+//! [`plan_layers`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
+//! needs the memory of the mesh plus [`BATCH`](crate::slice::BATCH) layers. [`plan`] collects the layers.
+
+use crate::fill::{self, Fill, FillSettings, Pass as Path, PassKind, Strategy};
+use crate::metrics::Metrics;
+use crate::model::Mesh;
+use crate::order;
+use crate::profile::Profile;
+use crate::slice::{Layer as Slice, Slicer};
+use crate::task::{Cancelled, Stage, Task};
+use crate::warning::{Warning, WarningKind, Warnings};
+use glam::{DVec2, DVec3};
+use planar::{Join, Polygon, Region};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// One path with the arc on, in the part's space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// What it is for.
+    pub kind: PassKind,
+    /// Whether it ends where it began; the first point is then not repeated.
+    pub closed: bool,
+    /// Torch tool points, mm; z is the top of the layer.
+    pub points: Vec<DVec3>,
+    /// Bead width, mm.
+    pub width: f64,
+    /// Deposition speed, mm/s.
+    pub speed: f64,
+}
+
+impl Pass {
+    /// All points in order, the first one again at the end of a closed pass.
+    pub fn path(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.points.iter().chain(self.closed.then(|| self.points.first()).flatten()).copied()
+    }
+
+    /// Where the arc starts.
+    pub fn start(&self) -> Option<DVec3> {
+        self.points.first().copied()
+    }
+
+    /// Where the arc ends.
+    pub fn end(&self) -> Option<DVec3> {
+        if self.closed { self.points.first().copied() } else { self.points.last().copied() }
+    }
+
+    /// Deposited length, mm.
+    pub fn length(&self) -> f64 {
+        let mut path = self.path();
+        let Some(mut at) = path.next() else { return 0.0 };
+        path.map(|p| std::mem::replace(&mut at, p).distance(p)).sum()
+    }
+}
+
+/// One layer, ready to be deposited.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layer {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// Thickness, mm.
+    pub height: f64,
+    /// Outlines of the slice.
+    pub islands: Vec<Polygon>,
+    /// Passes in deposition order; between two the arc is off.
+    pub passes: Vec<Pass>,
+    /// Area of the slice, mm².
+    pub slice_area: f64,
+    /// Area within reach of a bead, mm².
+    pub planned_area: f64,
+    /// What was lost or mended here.
+    pub warnings: Vec<Warning>,
+}
+
+/// What is the same for all layers of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Header {
+    /// Name of the part, for files and headings.
+    pub part: String,
+    /// Name of the profile.
+    pub profile: String,
+    /// Name of the strategy.
+    pub strategy: String,
+    /// Number of layers.
+    pub layers: usize,
+}
+
+/// A whole plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// What is the same for all layers.
+    pub header: Header,
+    /// The layers, lowest first.
+    pub layers: Vec<Layer>,
+    /// Totals and warnings.
+    pub summary: Summary,
+}
+
+/// Totals and warnings of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// The totals.
+    pub metrics: Metrics,
+    /// Events on layers.
+    pub warnings: Warnings,
+    /// What does not fit in the profile, as sentences.
+    pub notes: Vec<String>,
+}
+
+/// Why a plan could not be made. `E` is the error of the sink.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError<E> {
+    /// Stopped by the caller.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The profile names a strategy that does not exist.
+    #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
+    UnknownStrategy(String),
+    /// The plan would be too large.
+    #[error("the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check --units and layers.height.")]
+    TooManyLayers {
+        /// Height of the part, mm.
+        height: f64,
+        /// Number of layers.
+        layers: usize,
+        /// Thickness of a layer, mm.
+        layer_height: f64,
+    },
+    /// Nothing would be laid.
+    #[error("nothing would be deposited: {0}")]
+    Empty(String),
+    /// The sink failed.
+    #[error(transparent)]
+    Sink(E),
+}
+
+/// No plan has more layers than this.
+pub const MAX_LAYERS: usize = 100_000;
+
+/// Receives the layers of a plan in deposition order.
+pub trait Sink {
+    /// What can go wrong while a layer is taken in.
+    type Error: Send;
+
+    /// Called once, before the first layer.
+    ///
+    /// # Errors
+    /// Whatever the sink fails with; planning then stops.
+    fn begin(&mut self, header: &Header) -> Result<(), Self::Error>;
+
+    /// Takes the next layer.
+    ///
+    /// # Errors
+    /// Whatever the sink fails with; planning then stops.
+    fn layer(&mut self, layer: Layer) -> Result<(), Self::Error>;
+}
+
+/// Plans a mesh that stands on z = 0 and keeps all layers.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn plan(part: &str, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Plan, PlanError<std::convert::Infallible>> {
+    struct Collect(Option<Header>, Vec<Layer>);
+    impl Sink for Collect {
+        type Error = std::convert::Infallible;
+
+        fn begin(&mut self, header: &Header) -> Result<(), Self::Error> {
+            self.0 = Some(header.clone());
+            Ok(())
+        }
+
+        fn layer(&mut self, layer: Layer) -> Result<(), Self::Error> {
+            self.1.push(layer);
+            Ok(())
+        }
+    }
+    let mut collect = Collect(None, Vec::new());
+    let summary = plan_layers(part, mesh, profile, task, &mut collect)?;
+    let header = collect.0.ok_or_else(|| PlanError::Empty("the part has no layers.".to_owned()))?;
+    Ok(Plan { header, layers: collect.1, summary })
+}
+
+/// Plans a mesh that stands on z = 0 and hands every layer to `sink`. The result does not depend on the number of
+/// threads: layers are filled in parallel, but ordered and handed over one after another.
+///
+/// # Errors
+/// [`PlanError`], with what the sink failed with among them.
+pub fn plan_layers<S: Sink + Send>(
+    part: &str,
+    mesh: &Mesh,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    let name = &profile.fill.strategy;
+    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
+    check_layer_count(mesh, profile)?;
+    let slicer = Slicer::new(mesh, profile.slice_options(), task)?;
+    let (part, profile_name) = (part.to_owned(), profile.name.clone());
+    let header = Header { part, profile: profile_name, strategy: name.clone(), layers: slicer.layer_count() };
+    sink.begin(&header).map_err(PlanError::Sink)?;
+
+    let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
+        let slices = slicer.batch(batch, task)?;
+        let fill = |slice: Slice| {
+            task.check()?;
+            let settings = profile.fill_settings(slice.index);
+            Ok(fill_layer(slice, strategy, &settings))
+        };
+        slices.into_par_iter().map(fill).collect()
+    };
+    let mut emitter = Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    // While one batch is handed over, the next is filled.
+    let mut ready = fill_batch(0)?;
+    for next in 1..=slicer.batch_count() {
+        task.step(Stage::Plan, next as f64 / slicer.batch_count() as f64)?;
+        let (filled, emitted) = rayon::join(
+            || if next < slicer.batch_count() { fill_batch(next) } else { Ok(Vec::new()) },
+            || ready.into_iter().try_for_each(|layer| emitter.emit(layer)),
+        );
+        emitted.map_err(PlanError::Sink)?;
+        ready = filled?;
+    }
+    let Emitter { metrics, warnings, .. } = emitter;
+    if metrics.passes == 0 {
+        let largest = mesh.size();
+        return Err(PlanError::Empty(format!(
+            "no part of the slices is wide enough for a bead of {} mm (the part is {:.1} × {:.1} × {:.1} mm). \
+             Take a narrower bead or a larger part, or check --units.",
+            profile.bead.width, largest.x, largest.y, largest.z
+        )));
+    }
+    Ok(Summary { metrics, warnings, notes: profile.notes() })
+}
+
+fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
+    let (height, layer_height) = (mesh.size().z, profile.layers.height);
+    let layers = (height / layer_height) as usize;
+    if layers > MAX_LAYERS {
+        return Err(PlanError::TooManyLayers { height, layers, layer_height });
+    }
+    Ok(())
+}
+
+/// A slice with the passes of its islands, not yet in order.
+struct Filled {
+    slice: Slice,
+    fills: Vec<Fill>,
+    planned_area: f64,
+}
+
+fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings) -> Filled {
+    let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
+    for island in &slice.islands {
+        let reached = reach(island, settings, slice.index, &mut slice.warnings);
+        let mut fill = if reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
+        for stage in &mut fill.stages {
+            drop_short(stage, settings.min_pass_length, slice.index, &mut slice.warnings);
+        }
+        planned_area += reached;
+        fills.push(fill);
+    }
+    Filled { slice, fills, planned_area }
+}
+
+fn drop_short(stage: &mut Vec<Path>, shortest: f64, layer: usize, warnings: &mut Vec<Warning>) {
+    stage.retain(|pass| {
+        let length = pass.length();
+        let keep = length >= shortest && pass.points.len() >= 2;
+        // A zigzag that touches a corner with a line of no length loses nothing.
+        if !keep && length > 0.1 * shortest {
+            let place = pass.points.first().copied().unwrap_or_default();
+            warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
+        }
+        keep
+    });
+}
+
+/// A feature is reported from this area on, in squared bead widths.
+const THIN_FEATURE: f64 = 0.25;
+
+/// Area of an island that a bead can reach without leaving it, mm²; warns of what it cannot reach.
+///
+/// That area is the opening of the island by a disc of the bead's width. With C the outermost centre-lines and r
+/// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), so that the shapes that are lost need
+/// to be computed only where the number says that there are some.
+fn reach(island: &Polygon, settings: &FillSettings, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
+    let r = settings.bead_width / 2.0;
+    let area = island.area();
+    let centre = island.offset(-r, Join::ROUND);
+    if centre.is_empty() {
+        let place = planar::Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
+        warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
+        return 0.0;
+    }
+    let opened = centre.area() + r * centre.perimeter() + std::f64::consts::PI * r * r * centre.euler() as f64;
+    let smallest = THIN_FEATURE * settings.bead_width * settings.bead_width;
+    if area - opened > smallest {
+        let lost = Region::from(island.clone()).difference(&centre.offset(r, Join::ROUND));
+        for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
+            let place = piece.outer.points().first().copied().unwrap_or_default();
+            warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
+        }
+    }
+    opened.clamp(0.0, area)
+}
+
+/// Puts filled layers in order and hands them over.
+struct Emitter<'a, S> {
+    profile: &'a Profile,
+    sink: &'a mut S,
+    torch: Option<DVec2>,
+    metrics: Metrics,
+    warnings: Warnings,
+}
+
+impl<S: Sink> Emitter<'_, S> {
+    fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
+        let Filled { slice, fills, planned_area } = filled;
+        let Slice { index, z, height, islands, mut warnings } = slice;
+        let slice_area = islands.iter().map(Polygon::area).sum();
+        if islands.is_empty() {
+            warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
+        }
+        let (width, speed) = (self.profile.bead.width, self.profile.process.deposition_speed);
+        let lift = |path: Path| Pass {
+            kind: path.kind,
+            closed: path.closed,
+            points: path.points.into_iter().map(|p| p.extend(z)).collect(),
+            width,
+            speed,
+        };
+        let passes = order::order(fills, &mut self.torch).into_iter().map(lift).collect();
+        warnings.iter().for_each(|w| self.warnings.add(*w));
+        let layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
+        self.metrics.add(&layer);
+        self.sink.layer(layer)
+    }
+}

@@ -1,0 +1,144 @@
+//! CNC G-code, three axes: one file between `%` signs, feeds in mm/min, G0 never with the arc on.
+
+use super::{Chunk, Post, Values, ascii};
+use crate::number::push_fixed;
+use crate::profile::{Gcode, Profile};
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+
+/// Block numbers begin anew after this.
+const MAX_BLOCK: usize = 99_990;
+
+/// A comment may have this many characters: blocks stay under 80.
+const MAX_COMMENT: usize = 60;
+
+/// The G-code post.
+pub struct CncGcode {
+    file: String,
+    comment: String,
+    gcode: Gcode,
+    values: Values,
+    block: usize,
+    /// Feed written last, mm/s.
+    feed: f64,
+    at: Option<DVec3>,
+}
+
+impl CncGcode {
+    /// A post for a part.
+    pub fn new(part: &str, profile: &Profile, gcode: Gcode) -> Self {
+        let file = format!("{part}.{}", gcode.extension);
+        let values = Values::new(&ascii(part), profile);
+        let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
+        Self { file, comment, gcode, values, block: 0, feed: 0.0, at: None }
+    }
+
+    fn begin_block(&mut self, text: &mut String) {
+        if self.gcode.block_numbers {
+            self.block = if self.block >= MAX_BLOCK { 10 } else { self.block + 10 };
+            text.push_str(&format!("N{} ", self.block));
+        }
+    }
+
+    fn comment(text: &mut String, comment: &str) {
+        let clean = comment.replace(['(', ')'], "_").to_uppercase();
+        text.push_str(&format!("({})\n", &clean[..clean.len().min(MAX_COMMENT)]));
+    }
+
+    fn blocks(&mut self, text: &mut String, template: &[String]) {
+        let lines: Vec<String> = self.values.expand(template).collect();
+        for line in lines {
+            self.begin_block(text);
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+
+    /// A straight move; axes that stand still are left out.
+    fn go(&mut self, text: &mut String, word: &str, to: DVec3, feed: Option<f64>) {
+        let moved = |axis: usize| self.at.is_none_or(|at| at[axis] != to[axis]);
+        let axes: Vec<usize> = (0..3).filter(|&axis| moved(axis)).collect();
+        if axes.is_empty() {
+            return;
+        }
+        self.begin_block(text);
+        text.push_str(word);
+        for axis in axes {
+            text.push_str([" X", " Y", " Z"][axis]);
+            push_fixed(text, to[axis], self.gcode.decimals);
+        }
+        if let Some(feed) = feed.filter(|&f| f != self.feed) {
+            self.feed = feed;
+            text.push_str(" F");
+            push_fixed(text, feed * 60.0, 1);
+        }
+        text.push('\n');
+        self.at = Some(to);
+    }
+
+    fn instruction(&mut self, text: &mut String, instruction: Instruction) {
+        match instruction {
+            // The machine may stand anywhere at first: rise before moving across.
+            Instruction::Travel { to } if self.at.is_none() => {
+                self.begin_block(text);
+                text.push_str("G0 Z");
+                push_fixed(text, to.z, self.gcode.decimals);
+                text.push('\n');
+                self.at = Some(DVec3::new(f64::NAN, f64::NAN, to.z));
+                self.go(text, "G0", to, None);
+            }
+            Instruction::Travel { to } => self.go(text, "G0", to, None),
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                Self::comment(text, &format!("PASS {pass} {}", kind.name()));
+                let lines = self.gcode.arc_on.clone();
+                self.blocks(text, &lines);
+            }
+            Instruction::Weld { to, speed, .. } => self.go(text, "G1", to, Some(speed)),
+            Instruction::ArcOff { .. } => {
+                let lines = self.gcode.arc_off.clone();
+                self.blocks(text, &lines);
+            }
+        }
+    }
+
+    fn chunk(&self, text: String) -> Vec<Chunk> {
+        vec![Chunk { file: self.file.clone(), text }]
+    }
+}
+
+impl Post for CncGcode {
+    fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
+        let mut text = "%\n".to_owned();
+        Self::comment(&mut text, &self.comment);
+        let header = self.gcode.header.clone();
+        self.blocks(&mut text, &header);
+        self.chunk(text)
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let mut text = String::with_capacity(program.instructions.len() * 32);
+        self.values.set("layer", program.index + 1);
+        Self::comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
+        let layer_start = self.gcode.layer_start.clone();
+        self.blocks(&mut text, &layer_start);
+        for &instruction in &program.instructions {
+            self.instruction(&mut text, instruction);
+        }
+        self.chunk(text)
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        if let Some(leave) = leave {
+            self.instruction(&mut text, leave);
+        }
+        let footer = self.gcode.footer.clone();
+        self.blocks(&mut text, &footer);
+        text.push_str("%\n");
+        self.chunk(text)
+    }
+}

@@ -1,0 +1,165 @@
+//! KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on, `NAME.dat` holds the home position.
+//!
+//! One module a layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The
+//! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`.
+
+use super::{Chunk, Post, Values, ascii};
+use crate::number::{fixed, push_fixed};
+use crate::profile::{Krl, Profile};
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+
+/// Module names may have this many characters.
+const MAX_NAME: usize = 24;
+
+/// Words that no module may be called.
+const RESERVED: [&str; 12] =
+    ["DEF", "DEFDAT", "DEFFCT", "END", "LOOP", "FOR", "WHILE", "REPEAT", "SWITCH", "WAIT", "HALT", "EXIT"];
+
+/// The KRL post.
+pub struct KukaKrl {
+    name: String,
+    comment: String,
+    krl: Krl,
+    values: Values,
+    travel_speed: f64,
+    digits: usize,
+    /// Speed set last in the module, mm/s.
+    speed: f64,
+}
+
+impl KukaKrl {
+    /// A post for a part; its name becomes the module's name.
+    pub fn new(part: &str, profile: &Profile, krl: Krl) -> Self {
+        let name = module_name(part);
+        let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
+        let values = Values::new(&name, profile);
+        Self { name, comment, krl, values, travel_speed: profile.travel.speed, digits: 3, speed: 0.0 }
+    }
+
+    fn layer_name(&self, index: usize) -> String {
+        format!("{}_L{:0digits$}", self.name, index + 1, digits = self.digits)
+    }
+
+    fn head(&self, module: &str) -> String {
+        format!("&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEF {module}( )\r\n", self.comment)
+    }
+
+    fn lines(&self, text: &mut String, template: &[String]) {
+        for line in self.values.expand(template) {
+            text.push_str(&line);
+            text.push_str("\r\n");
+        }
+    }
+
+    fn set_speed(&mut self, text: &mut String, speed: f64) {
+        if speed != self.speed {
+            self.speed = speed;
+            text.push_str("$VEL.CP = ");
+            push_fixed(text, speed / 1000.0, 6);
+            text.push_str("\r\n");
+        }
+    }
+
+    fn lin(&self, text: &mut String, to: DVec3, blend: bool) {
+        text.push_str("LIN {X ");
+        push_fixed(text, to.x, 3);
+        text.push_str(",Y ");
+        push_fixed(text, to.y, 3);
+        text.push_str(",Z ");
+        push_fixed(text, to.z, 3);
+        for (axis, angle) in [",A ", ",B ", ",C "].into_iter().zip(self.krl.orientation) {
+            text.push_str(axis);
+            push_fixed(text, angle, 4);
+        }
+        text.push_str(if blend && self.krl.blend > 0.0 { "} C_DIS\r\n" } else { "}\r\n" });
+    }
+
+    fn instruction(&mut self, text: &mut String, instruction: Instruction) {
+        match instruction {
+            Instruction::Travel { to } => {
+                self.set_speed(text, self.travel_speed);
+                self.lin(text, to, false);
+            }
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
+                self.lines(text, &self.krl.arc_on);
+            }
+            Instruction::Weld { to, speed, last } => {
+                self.set_speed(text, speed);
+                self.lin(text, to, !last);
+            }
+            Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
+        }
+    }
+}
+
+impl Post for KukaKrl {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // Room for "_L" and the number.
+        self.name.truncate(MAX_NAME - 2 - self.digits);
+        let (name, krl) = (&self.name, &self.krl);
+        let data = format!(
+            "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}\r\nDECL E6AXIS XHOME={{{}}}\r\nENDDAT\r\n",
+            self.comment, krl.home
+        );
+        let mut text = self.head(name);
+        text.push_str(";FOLD INI;%{PE}\r\n  GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )\r\n");
+        text.push_str("  INTERRUPT ON 3\r\n  BAS(#INITMOV,0)\r\n;ENDFOLD (INI)\r\n");
+        text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = BASE_DATA[{}]\r\n", krl.tool, krl.base));
+        text.push_str(&format!("BAS(#VEL_PTP,{})\r\n", fixed(krl.ptp_speed, 0)));
+        text.push_str(&format!("$APO.CDIS = {}\r\n", fixed(krl.blend, 3)));
+        text.push_str(&format!("$VEL.CP = {}\r\n", fixed(self.travel_speed / 1000.0, 6)));
+        self.lines(&mut text, &self.krl.start);
+        text.push_str("PTP XHOME\r\n");
+        vec![
+            Chunk { file: format!("{}.dat", self.name), text: data },
+            Chunk { file: format!("{}.src", self.name), text },
+        ]
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let module = self.layer_name(program.index);
+        self.values.set("layer", program.index + 1);
+        self.speed = 0.0;
+        let mut text = self.head(&module);
+        text.reserve(program.instructions.len() * 70);
+        text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
+        self.lines(&mut text, &self.krl.layer_start);
+        for &instruction in &program.instructions {
+            self.instruction(&mut text, instruction);
+        }
+        text.push_str("END\r\n");
+        vec![
+            Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") },
+            Chunk { file: format!("{module}.src"), text },
+        ]
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        self.speed = 0.0;
+        if let Some(leave) = leave {
+            self.instruction(&mut text, leave);
+        }
+        self.lines(&mut text, &self.krl.end);
+        text.push_str("PTP XHOME\r\nEND\r\n");
+        vec![Chunk { file: format!("{}.src", self.name), text }]
+    }
+}
+
+/// A legal module name: letters, digits and `_`, not beginning with a digit, no keyword, at most 24 characters.
+fn module_name(part: &str) -> String {
+    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let mut name: String = part.chars().map(legal).collect();
+    if name.is_empty() || name.starts_with(|c: char| c.is_ascii_digit()) || RESERVED.contains(&name.as_str()) {
+        name.insert_str(0, "P_");
+    }
+    name.truncate(MAX_NAME);
+    name
+}

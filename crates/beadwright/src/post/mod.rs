@@ -1,0 +1,110 @@
+//! Posts: a neutral program in a controller's language. A dialect is one file and one arm in [`post`].
+//!
+//! A post does no I/O: it hands out [`Chunk`]s, text to be appended to a named file, layer by layer.
+//!
+//! | post | writes |
+//! | --- | --- |
+//! | [`krl`] | KUKA KRL: a main program with its data, and one subprogram a layer |
+//! | [`gcode`] | CNC G-code: one file |
+
+pub mod gcode;
+pub mod krl;
+
+use crate::profile::{BUILT_IN, Profile, ProfileError};
+use crate::program::{Instruction, LayerProgram};
+use crate::template;
+
+/// The posts by name.
+pub const NAMES: [&str; 2] = ["krl", "gcode"];
+
+/// Text to be appended to a file of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Chunk {
+    /// File name without a folder.
+    pub file: String,
+    /// ASCII text with the line ends of the controller.
+    pub text: String,
+}
+
+/// Writes a program in one dialect.
+pub trait Post: Send {
+    /// What comes before the first layer of `layers`.
+    fn begin(&mut self, layers: usize) -> Vec<Chunk>;
+
+    /// One layer.
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
+
+    /// What comes after the last layer; `leave` takes the torch away.
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
+}
+
+/// Why a post cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PostError {
+    /// No such post.
+    #[error("there is no post \"{0}\". The posts are {known}.", known = NAMES.join(", "))]
+    Unknown(String),
+    /// The profile lacks what the post needs.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+}
+
+/// The post of that name for a part.
+///
+/// # Errors
+/// [`PostError`] when there is none, or the profile lacks its section.
+pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, PostError> {
+    match name {
+        "krl" => {
+            let section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
+            Ok(Box::new(krl::KukaKrl::new(part, profile, section)))
+        }
+        "gcode" => {
+            let section = profile.gcode.clone().ok_or_else(|| no_section(profile, "gcode"))?;
+            Ok(Box::new(gcode::CncGcode::new(part, profile, section)))
+        }
+        _ => Err(PostError::Unknown(name.to_owned())),
+    }
+}
+
+fn no_section(profile: &Profile, section: &'static str) -> PostError {
+    let with = BUILT_IN.iter().find(|(_, text)| text.contains(&format!("\n[{section}]")));
+    let hint = with.map_or(String::new(), |(name, _)| format!("`beadwright profile show {name}` prints one to copy."));
+    ProfileError::NoSection { profile: profile.name.clone(), section, hint }.into()
+}
+
+/// Values for the templates of a profile.
+struct Values(Vec<(&'static str, String)>);
+
+impl Values {
+    fn new(program: &str, profile: &Profile) -> Self {
+        let process = &profile.process;
+        Self(vec![
+            ("program", program.to_owned()),
+            ("layer", String::new()),
+            ("pass", String::new()),
+            ("wire_feed_speed", process.wire_feed_speed.to_string()),
+            ("deposition_speed", process.deposition_speed.to_string()),
+            ("arc_start_delay", process.arc_start_delay.to_string()),
+            ("arc_end_delay", process.arc_end_delay.to_string()),
+            ("gas_preflow", process.gas_preflow.to_string()),
+            ("gas_postflow", process.gas_postflow.to_string()),
+            ("gas_flow", process.gas_flow.to_string()),
+        ])
+    }
+
+    fn set(&mut self, name: &str, value: usize) {
+        for (_, v) in self.0.iter_mut().filter(|(known, _)| *known == name) {
+            *v = value.to_string();
+        }
+    }
+
+    fn expand<'a>(&'a self, lines: &'a [String]) -> impl Iterator<Item = String> + 'a {
+        lines.iter().map(|line| template::expand(line, &self.0))
+    }
+}
+
+/// Printable ASCII for comments; other characters become `_`.
+fn ascii(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect()
+}

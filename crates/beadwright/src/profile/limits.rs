@@ -1,0 +1,146 @@
+//! What values can be: one table of ranges, and the few rules that tie keys together.
+
+use super::Profile;
+use crate::template;
+
+/// The first value that cannot be.
+pub(super) struct Broken {
+    pub(super) key: String,
+    pub(super) value: String,
+    pub(super) reason: String,
+}
+
+/// Placeholders that a template may use.
+pub(crate) const PLACEHOLDERS: [&str; 10] = [
+    "program",
+    "layer",
+    "pass",
+    "wire_feed_speed",
+    "deposition_speed",
+    "arc_start_delay",
+    "arc_end_delay",
+    "gas_preflow",
+    "gas_postflow",
+    "gas_flow",
+];
+
+pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
+    out_of_range(p).or_else(|| contradiction(p)).or_else(|| bad_template(p))
+}
+
+/// Key, value, least and greatest possible value, unit.
+type Range = (&'static str, f64, f64, f64, &'static str);
+
+fn out_of_range(p: &Profile) -> Option<Broken> {
+    const TINY: f64 = 1e-3;
+    let (w, process, fill) = (p.bead.width, &p.process, &p.fill);
+    let mut ranges: Vec<Range> = vec![
+        ("wire.diameter", p.wire.diameter, 0.1, 10.0, "mm"),
+        ("wire.density", p.wire.density, 0.5, 25.0, "g/cm³"),
+        ("process.wire_feed_speed", process.wire_feed_speed, TINY, 100.0, "m/min"),
+        ("process.deposition_speed", process.deposition_speed, TINY, 2000.0, "mm/s"),
+        ("process.efficiency", process.efficiency, 0.01, 1.0, "of the wire"),
+        ("process.arc_start_delay", process.arc_start_delay, 0.0, 60.0, "s"),
+        ("process.arc_end_delay", process.arc_end_delay, 0.0, 60.0, "s"),
+        ("process.gas_flow", process.gas_flow, 0.0, 200.0, "L/min"),
+        ("process.gas_preflow", process.gas_preflow, 0.0, 60.0, "s"),
+        ("process.gas_postflow", process.gas_postflow, 0.0, 60.0, "s"),
+        ("process.ctwd", process.ctwd, 0.0, 100.0, "mm"),
+        ("process.current", process.current.unwrap_or(1.0), TINY, 2000.0, "A"),
+        ("process.voltage", process.voltage.unwrap_or(1.0), TINY, 500.0, "V"),
+        ("bead.width", w, 0.05, 100.0, "mm"),
+        ("bead.height", p.bead.height, 0.01, 50.0, "mm"),
+        ("layers.height", p.layers.height, 0.01, 50.0, "mm"),
+        ("fill.stepover", fill.stepover.unwrap_or(w), 0.2 * w, 2.0 * w, "mm (0.2 to 2 bead widths)"),
+        ("fill.contour_gap", fill.contour_gap, 0.1, 2.0, "bead widths"),
+        ("fill.perimeters", fill.perimeters.into(), 1.0, 1000.0, "perimeters"),
+        ("fill.machining_allowance", fill.machining_allowance, 0.0, 50.0, "mm"),
+        ("fill.raster_angle", fill.raster_angle, -360.0, 360.0, "°"),
+        ("fill.raster_increment", fill.raster_increment, -360.0, 360.0, "°"),
+        ("fill.min_pass_length", fill.min_pass_length, 0.0, 1000.0, "mm"),
+        ("slice.close_gap", p.slice.close_gap, 0.0, 1000.0, "mm"),
+        ("slice.simplify", p.slice.simplify, 0.0, 0.2 * w, "mm (at most 0.2 bead widths)"),
+        ("travel.speed", p.travel.speed, TINY, 3000.0, "mm/s"),
+        ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
+    ];
+    if let Some(krl) = &p.krl {
+        ranges.extend([
+            ("krl.tool", krl.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)"),
+            ("krl.base", krl.base.into(), 1.0, 32.0, "(index into BASE_DATA)"),
+            ("krl.ptp_speed", krl.ptp_speed, 1.0, 100.0, "%"),
+            ("krl.blend", krl.blend, 0.0, 50.0, "mm"),
+        ]);
+        ranges.extend(krl.orientation.map(|angle| ("krl.orientation", angle, -360.0, 360.0, "°")));
+    }
+    if let Some(gcode) = &p.gcode {
+        ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
+    }
+    // Written so that NaN is out of range too.
+    let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
+    broken.map(|(key, value, low, high, unit)| Broken {
+        key: key.to_owned(),
+        value: format!("{value}"),
+        reason: format!("it must lie between {low} and {high} {unit}."),
+    })
+}
+
+fn contradiction(p: &Profile) -> Option<Broken> {
+    let broken = |key: &str, value: String, reason: String| Some(Broken { key: key.to_owned(), value, reason });
+    if crate::fill::strategy(&p.fill.strategy).is_none() {
+        let names = crate::fill::STRATEGIES.map(|s| s.name());
+        let value = format!("\"{}\"", p.fill.strategy);
+        return broken("fill.strategy", value, format!("the strategies are {}.", names.join(", ")));
+    }
+    if (p.fill.overlap.ratio().is_none()) != p.fill.stepover.is_some() {
+        let value = format!("{:?}", p.fill.stepover);
+        return broken("fill.stepover", value, "it is given exactly when overlap = \"free\".".to_owned());
+    }
+    if let Some(post) = p.posts.iter().find(|post| !crate::post::NAMES.contains(&post.as_str())) {
+        let names = crate::post::NAMES.join(", ");
+        return broken("posts", format!("\"{post}\""), format!("the posts are {names}."));
+    }
+    let extension = p.gcode.as_ref().map_or("nc", |g| &g.extension);
+    if extension.is_empty() || !extension.bytes().all(|b| b.is_ascii_alphanumeric()) {
+        return broken("gcode.extension", format!("\"{extension}\""), "letters and digits only.".to_owned());
+    }
+    let home = p.krl.as_ref().map_or("A1 0", |k| &k.home);
+    if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
+        return broken("krl.home", format!("\"{home}\""), "an axis position such as \"A1 0.0,A2 -90.0,…\".".to_owned());
+    }
+    None
+}
+
+/// Templates may use known placeholders and printable ASCII only: controllers read nothing else.
+fn bad_template(p: &Profile) -> Option<Broken> {
+    let krl = p.krl.iter().flat_map(|k| {
+        [
+            ("krl.start", &k.start),
+            ("krl.layer_start", &k.layer_start),
+            ("krl.arc_on", &k.arc_on),
+            ("krl.arc_off", &k.arc_off),
+            ("krl.end", &k.end),
+        ]
+    });
+    let gcode = p.gcode.iter().flat_map(|g| {
+        [
+            ("gcode.header", &g.header),
+            ("gcode.layer_start", &g.layer_start),
+            ("gcode.arc_on", &g.arc_on),
+            ("gcode.arc_off", &g.arc_off),
+            ("gcode.footer", &g.footer),
+        ]
+    });
+    for (key, lines) in krl.chain(gcode) {
+        for line in lines {
+            let reason = match template::unknown_placeholder(line, &PLACEHOLDERS) {
+                Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", PLACEHOLDERS.join(", ")),
+                None if !line.bytes().all(|b| b.is_ascii_graphic() || b == b' ') => {
+                    "a line of a template holds printable ASCII characters only.".to_owned()
+                }
+                None => continue,
+            };
+            return Some(Broken { key: key.to_owned(), value: format!("\"{line}\""), reason });
+        }
+    }
+    None
+}

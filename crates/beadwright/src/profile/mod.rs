@@ -1,0 +1,341 @@
+//! Profiles: everything that belongs to a process, a material and a cell, as a TOML file people can edit.
+//!
+//! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
+//! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
+
+mod limits;
+mod read;
+
+pub use read::ProfileError;
+
+use crate::bead::{Bead, MassBalance, Overlap};
+use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
+use crate::slice::SliceOptions;
+use serde::{Deserialize, Serialize};
+
+/// The built-in profiles as (name, TOML text).
+pub const BUILT_IN: [(&str, &str); 2] = [
+    ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
+    ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
+];
+
+/// A process on a cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Profile {
+    /// Name by which the profile is chosen.
+    pub name: String,
+    /// One line for lists.
+    pub description: String,
+    /// Dialects written when none is asked for: `krl`, `gcode`.
+    pub posts: Vec<String>,
+    /// The wire.
+    pub wire: Wire,
+    /// Arc, wire feed, speed and gas.
+    pub process: Process,
+    /// The single bead.
+    pub bead: BeadShape,
+    /// The layers.
+    pub layers: Layers,
+    /// How layers are filled.
+    pub fill: Fill,
+    /// Tolerances of slicing; optional.
+    #[serde(default)]
+    pub slice: Slice,
+    /// Moves without arc.
+    pub travel: Travel,
+    /// KUKA KRL; needed for the post `krl`.
+    pub krl: Option<Krl>,
+    /// CNC G-code; needed for the post `gcode`.
+    pub gcode: Option<Gcode>,
+}
+
+/// The wire.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Wire {
+    /// Material, for the report.
+    pub material: String,
+    /// Diameter, mm.
+    pub diameter: f64,
+    /// Density, g/cm³.
+    pub density: f64,
+}
+
+/// Arc, wire feed, speed and gas.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Process {
+    /// Wire feed speed, m/min.
+    pub wire_feed_speed: f64,
+    /// Speed of the torch while the arc burns, mm/s.
+    pub deposition_speed: f64,
+    /// Part of the wire that ends in the bead, 0 to 1.
+    pub efficiency: f64,
+    /// Arc current, A; optional, for the heat input.
+    pub current: Option<f64>,
+    /// Arc voltage, V; optional, for the heat input.
+    pub voltage: Option<f64>,
+    /// Wait after the arc is on before the torch moves, s.
+    pub arc_start_delay: f64,
+    /// Wait after the arc is off before the torch leaves, s.
+    pub arc_end_delay: f64,
+    /// Shielding gas, for the report.
+    pub gas: String,
+    /// Gas flow, L/min.
+    pub gas_flow: f64,
+    /// Gas before the arc, s.
+    pub gas_preflow: f64,
+    /// Gas after the arc, s.
+    pub gas_postflow: f64,
+    /// Contact tip to work distance, mm.
+    pub ctwd: f64,
+}
+
+/// The single bead, a parabola.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BeadShape {
+    /// Width at the foot, mm.
+    pub width: f64,
+    /// Height at the crown, mm.
+    pub height: f64,
+}
+
+/// The layers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Layers {
+    /// Thickness, mm.
+    pub height: f64,
+}
+
+/// How the raster angle changes from layer to layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum RasterTurn {
+    /// The same angle on every layer.
+    Fixed,
+    /// Turned by 90° on every second layer.
+    Alternate,
+    /// Turned by `raster_increment` from layer to layer.
+    Increment,
+}
+
+/// How layers are filled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Fill {
+    /// Strategy: `raster`, `zigzag`, `contour` or `compound`.
+    pub strategy: String,
+    /// Model of the overlap of neighbouring beads, which gives the stepover.
+    pub overlap: Overlap,
+    /// Stepover, mm; only with `overlap = "free"`.
+    pub stepover: Option<f64>,
+    /// Distance from the innermost perimeter to the infill, in bead widths (0.591 by Liu et al. 2022).
+    pub contour_gap: f64,
+    /// Perimeters around the infill of `compound`.
+    pub perimeters: u32,
+    /// Order of contours: `outside-in` or `inside-out`.
+    pub contour_order: ContourOrder,
+    /// Extra metal outside the part for machining, mm.
+    pub machining_allowance: f64,
+    /// Angle of the scan lines on the first layer, ° from x.
+    pub raster_angle: f64,
+    /// Change of the angle from layer to layer: `fixed`, `alternate` or `increment`.
+    pub raster_turn: RasterTurn,
+    /// Turn per layer for `increment`, °.
+    pub raster_increment: f64,
+    /// Scan lines spread evenly (`even`) or exactly one stepover apart (`exact`, Liu et al. 2022, eq 11).
+    pub raster_spacing: RasterSpacing,
+    /// Shorter passes are left out with a warning, mm.
+    pub min_pass_length: f64,
+}
+
+/// Tolerances of slicing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Slice {
+    /// Widest gap in an open contour that is bridged, mm; default 0.5.
+    pub close_gap: f64,
+    /// Contour vertices within this distance of the remaining line are dropped, mm; default 0.01.
+    pub simplify: f64,
+}
+
+impl Default for Slice {
+    fn default() -> Self {
+        Self { close_gap: 0.5, simplify: 0.01 }
+    }
+}
+
+/// Moves without arc.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Travel {
+    /// Speed, mm/s.
+    pub speed: f64,
+    /// Height of the move above the layer, mm.
+    pub clearance: f64,
+}
+
+/// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Krl {
+    /// Index into TOOL_DATA, 1 to 16.
+    pub tool: u32,
+    /// Index into BASE_DATA, 1 to 32.
+    pub base: u32,
+    /// Axis position before and after the program, as in an E6AXIS: `A1 0.0,A2 -90.0,…`, °.
+    pub home: String,
+    /// Orientation of the tool, A, B and C, °.
+    pub orientation: [f64; 3],
+    /// Speed of point-to-point moves, %.
+    pub ptp_speed: f64,
+    /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
+    pub blend: f64,
+    /// Lines at the beginning of the main program.
+    pub start: Vec<String>,
+    /// Lines at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Lines that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Lines that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Lines at the end of the main program.
+    pub end: Vec<String>,
+}
+
+/// CNC G-code. Templates are blocks with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gcode {
+    /// File name extension without the dot.
+    pub extension: String,
+    /// Whether blocks carry N numbers.
+    pub block_numbers: bool,
+    /// Decimals of coordinates, 1 to 4.
+    pub decimals: usize,
+    /// Blocks at the beginning.
+    pub header: Vec<String>,
+    /// Blocks at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Blocks that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Blocks that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Blocks at the end.
+    pub footer: Vec<String>,
+}
+
+impl Profile {
+    /// Reads and checks a profile from TOML text.
+    ///
+    /// # Errors
+    /// [`ProfileError`] with the line, the key and what would be right.
+    pub fn parse(text: &str) -> Result<Self, ProfileError> {
+        read::parse(text)
+    }
+
+    /// A built-in profile.
+    ///
+    /// # Errors
+    /// [`ProfileError::UnknownName`] with the nearest name.
+    pub fn built_in(name: &str) -> Result<Self, ProfileError> {
+        Self::parse(Self::built_in_text(name)?)
+    }
+
+    /// The TOML text of a built-in profile.
+    ///
+    /// # Errors
+    /// [`ProfileError::UnknownName`] with the nearest name.
+    pub fn built_in_text(name: &str) -> Result<&'static str, ProfileError> {
+        let found = BUILT_IN.iter().find(|(known, _)| *known == name);
+        found.map(|(_, text)| *text).ok_or_else(|| read::unknown_name(name))
+    }
+
+    /// JSON schema of the TOML file, for editors.
+    #[cfg(feature = "schema")]
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(Self).to_value()
+    }
+
+    /// The single bead.
+    pub fn bead(&self) -> Bead {
+        Bead { width: self.bead.width, height: self.bead.height }
+    }
+
+    /// Distance between neighbouring centre-lines, mm.
+    pub fn stepover(&self) -> f64 {
+        match self.fill.overlap.ratio() {
+            Some(ratio) => ratio * self.bead.width,
+            None => self.fill.stepover.unwrap_or(self.bead.width),
+        }
+    }
+
+    /// Wire against bead.
+    pub fn mass_balance(&self) -> MassBalance {
+        let Process { wire_feed_speed, efficiency, deposition_speed, .. } = self.process;
+        MassBalance::new(self.bead(), wire_feed_speed, self.wire.diameter, efficiency, deposition_speed)
+    }
+
+    /// Heat input, J/mm: current × voltage / speed; `None` where the profile gives no current or voltage.
+    pub fn heat_input(&self) -> Option<f64> {
+        Some(self.process.current? * self.process.voltage? / self.process.deposition_speed)
+    }
+
+    /// How slicing is done.
+    pub fn slice_options(&self) -> SliceOptions {
+        let Slice { close_gap, simplify } = self.slice;
+        SliceOptions { layer_height: self.layers.height, close_gap, simplify }
+    }
+
+    /// How a layer is filled.
+    pub fn fill_settings(&self, layer: usize) -> FillSettings {
+        let fill = &self.fill;
+        let turned = match fill.raster_turn {
+            RasterTurn::Fixed => 0.0,
+            RasterTurn::Alternate => 90.0 * (layer % 2) as f64,
+            RasterTurn::Increment => fill.raster_increment * layer as f64,
+        };
+        FillSettings {
+            bead_width: self.bead.width,
+            stepover: self.stepover(),
+            contour_gap: fill.contour_gap * self.bead.width,
+            perimeters: fill.perimeters,
+            contour_order: fill.contour_order,
+            machining_allowance: fill.machining_allowance,
+            raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
+            raster_spacing: fill.raster_spacing,
+            min_pass_length: fill.min_pass_length,
+        }
+    }
+
+    /// What does not fit together although every value is possible, as sentences.
+    pub fn notes(&self) -> Vec<String> {
+        let rise = self.bead().rise(self.stepover());
+        let height = self.layers.height;
+        let rise_note = ((rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
+            let fitting = Bead::for_rise(self.bead.width, self.stepover(), height);
+            format!(
+                "Beads {:.2} mm high at a stepover of {:.2} mm rise {rise:.2} mm a layer, but layers are {height:.2} mm \
+                 high. A bead.height of {:.2} mm or a layers.height of {rise:.2} mm would fit.",
+                self.bead.height,
+                self.stepover(),
+                fitting.height,
+            )
+        });
+        self.mass_balance().warning().into_iter().chain(rise_note).collect()
+    }
+}

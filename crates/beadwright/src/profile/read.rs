@@ -1,0 +1,120 @@
+//! TOML text to [`Profile`], and errors that name the line and the nearest valid word.
+
+use super::{BUILT_IN, Profile, limits};
+use std::path::PathBuf;
+
+/// Why a profile was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ProfileError {
+    /// No built-in profile has that name.
+    #[error("there is no built-in profile \"{name}\". {hint}")]
+    UnknownName {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, or all of them.
+        hint: String,
+    },
+    /// The text is not TOML, a key is unknown or missing, or a value has the wrong type.
+    #[error("line {line} of the profile: {reason}")]
+    Text {
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong and what would be right.
+        reason: String,
+    },
+    /// A value that cannot be.
+    #[error("line {line} of the profile: {key} = {value} is impossible: {reason}")]
+    Value {
+        /// Line number, from 1.
+        line: usize,
+        /// Full key, such as `bead.width`.
+        key: String,
+        /// The value as it stands there.
+        value: String,
+        /// The range, the unit and why.
+        reason: String,
+    },
+    /// The profile lacks the section of a dialect that was asked for.
+    #[error("profile \"{profile}\" has no [{section}] section, which the post \"{section}\" needs. {hint}")]
+    NoSection {
+        /// Name of the profile.
+        profile: String,
+        /// Missing section.
+        section: &'static str,
+        /// Where to copy it from.
+        hint: String,
+    },
+    /// The file cannot be read; made by callers, since the library does no I/O.
+    #[error("the profile {path} cannot be read: {reason}")]
+    File {
+        /// The path.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
+    let profile: Profile = toml::from_str(text).map_err(|e| {
+        let line = e.span().map_or(1, |span| line_of(text, span.start));
+        ProfileError::Text { line, reason: explain(e.message()) }
+    })?;
+    match limits::first_broken(&profile) {
+        None => Ok(profile),
+        Some(limits::Broken { key, value, reason }) => {
+            Err(ProfileError::Value { line: line_of_key(text, &key), key, value, reason })
+        }
+    }
+}
+
+pub(super) fn unknown_name(name: &str) -> ProfileError {
+    let known = BUILT_IN.map(|(name, _)| name);
+    let hint = match nearest(name, known) {
+        Some(near) => format!("Did you mean \"{near}\"?"),
+        None => format!("Known: {}. A path to a TOML file is taken too.", known.join(", ")),
+    };
+    ProfileError::UnknownName { name: name.to_owned(), hint }
+}
+
+fn line_of(text: &str, byte: usize) -> usize {
+    text[..byte.min(text.len())].matches('\n').count() + 1
+}
+
+/// The line on which a key such as `bead.width` stands.
+fn line_of_key(text: &str, key: &str) -> usize {
+    let (section, name) = key.split_once('.').unwrap_or(("", key));
+    let name = name.split('[').next().unwrap_or(name);
+    let mut current = String::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.trim();
+        if let Some(header) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
+            current = header.trim().to_owned();
+        } else if current == section && line.split('=').next().is_some_and(|k| k.trim() == name) {
+            return i + 1;
+        }
+    }
+    1
+}
+
+/// Makes a sentence of the parser's message and finds the nearest word among those it expected.
+fn explain(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+        let (kind, got) = (if message.starts_with("unknown field") { "key" } else { "value" }, quoted.next().unwrap_or(""));
+        let known: Vec<&str> = quoted.collect();
+        return match nearest(got, known.iter().copied()) {
+            Some(near) => format!("unknown {kind} \"{got}\". Did you mean \"{near}\"?"),
+            None => format!("unknown {kind} \"{got}\". Possible here: {}.", known.join(", ")),
+        };
+    }
+    if message.starts_with("missing field") {
+        return format!("the key \"{}\" is missing here.", quoted.next().unwrap_or(""));
+    }
+    format!("{message}.")
+}
+
+/// The most similar of the known words, if it is similar at all.
+pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let scored = known.into_iter().map(|k| (strsim::jaro_winkler(word, k), k));
+    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
+}

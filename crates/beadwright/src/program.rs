@@ -1,0 +1,116 @@
+//! The neutral program: moves, arc on, arc off. Posts turn it into a controller's language.
+//!
+//! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one
+//! are dropped: a weld move of no length burns through.
+
+use crate::fill::PassKind;
+use crate::plan::{Layer, Pass};
+use glam::DVec3;
+
+/// Coordinates of a program are multiples of this, mm.
+pub const RESOLUTION_MM: f64 = 1e-3;
+
+/// No two points of a pass lie closer, mm.
+pub const MIN_MOVE_MM: f64 = 0.01;
+
+/// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next `Travel`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Instruction {
+    /// A straight move without arc, at travel speed; ends with an exact stop.
+    Travel {
+        /// Tool point, mm.
+        to: DVec3,
+    },
+    /// Lights the arc at the start of a pass.
+    ArcOn {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+        /// What it is for.
+        kind: PassKind,
+    },
+    /// A straight move with the arc on.
+    Weld {
+        /// Tool point, mm.
+        to: DVec3,
+        /// Deposition speed, mm/s.
+        speed: f64,
+        /// Whether the pass ends here, with an exact stop.
+        last: bool,
+    },
+    /// Ends the arc.
+    ArcOff {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+    },
+}
+
+/// The instructions of one layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerProgram {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// What to do.
+    pub instructions: Vec<Instruction>,
+}
+
+/// Turns layers into instructions, remembering where the torch stands.
+#[derive(Debug, Clone)]
+pub struct Programmer {
+    clearance: f64,
+    torch: Option<DVec3>,
+}
+
+impl Programmer {
+    /// Travels go `clearance` (mm) above the higher of their ends.
+    pub fn new(clearance: f64) -> Self {
+        Self { clearance, torch: None }
+    }
+
+    /// The instructions of the next layer; the torch ends above its last pass.
+    pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
+        let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
+        for (i, pass) in layer.passes.iter().enumerate() {
+            self.pass(i + 1, pass, &mut instructions);
+        }
+        LayerProgram { index: layer.index, z: layer.z, instructions }
+    }
+
+    fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
+        let points = distinct(pass);
+        let [start, rest @ ..] = &points[..] else { return };
+        let (start, Some(&end)) = (*start, rest.last()) else { return };
+        let top = self.torch.map_or(start.z, |from| from.z.max(start.z)) + self.clearance;
+        // Up, across, down; the very first move has no place to rise from.
+        let rise = self.torch.map(|from| from.with_z(top));
+        let legs = rise.into_iter().chain([start.with_z(top), start]);
+        out.extend(legs.map(|to| Instruction::Travel { to }));
+        out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
+        let last = rest.len() - 1;
+        let weld = |(i, &to): (usize, &DVec3)| Instruction::Weld { to, speed: pass.speed, last: i == last };
+        out.extend(rest.iter().enumerate().map(weld));
+        out.push(Instruction::ArcOff { pass: number });
+        self.torch = Some(end);
+    }
+
+    /// The move that takes the torch away at the end of the program.
+    pub fn leave(&self) -> Option<Instruction> {
+        self.torch.map(|at| Instruction::Travel { to: at.with_z(at.z + self.clearance) })
+    }
+}
+
+/// The rounded points of a pass without those too close to the last one; the end point stays in any case.
+fn distinct(pass: &Pass) -> Vec<DVec3> {
+    let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
+    let mut points: Vec<DVec3> = Vec::with_capacity(pass.points.len() + 1);
+    for p in pass.path().map(round) {
+        if points.last().is_none_or(|last| last.distance(p) >= MIN_MOVE_MM) {
+            points.push(p);
+        }
+    }
+    if let (Some(end), [_, .., last]) = (pass.end().map(round), &mut points[..]) {
+        *last = end;
+    }
+    points
+}

@@ -1,0 +1,24 @@
+//! Templates of the profiles: lines with `{{placeholders}}`.
+
+/// Text and placeholders in turn.
+fn parts(template: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
+    template.split("{{").enumerate().map(|(i, part)| match part.split_once("}}") {
+        Some((name, text)) if i > 0 => (text, Some(name.trim())),
+        _ => (part, None),
+    })
+}
+
+/// Replaces every placeholder by its value; one without a value becomes nothing (profiles are checked for that).
+pub fn expand(template: &str, values: &[(&str, String)]) -> String {
+    let value = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, v)| v.as_str());
+    parts(template).fold(String::new(), |mut line, (text, name)| {
+        line.push_str(name.and_then(value).unwrap_or_default());
+        line.push_str(text);
+        line
+    })
+}
+
+/// The first placeholder that is not among the known ones.
+pub fn unknown_placeholder<'a>(template: &'a str, known: &[&str]) -> Option<&'a str> {
+    parts(template).find_map(|(_, name)| name.filter(|n| !known.contains(n)))
+}

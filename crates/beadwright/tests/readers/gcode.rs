@@ -1,0 +1,77 @@
+//! A reader of CNC G-code: modal words, one M code a block, G0 never with the arc on.
+
+use super::{Machine, Motion};
+
+/// Runs a program; `arc_on` and `arc_off` are the M codes of the arc.
+pub fn run(text: &str, arc_on: u32, arc_off: u32) -> Motion {
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(text.is_ascii() && lines.first() == Some(&"%") && lines.last() == Some(&"%"));
+    let mut reader = Reader::default();
+    let mut ended = false;
+    for line in &lines[1..lines.len() - 1] {
+        assert!(line.len() < 80, "block too long: {line}");
+        assert!(!ended, "a block after M30: {line}");
+        if line.starts_with('(') {
+            assert!(line.ends_with(')') && line.matches('(').count() == 1, "{line}");
+            continue;
+        }
+        let words: Vec<(char, f64)> = line.split_whitespace().map(word).collect();
+        let codes = |letter: char| words.iter().filter(move |w| w.0 == letter).map(|w| w.1 as u32);
+        assert!(codes('M').count() <= 1, "two M codes in one block: {line}");
+        if let Some(m) = codes('M').next() {
+            assert!(words.iter().all(|w| !"XYZ".contains(w.0)), "M code in a motion block: {line}");
+            match m {
+                m if m == arc_on => reader.machine.arc_on(),
+                m if m == arc_off => reader.machine.arc_off(),
+                m => ended |= m == 30,
+            }
+        }
+        reader.block(&words, line);
+    }
+    assert!(ended, "no M30");
+    reader.machine.finish()
+}
+
+#[derive(Default)]
+struct Reader {
+    machine: Machine,
+    axes: [Option<f64>; 3],
+    motion: Option<u32>,
+    /// mm/min
+    feed: Option<f64>,
+}
+
+impl Reader {
+    fn block(&mut self, words: &[(char, f64)], line: &str) {
+        if words.iter().any(|w| *w == ('G', 4.0)) {
+            return;
+        }
+        let mut moves = false;
+        for &(letter, value) in words {
+            match letter {
+                'G' if value == 0.0 || value == 1.0 => self.motion = Some(value as u32),
+                'F' => self.feed = Some(value),
+                'X' | 'Y' | 'Z' => {
+                    self.axes["XYZ".find(letter).unwrap()] = Some(value);
+                    moves = true;
+                }
+                _ => {}
+            }
+        }
+        if !moves {
+            return;
+        }
+        let motion = self.motion.expect("a move without G0 or G1");
+        assert!(motion == 1 || !self.machine.burns(), "G0 with the arc on: {line}");
+        let speed = if motion == 1 { self.feed.expect("G1 without F") / 60.0 } else { f64::INFINITY };
+        if let [Some(x), Some(y), Some(z)] = self.axes {
+            self.machine.move_to([x, y, z], speed);
+        }
+    }
+}
+
+fn word(text: &str) -> (char, f64) {
+    let letter = text.chars().next().unwrap();
+    assert!(letter.is_ascii_uppercase(), "{text}");
+    (letter, text[1..].parse().unwrap_or_else(|_| panic!("{text} is no word")))
+}
