@@ -121,7 +121,9 @@ pub enum PlanError<E> {
     #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
     UnknownStrategy(String),
     /// The plan would be too large.
-    #[error("the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check --units and layers.height.")]
+    #[error(
+        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check --units and layers.height."
+    )]
     TooManyLayers {
         /// Height of the part, mm.
         height: f64,
@@ -163,7 +165,12 @@ pub trait Sink {
 ///
 /// # Errors
 /// [`PlanError`].
-pub fn plan(part: &str, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Plan, PlanError<std::convert::Infallible>> {
+pub fn plan(
+    part: &str,
+    mesh: &Mesh,
+    profile: &Profile,
+    task: &Task,
+) -> Result<Plan, PlanError<std::convert::Infallible>> {
     struct Collect(Option<Header>, Vec<Layer>);
     impl Sink for Collect {
         type Error = std::convert::Infallible;
@@ -213,7 +220,8 @@ pub fn plan_layers<S: Sink + Send>(
         };
         slices.into_par_iter().map(fill).collect()
     };
-    let mut emitter = Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    let mut emitter =
+        Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
     // While one batch is handed over, the next is filled.
     let mut ready = fill_batch(0)?;
     for next in 1..=slicer.batch_count() {

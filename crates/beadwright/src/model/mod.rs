@@ -133,7 +133,8 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
         Some("a STEP file")
     } else if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
         Some("a PLY file")
-    } else if head.get(72) == Some(&b'S') && has(b"S      1") {
+    } else if head.get(72..80).is_some_and(|end| end[0] == b'S' && end[1..].iter().all(|b| b" 01".contains(b))) {
+        // The first card of the start section: S and its number in columns 73 to 80.
         Some("an IGES file")
     } else if head.starts_with(b"v ") || has(b"\nv ") || has(b"\nmtllib ") {
         Some("an OBJ file")

@@ -6,8 +6,8 @@
 //! 4. triangles are turned to agree with their neighbours, each shell by its majority;
 //! 5. a mesh that is inside out as a whole is turned.
 
+use super::Mesh;
 use super::adjacency::{Adjacency, HalfEdge, ends};
-use super::{Mesh, NO_NEIGHBOUR};
 use glam::DVec3;
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
@@ -211,37 +211,45 @@ fn turn_to_majority(mesh: &mut Mesh, adjacency: &mut Adjacency, flipped: &mut us
         }
     }
     let count = mesh.triangles.len();
-    let mut visited = vec![false; count];
+    // One place more stands for "no neighbour": always visited, so the walk needs no branch that is hard to guess.
+    let mut visited = vec![false; count + 1];
+    visited[count] = true;
     let mut turned = vec![false; if against.is_empty() { 0 } else { count }];
     let (mut shells, mut any_turned) = (0, false);
-    let mut shell: Vec<u32> = Vec::new();
+    // All triangles, shell by shell; the place behind `end` is written before it is known whether it counts.
+    let mut found = vec![0; count + 1];
+    let mut end = 0;
     for seed in 0..count {
-        if std::mem::replace(&mut visited[seed], true) {
+        if visited[seed] {
             continue;
         }
+        visited[seed] = true;
         shells += 1;
-        shell.clear();
-        shell.push(seed as u32);
-        let mut next = 0;
-        while let Some(&t) = shell.get(next) {
+        found[end] = seed as u32;
+        let first = end;
+        end += 1;
+        let mut next = first;
+        while next < end {
+            let t = found[next] as usize;
             next += 1;
-            let t = t as usize;
-            for &n in adjacency.neighbours[t].iter().filter(|&&n| n != NO_NEIGHBOUR) {
-                if !std::mem::replace(&mut visited[n as usize], true) {
-                    if !turned.is_empty() {
-                        turned[n as usize] = turned[t];
-                    }
-                    shell.push(n);
+            for n in adjacency.neighbours[t] {
+                let seen = std::mem::replace(&mut visited[count.min(n as usize)], true);
+                found[end] = n;
+                if !seen && !turned.is_empty() {
+                    turned[n as usize] = turned[t];
                 }
+                end += usize::from(!seen);
             }
             for &n in against.get(&(t as u32)).into_iter().flatten() {
                 if !std::mem::replace(&mut visited[n as usize], true) {
                     turned[n as usize] = !turned[t];
-                    shell.push(n);
+                    found[end] = n;
+                    end += 1;
                 }
             }
         }
         if !turned.is_empty() {
+            let shell = &found[first..end];
             let minority = shell.iter().filter(|&&t| turned[t as usize]).count();
             let invert = minority * 2 > shell.len();
             shell.iter().for_each(|&t| turned[t as usize] ^= invert);

@@ -3,7 +3,7 @@
 //! A file is binary when its size is 84 + 50 · n for the count n that it announces, whatever its header says:
 //! binary files that begin with "solid" are common.
 
-use super::weld::Welder;
+use super::weld::{BLOCK, Welder};
 use super::{Import, ImportError, repair};
 use crate::task::{Stage, Task};
 
@@ -149,6 +149,7 @@ fn build(
     let mut welder = Welder::for_triangles(count);
     let mut triangles = Vec::with_capacity(count);
     let mut against = 0;
+    let mut block = Vec::with_capacity(BLOCK);
     for (i, (normal, corners)) in facets.enumerate() {
         if i % 65_536 == 0 {
             task.step(Stage::Import, 0.6 * i as f64 / count as f64)?;
@@ -157,8 +158,13 @@ fn build(
             return Err(ImportError::NotFinite { triangle: i + 1, place: place(i) });
         }
         against += usize::from(opposes(normal, corners));
-        triangles.push(corners.map(|corner| welder.add(corner)));
+        block.push(corners);
+        if block.len() == BLOCK {
+            welder.add(&block, &mut triangles);
+            block.clear();
+        }
     }
+    welder.add(&block, &mut triangles);
     task.step(Stage::Import, 0.6)?;
     let (mesh, mut repair) = repair::mend(welder.into_vertices(), triangles);
     if mesh.triangles.is_empty() {

@@ -1,6 +1,10 @@
 //! Corners with equal coordinates become one vertex: an open-addressing table over the exact bits.
 
 use glam::DVec3;
+use rayon::prelude::*;
+
+/// Triangles whose corners are looked up together.
+pub(crate) const BLOCK: usize = 32;
 
 /// Vertices found so far, and the table that finds them again.
 pub(crate) struct Welder {
@@ -16,11 +20,33 @@ impl Welder {
         Self { vertices: Vec::with_capacity(triangles / 2 + 8), slots: vec![0; slots] }
     }
 
-    /// The index of the vertex at `corner`; negative zero counts as zero.
-    pub(crate) fn add(&mut self, corner: [f32; 3]) -> u32 {
-        let corner = corner.map(|v| v + 0.0);
+    /// Appends the triangles between `corners`, three for each; negative zero counts as zero.
+    ///
+    /// Looking all corners of a block up before the first is needed lets the waits for memory overlap, which take
+    /// most of the time in a big model. Only what was not found that way is searched for one by one.
+    pub(crate) fn add(&mut self, corners: &[[[f32; 3]; 3]], triangles: &mut Vec<[u32; 3]>) {
+        for block in corners.chunks(BLOCK) {
+            let mut found = [([0.0; 3], 0, None); 3 * BLOCK];
+            let found = &mut found[..3 * block.len()];
+            for (entry, corner) in found.iter_mut().zip(block.as_flattened()) {
+                let corner = corner.map(|v| v + 0.0);
+                let hash = hash(corner);
+                *entry = (corner, hash, self.slots[hash & (self.slots.len() - 1)].checked_sub(1));
+            }
+            for (corner, _, index) in &mut *found {
+                *index = index.filter(|&i| self.vertices[i as usize] == *corner);
+            }
+            let mut index = |k: usize| {
+                let (corner, hash, index) = found[k];
+                index.unwrap_or_else(|| self.find_or_insert(corner, hash))
+            };
+            triangles.extend((0..block.len()).map(|t| [0, 1, 2].map(|k| index(3 * t + k))));
+        }
+    }
+
+    fn find_or_insert(&mut self, corner: [f32; 3], hash: usize) -> u32 {
         let mask = self.slots.len() - 1;
-        let mut slot = hash(corner) & mask;
+        let mut slot = hash & mask;
         loop {
             match self.slots[slot] {
                 0 => break,
@@ -51,7 +77,7 @@ impl Welder {
     }
 
     pub(crate) fn into_vertices(self) -> Vec<DVec3> {
-        self.vertices.into_iter().map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into())).collect()
+        self.vertices.into_par_iter().map(|[x, y, z]| DVec3::new(x.into(), y.into(), z.into())).collect()
     }
 }
 

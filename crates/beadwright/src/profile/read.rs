@@ -100,7 +100,8 @@ fn line_of_key(text: &str, key: &str) -> usize {
 fn explain(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
-        let (kind, got) = (if message.starts_with("unknown field") { "key" } else { "value" }, quoted.next().unwrap_or(""));
+        let (kind, got) =
+            (if message.starts_with("unknown field") { "key" } else { "value" }, quoted.next().unwrap_or(""));
         let known: Vec<&str> = quoted.collect();
         return match nearest(got, known.iter().copied()) {
             Some(near) => format!("unknown {kind} \"{got}\". Did you mean \"{near}\"?"),

@@ -1,9 +1,10 @@
 //! A mesh cut into layers of equal thickness.
 //!
-//! Layer k fills the heights k·h … (k+1)·h and is cut at its middle. Every triangle knows which planes cross it,
-//! so the cost grows with triangles plus segments; on each plane the contour walks from triangle to triangle
-//! across shared edges (Zhao et al. 2023, section 1: slicing by triangle adjacency), and no point is ever
-//! searched for. A vertex exactly on a plane counts as above it, for all its triangles alike.
+//! Layer k fills the heights k·h … (k+1)·h and is cut at its middle. Every vertex knows its level, the number of
+//! planes that are not above it; a triangle is crossed by the planes between its lowest and its highest level, so
+//! the cost grows with triangles plus segments. On each plane the contour walks from triangle to triangle across
+//! shared edges (Zhao et al. 2023, section 1: slicing by triangle adjacency), and no point is ever searched for.
+//! A vertex exactly on a plane counts as above it, for all its triangles alike.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -21,7 +22,7 @@ use planar::{FillRule, Polygon, Region, Ring};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
-use trace::{Scratch, Trace};
+use trace::{Cut, Scratch, Trace};
 
 /// Layers cut together, so that memory stays proportional to the mesh.
 pub const BATCH: usize = 32;
@@ -65,6 +66,8 @@ pub struct Slicer<'a> {
     options: SliceOptions,
     /// Height of each plane, mm.
     planes: Vec<f64>,
+    /// Level of each vertex. Small integers, so that sorting and walking seldom touch the coordinates.
+    levels: Vec<u32>,
     /// For each batch, where its triangles begin in `items`.
     starts: Vec<usize>,
     items: Vec<u32>,
@@ -83,28 +86,28 @@ impl<'a> Slicer<'a> {
         // A last layer that would be less than half full is left out: its middle lies above the part.
         let count = (top / h - 0.5).ceil().max(1.0) as usize;
         let planes: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * h).collect();
-        let batches = |t: &[u32; 3]| {
-            let range = crossed(&planes, t.map(|v| mesh.vertices[v as usize].z));
-            if range.is_empty() { 0..0 } else { range.start / BATCH..(range.end - 1) / BATCH + 1 }
-        };
-        let ranges: Vec<Range<usize>> = mesh.triangles.par_iter().map(batches).collect();
+        let levels: Vec<u32> = mesh.vertices.par_iter().map(|v| level(&planes, h, v.z)).collect();
         task.check()?;
+        let batches = |t: &[u32; 3]| {
+            let Range { start, end } = crossed(&levels, t);
+            if start == end { 0..0 } else { start / BATCH..(end - 1) / BATCH + 1 }
+        };
         let mut starts = vec![0; count.div_ceil(BATCH) + 2];
-        for batch in ranges.iter().cloned().flatten() {
+        for batch in mesh.triangles.iter().flat_map(batches) {
             starts[batch + 2] += 1;
         }
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
         let mut items = vec![0; starts[starts.len() - 1]];
-        for (triangle, range) in ranges.into_iter().enumerate() {
-            for batch in range {
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
+            for batch in batches(corners) {
                 items[starts[batch + 1]] = triangle as u32;
                 starts[batch + 1] += 1;
             }
         }
         starts.pop();
-        Ok(Self { mesh, options, planes, starts, items, scratch: Mutex::default() })
+        Ok(Self { mesh, options, planes, levels, starts, items, scratch: Mutex::default() })
     }
 
     /// Number of layers.
@@ -149,11 +152,10 @@ impl<'a> Slicer<'a> {
 
     fn triangles_by_layer(&self, batch: usize, layers: Range<usize>) -> Vec<Vec<u32>> {
         let mut by_layer = vec![Vec::new(); layers.len()];
-        let planes = &self.planes[layers];
         for &triangle in &self.items[self.starts[batch]..self.starts[batch + 1]] {
-            let corners = self.mesh.triangles[triangle as usize];
-            for layer in crossed(planes, corners.map(|v| self.mesh.vertices[v as usize].z)) {
-                by_layer[layer].push(triangle);
+            let crossed = crossed(&self.levels, &self.mesh.triangles[triangle as usize]);
+            for layer in crossed.start.max(layers.start)..crossed.end.min(layers.end) {
+                by_layer[layer - layers.start].push(triangle);
             }
         }
         by_layer
@@ -164,7 +166,9 @@ impl<'a> Slicer<'a> {
         let mut layer = Layer { index, z: (index + 1) as f64 * height, height, ..Layer::default() };
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
-        let Trace { mut rings, open } = trace::trace(self.mesh, self.planes[index], triangles, &mut scratch);
+        let Trace { mut rings, open } =
+            Cut { mesh: self.mesh, levels: &self.levels, layer: index as u32, plane: self.planes[index] }
+                .trace(triangles, &mut scratch);
         if let Ok(mut pool) = self.scratch.lock() {
             pool.push(scratch);
         }
@@ -181,12 +185,23 @@ impl<'a> Slicer<'a> {
     }
 }
 
+/// How many planes lie at height `z` or below.
+fn level(planes: &[f64], spacing: f64, z: f64) -> u32 {
+    // Right but for rounding; the planes themselves decide.
+    let mut level = ((z / spacing + 0.5) as usize).min(planes.len());
+    while level > 0 && planes[level - 1] > z {
+        level -= 1;
+    }
+    while level < planes.len() && planes[level] <= z {
+        level += 1;
+    }
+    level as u32
+}
+
 /// The planes that cross a triangle: those above its lowest corner and not above its highest.
-fn crossed(planes: &[f64], z: [f64; 3]) -> Range<usize> {
-    let low = z[0].min(z[1]).min(z[2]);
-    let high = z[0].max(z[1]).max(z[2]);
-    let start = planes.partition_point(|&plane| plane <= low);
-    start..start + planes[start..].partition_point(|&plane| plane <= high)
+fn crossed(levels: &[u32], triangle: &[u32; 3]) -> Range<usize> {
+    let [a, b, c] = triangle.map(|v| levels[v as usize]);
+    a.min(b).min(c) as usize..a.max(b).max(c) as usize
 }
 
 /// Well-wound contours keep their area when they are united; a difference tells of overlaps or wrong winding.

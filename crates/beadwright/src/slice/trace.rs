@@ -41,50 +41,68 @@ impl Scratch {
     }
 }
 
-/// Where a triangle lets the contour in and out.
+/// By which of its edges a triangle lets the contour in and out.
+#[derive(Clone, Copy)]
 struct Crossed {
     falling: usize,
     rising: usize,
 }
 
-pub(super) fn trace(mesh: &Mesh, plane: f64, triangles: &[u32], scratch: &mut Scratch) -> Trace {
-    let walker = Walker { mesh, plane };
-    scratch.next_layer();
-    let mut result = Trace::default();
-    // Open contours first, from where they begin; what is left after them are loops.
-    for &triangle in triangles {
-        let Some(crossed) = walker.crossed(triangle) else { continue };
-        if mesh.neighbours[triangle as usize][crossed.falling] == NO_NEIGHBOUR && scratch.visit(triangle) {
-            let mut points = vec![walker.point(triangle, crossed.falling)];
-            walker.walk(triangle, scratch, &mut points);
-            result.open.push(points);
-        }
+/// For the set of corners that lie above the plane, corner k being bit k. A table, because which corners they are
+/// is as good as random and would be guessed wrong by the processor at every step.
+const CROSSED: [Option<Crossed>; 8] = {
+    const fn edges(falling: usize, rising: usize) -> Option<Crossed> {
+        Some(Crossed { falling, rising })
     }
-    for &triangle in triangles {
-        if scratch.visit(triangle) {
-            let mut points = Vec::new();
-            if walker.walk(triangle, scratch, &mut points) {
-                points.dedup();
-                result.rings.push(Ring::new(points));
-            } else {
+    [None, edges(0, 2), edges(1, 0), edges(1, 2), edges(2, 1), edges(0, 1), edges(2, 0), None]
+};
+
+/// One plane through a mesh.
+pub(super) struct Cut<'a> {
+    pub(super) mesh: &'a Mesh,
+    /// For each vertex, how many planes are not above it.
+    pub(super) levels: &'a [u32],
+    /// Index of the plane.
+    pub(super) layer: u32,
+    /// Height of the plane, mm.
+    pub(super) plane: f64,
+}
+
+impl Cut<'_> {
+    /// The contours through the `triangles` that the plane crosses.
+    pub(super) fn trace(&self, triangles: &[u32], scratch: &mut Scratch) -> Trace {
+        scratch.next_layer();
+        let mut result = Trace::default();
+        // Open contours first, from where they begin; what is left after them are loops.
+        for &triangle in triangles {
+            let Some(Crossed { falling, .. }) = self.crossed(triangle) else { continue };
+            if self.mesh.neighbours[triangle as usize][falling] == NO_NEIGHBOUR && scratch.visit(triangle) {
+                let [upper, lower] = self.ends(triangle, falling);
+                let mut points = vec![self.point(lower, upper)];
+                self.walk(triangle, scratch, &mut points);
                 result.open.push(points);
             }
         }
+        for &triangle in triangles {
+            if scratch.visit(triangle) {
+                let mut points = Vec::new();
+                if self.walk(triangle, scratch, &mut points) {
+                    points.dedup();
+                    result.rings.push(Ring::new(points));
+                } else {
+                    result.open.push(points);
+                }
+            }
+        }
+        result
     }
-    result
-}
 
-struct Walker<'a> {
-    mesh: &'a Mesh,
-    plane: f64,
-}
-
-impl Walker<'_> {
     /// Follows the contour from a triangle just visited; true when it comes back to a visited one.
     fn walk(&self, mut triangle: u32, scratch: &mut Scratch, points: &mut Vec<DVec2>) -> bool {
-        while let Some(crossed) = self.crossed(triangle) {
-            points.push(self.point(triangle, crossed.rising));
-            triangle = self.mesh.neighbours[triangle as usize][crossed.rising];
+        while let Some(Crossed { rising, .. }) = self.crossed(triangle) {
+            let [lower, upper] = self.ends(triangle, rising);
+            points.push(self.point(lower, upper));
+            triangle = self.mesh.neighbours[triangle as usize][rising];
             if triangle == NO_NEIGHBOUR {
                 return false;
             }
@@ -95,24 +113,19 @@ impl Walker<'_> {
         false
     }
 
-    fn corner(&self, triangle: u32, k: usize) -> DVec3 {
-        self.mesh.vertices[self.mesh.triangles[triangle as usize][k % 3] as usize]
+    fn crossed(&self, triangle: u32) -> Option<Crossed> {
+        let [a, b, c] = self.mesh.triangles[triangle as usize].map(|v| self.levels[v as usize] > self.layer);
+        CROSSED[usize::from(a) | usize::from(b) << 1 | usize::from(c) << 2]
     }
 
-    fn crossed(&self, triangle: u32) -> Option<Crossed> {
-        let above = [0, 1, 2].map(|k| self.corner(triangle, k).z >= self.plane);
-        let falling = (0..3).find(|&k| above[k] && !above[(k + 1) % 3])?;
-        let rising = (0..3).find(|&k| !above[k] && above[(k + 1) % 3])?;
-        Some(Crossed { falling, rising })
+    fn ends(&self, triangle: u32, edge: usize) -> [DVec3; 2] {
+        let corners = self.mesh.triangles[triangle as usize];
+        [corners[edge], corners[(edge + 1) % 3]].map(|v| self.mesh.vertices[v as usize])
     }
 
     /// Where an edge meets the plane; computed from the lower end up, so that both triangles get the same point.
-    fn point(&self, triangle: u32, edge: usize) -> DVec2 {
-        let (mut low, mut high) = (self.corner(triangle, edge), self.corner(triangle, edge + 1));
-        if low.z > high.z {
-            std::mem::swap(&mut low, &mut high);
-        }
-        let t = (self.plane - low.z) / (high.z - low.z);
-        low.truncate().lerp(high.truncate(), t)
+    fn point(&self, lower: DVec3, upper: DVec3) -> DVec2 {
+        let t = (self.plane - lower.z) / (upper.z - lower.z);
+        lower.truncate().lerp(upper.truncate(), t)
     }
 }

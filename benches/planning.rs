@@ -1,0 +1,83 @@
+//! `cargo bench`: import, slicing and planning of the 1.1-million-triangle bunny, beside copying the same bytes.
+//!
+//! The model is taken from `BEADWRIGHT_MODELS` (default `../shared/models`); without it nothing is measured.
+#![allow(clippy::unwrap_used)]
+
+use beadwright::model::{self, Mesh};
+use beadwright::plan;
+use beadwright::profile::Profile;
+use beadwright::slice::{SliceOptions, Slicer};
+use beadwright::task::Task;
+use divan::{Bencher, black_box};
+use std::io::Read;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+fn main() {
+    divan::main();
+}
+
+static BYTES: LazyLock<Option<Vec<u8>>> = LazyLock::new(|| {
+    let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let folder = std::env::var("BEADWRIGHT_MODELS").unwrap_or_else(|_| format!("{workspace}/../shared/models"));
+    let file = std::fs::File::open(PathBuf::from(folder).join("bunny_1114k.stl.gz")).ok()?;
+    let mut bytes = Vec::new();
+    flate2::read::GzDecoder::new(file).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+});
+
+static MESH: LazyLock<Option<Mesh>> = LazyLock::new(|| {
+    let mut mesh = model::import(BYTES.as_deref()?, &Task::new()).ok()?.mesh;
+    mesh.place(1.0, glam::DVec3::ZERO);
+    Some(mesh)
+});
+
+fn options(mesh: &Mesh) -> SliceOptions {
+    SliceOptions { layer_height: mesh.size().z / 500.0, close_gap: 0.1, simplify: 0.01 }
+}
+
+/// The yardstick: one copy of the file's bytes.
+#[divan::bench]
+fn copy_bytes(bencher: Bencher) {
+    if let Some(bytes) = BYTES.as_deref() {
+        bencher.bench_local(|| black_box(bytes).to_vec());
+    }
+}
+
+/// Reading, welding, repair.
+#[divan::bench(sample_count = 20)]
+fn import(bencher: Bencher) {
+    if let Some(bytes) = BYTES.as_deref() {
+        bencher.bench_local(|| model::import(black_box(bytes), &Task::new()).unwrap());
+    }
+}
+
+/// 500 layers of the imported mesh.
+#[divan::bench(sample_count = 20)]
+fn slice_500_layers(bencher: Bencher) {
+    if let Some(mesh) = MESH.as_ref() {
+        bencher.bench_local(|| Slicer::new(mesh, options(mesh), &Task::new()).unwrap().all(&Task::new()).unwrap());
+    }
+}
+
+/// Import and 500 layers: what the goal of ten file readings is about.
+#[divan::bench(sample_count = 20)]
+fn import_and_slice_500_layers(bencher: Bencher) {
+    if let Some(bytes) = BYTES.as_deref() {
+        bencher.bench_local(|| {
+            let mut mesh = model::import(black_box(bytes), &Task::new()).unwrap().mesh;
+            mesh.place(1.0, glam::DVec3::ZERO);
+            let slicer = Slicer::new(&mesh, options(&mesh), &Task::new()).unwrap();
+            slicer.all(&Task::new()).unwrap()
+        });
+    }
+}
+
+/// All 997 layers of 0.2 mm with a bead of 0.45 mm, kept in memory.
+#[divan::bench(sample_count = 5)]
+fn plan_997_layers(bencher: Bencher) {
+    let profile = Profile::parse(include_str!("fdm-0.45x0.2.toml")).unwrap();
+    if let Some(mesh) = MESH.as_ref() {
+        bencher.bench_local(|| plan::plan("bunny", mesh, &profile, &Task::new()).unwrap());
+    }
+}

@@ -1,0 +1,220 @@
+//! The command as people run it: files, messages, exit status, and nothing half-written.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn ok(folder: &Path, arguments: &[&str]) -> String {
+    let output = beadwright(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Runs what must be refused; gives the message.
+fn refused(folder: &Path, arguments: &[&str], status: i32) -> String {
+    let output = beadwright(folder, arguments);
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn folder_with(example: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    ok(folder.path(), &["example", example]);
+    folder
+}
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let name = |p: &PathBuf| p.file_name().unwrap().to_str().unwrap().to_owned();
+    entries.filter(|p| p.is_file()).map(|p| (name(&p), fs::read(&p).unwrap())).collect()
+}
+
+#[test]
+fn plan_writes_program_plan_metrics_and_report() {
+    let folder = folder_with("cross");
+    let said = ok(folder.path(), &["plan", "cross.stl", "-o", "out/deep", "--post", "krl", "--picture", "2"]);
+    assert!(said.contains("passes (arc starts)") && said.contains("planned / slice area"), "{said}");
+    let written = files(&folder.path().join("out/deep"));
+    let expected =
+        ["CROSS.dat", "CROSS.src", "CROSS_L001.src", "layer-002.svg", "metrics.json", "plan.json", "report.html"];
+    for name in expected {
+        assert!(written.get(name).is_some_and(|bytes| !bytes.is_empty()), "{name} is missing or empty");
+    }
+    let plan: serde_json::Value = serde_json::from_slice(&written["plan.json"]).unwrap();
+    let metrics: serde_json::Value = serde_json::from_slice(&written["metrics.json"]).unwrap();
+    assert_eq!(plan["layers"].as_array().unwrap().len(), 10);
+    let passes: usize = plan["layers"].as_array().unwrap().iter().map(|l| l["passes"].as_array().unwrap().len()).sum();
+    assert_eq!(metrics["arc_starts"].as_u64(), Some(passes as u64));
+    assert!(fs::read_dir(folder.path()).unwrap().all(|e| !e.unwrap().file_name().to_str().unwrap().starts_with('.')));
+}
+
+#[test]
+fn one_and_two_threads_write_the_same_bytes() {
+    let folder = folder_with("propeller");
+    for threads in ["1", "2"] {
+        let posts = ["--post", "krl", "--post", "gcode"];
+        let plan = [
+            "plan",
+            "propeller.stl",
+            "-p",
+            "both.toml",
+            "--threads",
+            threads,
+            "-o",
+            threads,
+            "--set",
+            "layers.height=0.4",
+        ];
+        let krl = ok(folder.path(), &["profile", "show", "cmt-al2319-kuka"]);
+        let cnc = ok(folder.path(), &["profile", "show", "plasma-304-cnc"]);
+        let gcode = &cnc[cnc.find("[gcode]").unwrap()..];
+        fs::write(folder.path().join("both.toml"), format!("{krl}\n{gcode}")).unwrap();
+        ok(folder.path(), &[&plan[..], &posts[..]].concat());
+    }
+    let (one, two) = (files(&folder.path().join("1")), files(&folder.path().join("2")));
+    assert!(one.len() > 50 && one.contains_key("propeller.nc") && one.contains_key("PROPELLER_L050.src"));
+    assert!(one == two, "the files differ");
+}
+
+#[test]
+fn a_refused_model_leaves_nothing_behind() {
+    let folder = TempDir::new().unwrap();
+    for (name, bytes, part) in [
+        ("empty.stl", &b""[..], "empty"),
+        ("text.stl", b"hello, this is a letter and not a model", "not an STL"),
+        ("part.3mf", b"PK\x03\x04....", "ZIP archive"),
+        ("cut.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "line 5"),
+    ] {
+        fs::write(folder.path().join(name), bytes).unwrap();
+        let said = refused(folder.path(), &["plan", name, "-o", "out"], 1);
+        assert!(said.starts_with("error: ") && said.contains(name) && said.contains(part), "{said}");
+        assert!(said.lines().count() == 1, "{said}");
+        assert!(!folder.path().join("out").exists());
+    }
+    assert!(refused(folder.path(), &["plan", "missing.stl"], 1).contains("missing.stl"));
+    assert!(refused(folder.path(), &["plan", "."], 1).contains("folder"));
+}
+
+#[test]
+fn small_parts_are_asked_about_their_unit() {
+    let folder = folder_with("cross");
+    let said = refused(folder.path(), &["plan", "cross.stl", "--scale", "0.05"], 1);
+    assert!(said.contains("--units in") && said.contains("5.00 × 5.00 × 1.00"), "{said}");
+    let json = ok(folder.path(), &["plan", "cross.stl", "--scale", "0.05", "--units", "in", "--json"]);
+    let metrics: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(metrics["part_volume_mm3"].as_f64().unwrap() > 1e5);
+}
+
+#[test]
+fn wrong_usage_and_wrong_values_are_told_apart() {
+    let folder = folder_with("cross");
+    refused(folder.path(), &["plan"], 2);
+    refused(folder.path(), &["weld", "cross.stl"], 2);
+    refused(folder.path(), &["plan", "cross.stl", "--units", "ell"], 2);
+    for (arguments, part) in [
+        (&["-p", "cmt-al2319-kuke"][..], "Did you mean \"cmt-al2319-kuka\"?"),
+        (&["--strategy", "spiral"], "raster, zigzag, contour, compound"),
+        (&["--post", "rapid"], "there is no post \"rapid\""),
+        (&["--post", "gcode"], "plasma-304-cnc"),
+        (&["--set", "fill.raster_angel=4"], "Did you mean \"raster_angle\"?"),
+        (&["--set", "bead.width=-1"], "bead.width = -1"),
+        (&["--set", "layers.height=0.0000001"], "layers.height"),
+        (&["-p", "no-such-file.toml"], "no-such-file.toml"),
+    ] {
+        let said = refused(folder.path(), &[&["plan", "cross.stl"], arguments].concat(), 1);
+        assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+    assert!(refused(folder.path(), &["example", "cube"], 1).contains("propeller"));
+}
+
+#[test]
+fn settings_reach_the_plan() {
+    let folder = folder_with("cross");
+    let passes = |set: &str| {
+        let json = ok(folder.path(), &["plan", "cross.stl", "--json", "-s", "contour", "--set", set]);
+        serde_json::from_str::<serde_json::Value>(&json).unwrap()["layers"].as_u64().unwrap()
+    };
+    assert_eq!((passes("layers.height=2"), passes("layers.height=4")), (10, 5));
+}
+
+#[test]
+fn interrupting_leaves_nothing_behind() {
+    let folder = folder_with("vase");
+    let fine =
+        ["--set", "layers.height=0.02", "--set", "bead.width=0.5", "--set", "fill.min_pass_length=0", "-o", "out"];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_beadwright"))
+        .current_dir(folder.path())
+        .args([&["plan", "vase.stl"][..], &fine].concat())
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    // Wait until it has begun to write.
+    let writing = || {
+        fs::read_dir(folder.path())
+            .unwrap()
+            .any(|e| e.unwrap().file_name().to_str().unwrap().starts_with(".beadwright-"))
+    };
+    while !writing() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it could be interrupted");
+        std::thread::yield_now();
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cancelled"));
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(left, ["vase.stl"]);
+}
+
+#[test]
+fn profiles_are_listed_shown_checked_and_described() {
+    let folder = TempDir::new().unwrap();
+    assert!(ok(folder.path(), &["profile", "list"]).contains("plasma-304-cnc"));
+    let text = ok(folder.path(), &["profile", "show", "cmt-al2319-kuka"]);
+    let broken = text.replace("deposition_speed = 10.5", "deposition_sped = 10.5");
+    let line = broken.lines().position(|l| l.starts_with("deposition_sped")).unwrap() + 1;
+    fs::write(folder.path().join("own.toml"), &text).unwrap();
+    fs::write(folder.path().join("broken.toml"), broken).unwrap();
+    assert!(ok(folder.path(), &["profile", "check", "own.toml"]).contains("every value is possible"));
+    let said = refused(folder.path(), &["profile", "check", "broken.toml"], 1);
+    assert!(said.contains(&format!("line {line} ")) && said.contains("\"deposition_speed\""), "{said}");
+    let schema: serde_json::Value = serde_json::from_str(&ok(folder.path(), &["profile", "schema"])).unwrap();
+    assert!(schema["properties"]["wire"].is_object());
+}
+
+#[test]
+fn inspect_tells_what_a_mesh_holds() {
+    let folder = folder_with("gear");
+    let json: serde_json::Value = serde_json::from_str(&ok(folder.path(), &["inspect", "gear.stl", "--json"])).unwrap();
+    assert_eq!((json["format"].as_str(), json["repair"]["shells"].as_u64()), (Some("binary STL"), Some(1)));
+    assert!(ok(folder.path(), &["inspect", "gear.stl"]).contains("closed and clean"));
+}
+
+/// Every model of the shared folder plans or is refused with one clear error.
+#[test]
+fn every_shared_model_plans_or_is_refused() {
+    let workspace = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let folder = std::env::var("BEADWRIGHT_MODELS").unwrap_or_else(|_| format!("{workspace}/../shared/models"));
+    let Ok(entries) = fs::read_dir(&folder) else {
+        eprintln!("{folder} does not exist: the shared models are not tested");
+        return;
+    };
+    let out = TempDir::new().unwrap();
+    for path in entries.map(|e| fs::canonicalize(e.unwrap().path()).unwrap()) {
+        let output = beadwright(out.path(), &["plan", path.to_str().unwrap(), "-p", "plasma-304-cnc", "--json"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        match output.status.code() {
+            Some(0) => {}
+            Some(1) => assert!(said.starts_with("error: ") && said.lines().count() == 1, "{}: {said}", path.display()),
+            code => panic!("{}: {code:?} {said}", path.display()),
+        }
+    }
+}

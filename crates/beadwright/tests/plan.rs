@@ -1,0 +1,302 @@
+//! Plans of the example parts with every strategy: inside the outline, nothing crosses, totals add up, programs read
+//! back.
+#![allow(clippy::unwrap_used)]
+
+mod readers;
+
+use beadwright::fill::STRATEGIES;
+use beadwright::model::Mesh;
+use beadwright::plan::{self, Layer, Plan};
+use beadwright::planar::DVec2;
+use beadwright::post;
+use beadwright::profile::Profile;
+use beadwright::program::Programmer;
+use beadwright::task::Task;
+use beadwright::{example, plan_file};
+use readers::{Motion, distance};
+use std::collections::BTreeMap;
+
+/// Centre-lines may lie this far outside their place, mm: grid, simplification and arc tolerance.
+const TOLERANCE: f64 = 0.02;
+
+fn profile(name: &str, strategy: &str, angle: f64) -> Profile {
+    let mut profile = Profile::built_in(name).unwrap();
+    profile.fill.strategy = strategy.to_owned();
+    profile.fill.raster_angle = angle;
+    profile
+}
+
+fn plan_of(mesh: &Mesh, profile: &Profile) -> Plan {
+    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+}
+
+fn each_case(mut check: impl FnMut(&str, &Plan, &Profile)) {
+    for part in example::ALL {
+        let mesh = part.mesh();
+        for strategy in STRATEGIES {
+            for (profile_name, angle) in [("cmt-al2319-kuka", 0.0), ("plasma-304-cnc", 33.0)] {
+                let profile = profile(profile_name, strategy.name(), angle);
+                let plan = plan_of(&mesh, &profile);
+                check(&format!("{} {} {profile_name}", part.name, strategy.name()), &plan, &profile);
+            }
+        }
+    }
+}
+
+/// Distance from a point to the boundary of a layer, mm.
+fn to_boundary(layer: &Layer, p: DVec2) -> f64 {
+    let edges = layer.islands.iter().flat_map(|i| i.rings()).flat_map(|r| r.edges());
+    let distance = |(a, b)| beadwright::planar::polyline::distance_squared_to_segment(p, a, b);
+    edges.map(distance).fold(f64::INFINITY, f64::min).sqrt()
+}
+
+#[test]
+fn centre_lines_keep_half_a_bead_from_the_outline() {
+    each_case(|case, plan, profile| {
+        let keep = profile.bead.width / 2.0 - profile.fill.machining_allowance - TOLERANCE;
+        for layer in plan.layers.iter().step_by(4) {
+            for pass in &layer.passes {
+                for p in pass.points.iter().map(|p| p.truncate()) {
+                    assert!(layer.islands.iter().any(|i| i.contains(p)), "{case}: {p} lies outside");
+                    assert!(to_boundary(layer, p) >= keep, "{case}: {p} is {} from the outline", to_boundary(layer, p));
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn a_machining_allowance_moves_the_outermost_bead_outwards() {
+    let mesh = example::find("cross").unwrap().mesh();
+    let mut profile = profile("plasma-304-cnc", "compound", 0.0);
+    let length = |profile: &Profile| {
+        let plan = plan_of(&mesh, profile);
+        plan.layers[0].passes.last().unwrap().length()
+    };
+    let before = length(&profile);
+    profile.fill.machining_allowance = 1.0;
+    // Twelve corners: eight outward mitres of an axis-parallel cross add 8·a to the perimeter of each offset by a,
+    // less what the four inner corners round off (at most 4·(2 − π/2)·w/2 on either side).
+    let grown = length(&profile) - before;
+    assert!((grown - 8.0).abs() < 0.1 + 4.0 * (2.0 - std::f64::consts::FRAC_PI_2), "{grown}");
+}
+
+/// Segments of different passes, or of one pass but not neighbours, may touch but not cross.
+fn crossing(layer: &Layer) -> Option<(DVec2, DVec2)> {
+    let mut segments: Vec<(usize, usize, DVec2, DVec2)> = Vec::new();
+    for (k, pass) in layer.passes.iter().enumerate() {
+        let path: Vec<DVec2> = pass.path().map(|p| p.truncate()).collect();
+        segments.extend(path.windows(2).enumerate().map(|(i, w)| (k, i, w[0], w[1])));
+    }
+    segments.sort_by(|a, b| a.2.x.min(a.3.x).total_cmp(&b.2.x.min(b.3.x)));
+    for (i, s) in segments.iter().enumerate() {
+        let right = s.2.x.max(s.3.x);
+        for t in segments[i + 1..].iter().take_while(|t| t.2.x.min(t.3.x) <= right) {
+            let neighbours = s.0 == t.0 && s.1.abs_diff(t.1) <= 1;
+            if !neighbours && cross_properly(s.2, s.3, t.2, t.3) {
+                return Some((s.2, t.2));
+            }
+        }
+    }
+    None
+}
+
+/// Whether two segments cross with a margin of 1 µm on both sides of each.
+fn cross_properly(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p) / p.distance(q).max(1e-9);
+    let apart = |u: f64, v: f64| (u > 1e-3 && v < -1e-3) || (u < -1e-3 && v > 1e-3);
+    apart(side(a, b, c), side(a, b, d)) && apart(side(c, d, a), side(c, d, b))
+}
+
+#[test]
+fn the_crossing_test_finds_crossings() {
+    let at = DVec2::new;
+    assert!(cross_properly(at(0.0, 0.0), at(2.0, 2.0), at(0.0, 2.0), at(2.0, 0.0)));
+    assert!(!cross_properly(at(0.0, 0.0), at(2.0, 2.0), at(2.0, 2.0), at(4.0, 0.0)));
+}
+
+#[test]
+fn no_two_passes_of_a_layer_cross() {
+    each_case(|case, plan, _| {
+        for layer in plan.layers.iter().step_by(3) {
+            assert_eq!(crossing(layer), None, "{case}, layer {}", layer.index);
+        }
+    });
+}
+
+#[test]
+fn totals_are_the_sums_of_the_layers() {
+    each_case(|case, plan, profile| {
+        let passes = || plan.layers.iter().flat_map(|l| &l.passes);
+        let m = &plan.summary.metrics;
+        let length: f64 = passes().map(|p| p.length()).sum();
+        assert_eq!(m.arc_starts, passes().count(), "{case}");
+        assert!((m.deposited_length_mm - length).abs() < 1e-6 * length, "{case}");
+        assert!((m.arc_time_s - length / profile.process.deposition_speed).abs() < 1e-6 * length, "{case}");
+        let wire = m.arc_time_s * profile.process.wire_feed_speed / 60.0;
+        assert!((m.wire_length_m - wire).abs() < 1e-9 * wire, "{case}");
+        assert!((0.5..=1.0).contains(&m.coverage()), "{case}: {}", m.coverage());
+    });
+}
+
+#[test]
+fn dense_strategies_lay_about_the_volume_of_the_part() {
+    // A wide plate: edges matter little. The bead's volume per stepover equals the layer's.
+    let mesh = example::find("plate").unwrap().mesh();
+    for strategy in ["raster", "zigzag", "compound", "contour"] {
+        let m = plan_of(&mesh, &profile("plasma-304-cnc", strategy, 90.0)).summary.metrics;
+        let ratio = m.deposited_volume_mm3 / m.part_volume_mm3;
+        // One-way lines end half a bead inside the outline and have no links: they lay less.
+        let least = if strategy == "raster" { 0.8 } else { 0.85 };
+        assert!((least..1.15).contains(&ratio), "{strategy}: {ratio}");
+    }
+}
+
+/// Writes the plan with a post and returns its files.
+fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
+    let mut files = BTreeMap::new();
+    let mut post = post::post(name, "Test part-1", profile).unwrap();
+    let mut programmer = Programmer::new(profile.travel.clearance);
+    let mut chunks = post.begin(plan.layers.len());
+    for layer in &plan.layers {
+        chunks.extend(post.layer(&programmer.layer(layer)));
+    }
+    chunks.extend(post.end(programmer.leave()));
+    for chunk in chunks {
+        files.entry(chunk.file).or_insert_with(String::new).push_str(&chunk.text);
+    }
+    files
+}
+
+fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
+    let passes: Vec<_> = plan.layers.iter().flat_map(|l| &l.passes).collect();
+    assert_eq!(motion.welds.len(), passes.len(), "{case}: arc starts");
+    for (weld, pass) in motion.welds.iter().zip(&passes) {
+        assert!(distance(weld.points[0], pass.start().unwrap().to_array()) < 0.002, "{case}");
+        assert!(distance(*weld.points.last().unwrap(), pass.end().unwrap().to_array()) < 0.002, "{case}");
+        let length: f64 = weld.points.windows(2).map(|w| distance(w[0], w[1])).sum();
+        assert!((length - pass.length()).abs() < 0.02 + 1e-4 * length, "{case}: {length} for {}", pass.length());
+        let speed = profile.process.deposition_speed;
+        assert!(weld.speeds.iter().all(|s| (s - speed).abs() < 0.01 * speed), "{case}: speeds");
+    }
+    // The last lift is not in the plan's totals.
+    let travel = motion.travel - profile.travel.clearance;
+    let first_descent = profile.travel.clearance;
+    let planned = plan.summary.metrics.travel_length_mm + first_descent;
+    assert!((travel - planned).abs() < 0.01 + 1e-4 * planned, "{case}: travel {travel} for {planned}");
+}
+
+#[test]
+fn krl_reads_back_as_planned() {
+    each_case(|case, plan, profile| {
+        let mut profile = profile.clone();
+        profile.krl = Profile::built_in("cmt-al2319-kuka").unwrap().krl;
+        let files = written(plan, &profile, "krl");
+        same_as_plan(case, &readers::krl::run(&files, "TEST_PART_1", "$OUT[2]"), plan, &profile);
+    });
+}
+
+#[test]
+fn gcode_reads_back_as_planned() {
+    each_case(|case, plan, profile| {
+        let mut profile = profile.clone();
+        profile.gcode = Profile::built_in("plasma-304-cnc").unwrap().gcode;
+        let files = written(plan, &profile, "gcode");
+        same_as_plan(case, &readers::gcode::run(&files["Test part-1.nc"], 3, 5), plan, &profile);
+    });
+}
+
+#[test]
+fn plan_json_holds_the_plan() {
+    let profile = profile("cmt-al2319-kuka", "compound", 0.0);
+    let plan = plan_of(&example::find("gear").unwrap().mesh(), &profile);
+    let mut text = plan_file::head(&plan.header);
+    plan.layers.iter().for_each(|l| text.push_str(&plan_file::layer(l, l.index == 0)));
+    text.push_str(plan_file::tail());
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((json["version"].as_u64(), json["units"].as_str()), (Some(1), Some("mm")));
+    let layers = json["layers"].as_array().unwrap();
+    assert_eq!(layers.len(), plan.layers.len());
+    for (read, layer) in layers.iter().zip(&plan.layers) {
+        assert_eq!(read["islands"].as_array().unwrap().len(), layer.islands.len());
+        assert_eq!(read["islands"][0]["holes"].as_array().unwrap().len(), layer.islands[0].holes.len());
+        for (read, pass) in read["passes"].as_array().unwrap().iter().zip(&layer.passes) {
+            assert_eq!(read["kind"], pass.kind.name());
+            assert_eq!(read["closed"], pass.closed);
+            let points: Vec<[f64; 3]> = serde_json::from_value(read["points"].clone()).unwrap();
+            assert_eq!(points.len(), pass.points.len());
+            assert!(points.iter().zip(&pass.points).all(|(a, b)| distance(*a, b.to_array()) < 1e-4));
+            assert_eq!(read["speed"].as_f64(), Some(10.5));
+        }
+    }
+}
+
+#[test]
+fn one_and_two_threads_plan_the_same() {
+    let mesh = example::find("propeller").unwrap().mesh();
+    let profile = profile("plasma-304-cnc", "compound", 20.0);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| plan_of(&mesh, &profile))
+    };
+    let (one, two) = (with(1), with(2));
+    assert_eq!(one.layers, two.layers);
+    assert_eq!(one.summary, two.summary);
+}
+
+#[test]
+fn what_is_thinner_than_a_bead_is_reported() {
+    // A 40 mm block with a 3 mm fin: the fin's 30 mm × 3 mm are lost on every layer.
+    let outline =
+        [(0.0, 0.0), (40.0, 0.0), (40.0, 18.0), (70.0, 18.0), (70.0, 21.0), (40.0, 21.0), (40.0, 40.0), (0.0, 40.0)];
+    let mesh = extruded(&outline, 8.0);
+    let plan = plan_of(&mesh, &profile("cmt-al2319-kuka", "compound", 0.0));
+    let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
+    let thin =
+        plan.summary.warnings.summaries().find(|w| w.kind == beadwright::warning::WarningKind::ThinFeature).unwrap();
+    assert_eq!((thin.count, &thin.layers[..]), (4, &[(0, 3)][..]), "{text:?}");
+    // Less where the opening of the block rounds into the root of the fin.
+    assert!((85.0..91.0).contains(&thin.largest.size), "{text:?}");
+    let m = &plan.summary.metrics;
+    // Corners are lost too: (1 − π/4) r² at each of the block's four.
+    let corners = 4.0 * (1.0 - std::f64::consts::FRAC_PI_4) * 3.77_f64.powi(2);
+    let expected = 1.0 - (thin.largest.size + corners) / 1690.0;
+    assert!((m.coverage() - expected).abs() < 2e-3, "{} for {expected}", m.coverage());
+}
+
+#[test]
+fn a_part_without_room_for_a_bead_is_refused() {
+    let mesh = extruded(&[(0.0, 0.0), (100.0, 0.0), (100.0, 3.0), (0.0, 3.0)], 10.0);
+    let error = plan::plan("fin", &mesh, &profile("cmt-al2319-kuka", "zigzag", 0.0), &Task::new()).unwrap_err();
+    assert!(error.to_string().contains("wide enough for a bead of 7.54 mm"), "{error}");
+}
+
+#[test]
+fn a_gap_between_two_blocks_gives_empty_layers() {
+    let square = [(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)];
+    let (low, mut high) = (extruded(&square, 6.0), extruded(&square, 6.0));
+    high.vertices.iter_mut().for_each(|v| v.z += 12.0);
+    let offset = low.vertices.len() as u32;
+    let vertices = low.vertices.into_iter().chain(high.vertices).collect();
+    let triangles = low.triangles.into_iter().chain(high.triangles.into_iter().map(|t| t.map(|v| v + offset)));
+    let (mesh, _) = Mesh::from_triangles(vertices, triangles.collect());
+    let plan = plan_of(&mesh, &profile("cmt-al2319-kuka", "zigzag", 0.0));
+    let empty = plan.summary.warnings.summaries().next().unwrap();
+    assert_eq!(empty.layers, [(3, 5)]);
+    assert_eq!(plan.summary.metrics.layers, 6);
+}
+
+/// A prism over a counter-clockwise outline.
+fn extruded(outline: &[(f64, f64)], height: f64) -> Mesh {
+    use beadwright::planar::{Polygon, Ring, triangulate::triangulate};
+    let ring: Vec<DVec2> = outline.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+    let n = ring.len() as u32;
+    let vertices = [0.0, height].iter().flat_map(|&z| ring.iter().map(move |p| p.extend(z))).collect();
+    let caps = triangulate(&Polygon::simple(Ring::new(ring.clone())));
+    let caps = caps.iter().map(|t| t.map(|i| i as u32)).flat_map(|[a, b, c]| [[a, c, b], [a + n, b + n, c + n]]);
+    let walls = (0..n).flat_map(|i| {
+        let j = (i + 1) % n;
+        [[i, j, j + n], [i, j + n, i + n]]
+    });
+    Mesh::from_triangles(vertices, caps.chain(walls).collect()).0
+}
