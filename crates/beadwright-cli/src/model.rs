@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Which model, and how it is placed.
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(crate) struct Model {
     /// The model: binary or ASCII STL.
     pub(crate) model: PathBuf,
     /// Unit of the model's coordinates; asked for when the part would be smaller than a few beads.
@@ -61,7 +61,7 @@ pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
     import.with_context(context)
 }
 
-impl Arguments {
+impl Model {
     /// The part's name: the file name without its extension.
     pub(crate) fn part(&self) -> String {
         self.model.file_stem().map_or("part".to_owned(), |stem| stem.to_string_lossy().into_owned())

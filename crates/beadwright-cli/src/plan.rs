@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    model: model::Arguments,
+    model: model::Model,
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
