@@ -294,8 +294,9 @@ const THIN_FEATURE: f64 = 0.25;
 /// Area of an island that a bead can reach without leaving it, mm²; warns of what it cannot reach.
 ///
 /// That area is the opening of the island by a disc of the bead's width. With C the outermost centre-lines and r
-/// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), so that the shapes that are lost need
-/// to be computed only where the number says that there are some.
+/// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is connected like the
+/// island; where C has come apart at a neck, its parts may reach the same points. So the shapes need to be computed
+/// only at necks, and where the number says that something is lost.
 fn reach(island: &Polygon, settings: &FillSettings, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
     let r = settings.bead_width / 2.0;
     let area = island.area();
@@ -305,16 +306,22 @@ fn reach(island: &Polygon, settings: &FillSettings, layer: usize, warnings: &mut
         warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
         return 0.0;
     }
-    let opened = centre.area() + r * centre.perimeter() + std::f64::consts::PI * r * r * centre.euler() as f64;
     let smallest = THIN_FEATURE * settings.bead_width * settings.bead_width;
-    if area - opened > smallest {
-        let lost = Region::from(island.clone()).difference(&centre.offset(r, Join::ROUND));
-        for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
-            let place = piece.outer.points().first().copied().unwrap_or_default();
-            warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
+    if let [part] = centre.polygons()
+        && part.holes.len() == island.holes.len()
+    {
+        let opened = centre.area() + r * centre.perimeter() + std::f64::consts::PI * r * r * centre.euler() as f64;
+        if area - opened <= smallest {
+            return opened.clamp(0.0, area);
         }
     }
-    opened.clamp(0.0, area)
+    let opened = centre.offset(r, Join::ROUND);
+    let lost = Region::from(island.clone()).difference(&opened);
+    for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
+        let place = piece.outer.points().first().copied().unwrap_or_default();
+        warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
+    }
+    opened.area().min(area)
 }
 
 /// Puts filled layers in order and hands them over.

@@ -19,7 +19,8 @@ impl Region {
     /// The pieces of the open line through `points` inside or outside this region, in no fixed order; each runs
     /// in the direction of the line.
     pub fn clip_line(&self, points: &[DVec2], keep: Keep) -> Vec<Vec<DVec2>> {
-        let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: keep == Keep::Inside };
+        // Inverted, the library takes the flag the other way round: true leaves the boundary to the inside in both cases.
+        let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: true };
         let path: Vec<_> = points.iter().map(|&p| to_grid(p)).collect();
         let pieces = region_to_grid(self).clip_path(&path, FillRule::NonZero, rule);
         pieces.into_iter().map(|piece| piece.into_iter().map(from_grid).collect()).collect()

@@ -1,0 +1,178 @@
+//! Order of passes: nothing is lost or changed but its start, and the torch travels less.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod solids;
+
+use beadwright::fill::{Fill, FillSettings, Pass, PassKind, STRATEGIES};
+use beadwright::order::order;
+use beadwright::planar::{DVec2, Polygon, Ring};
+use beadwright::profile::Profile;
+use proptest::prelude::*;
+use solids::runner;
+
+fn open(points: &[(f64, f64)], reversible: bool) -> Pass {
+    let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+    Pass { kind: PassKind::Infill, closed: false, points, reversible }
+}
+
+fn closed(points: &[(f64, f64)]) -> Pass {
+    Pass { kind: PassKind::Contour, closed: true, ..open(points, true) }
+}
+
+fn end(pass: &Pass) -> DVec2 {
+    if pass.closed { pass.points[0] } else { *pass.points.last().unwrap() }
+}
+
+/// Length of the moves without arc, mm.
+fn travel<'a>(passes: impl IntoIterator<Item = &'a Pass>, mut torch: DVec2) -> f64 {
+    let mut length = 0.0;
+    for pass in passes {
+        length += torch.distance(pass.points[0]);
+        torch = end(pass);
+    }
+    length
+}
+
+/// Whether `laid` is `pass` as it may be laid.
+fn same(laid: &Pass, pass: &Pass) -> bool {
+    let mut points = pass.points.clone();
+    let turned = if pass.closed {
+        (0..points.len()).any(|_| {
+            points.rotate_left(1);
+            points == laid.points
+        })
+    } else {
+        points.reverse();
+        pass.reversible && points == laid.points
+    };
+    let rest = |p: &Pass| (p.kind, p.closed, p.reversible);
+    rest(laid) == rest(pass) && (laid.points == pass.points || turned)
+}
+
+/// Orders the islands and returns, for each pass laid, its island and stage. Every pass must come once.
+fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Pass>, Vec<(usize, usize)>) {
+    let mut at = torch;
+    let laid = order(islands.to_vec(), &mut at);
+    assert_eq!(at, laid.last().map(end).or(torch), "the torch ends where the last pass ends");
+    let mut left: Vec<(usize, usize, &Pass)> = Vec::new();
+    for (i, fill) in islands.iter().enumerate() {
+        left.extend(fill.stages.iter().enumerate().flat_map(|(s, stage)| stage.iter().map(move |p| (i, s, p))));
+    }
+    let mut from = Vec::new();
+    for pass in &laid {
+        let k = left.iter().position(|(_, _, p)| same(pass, p)).expect("laid, but not among the passes or twice");
+        let (island, stage, _) = left.remove(k);
+        from.push((island, stage));
+    }
+    assert!(left.is_empty(), "never laid: {left:?}");
+    let ends = from.chunk_by(|a, b| a.0 == b.0).map(|chunk| chunk[0].0).collect::<Vec<_>>();
+    let mut once = ends.clone();
+    once.sort_unstable();
+    once.dedup();
+    assert_eq!(once.len(), ends.len(), "an island is finished before the next begins");
+    assert!(from.chunk_by(|a, b| a.0 == b.0).all(|chunk| chunk.is_sorted()), "stages in their order");
+    (laid, from)
+}
+
+fn settings() -> FillSettings {
+    Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0)
+}
+
+fn square(x: f64, y: f64, side: f64) -> Polygon {
+    let ring = |s: f64, d: f64| [(d, d), (s - d, d), (s - d, s - d), (d, s - d)].map(|(u, v)| DVec2::new(x + u, y + v));
+    let hole = Ring::new(ring(side, side / 3.0).to_vec()).reversed();
+    Polygon { outer: Ring::new(ring(side, 0.0).to_vec()), holes: vec![hole] }
+}
+
+#[test]
+fn every_pass_of_every_strategy_comes_out_once() {
+    for strategy in STRATEGIES {
+        let islands: Vec<Fill> = [square(0.0, 0.0, 60.0), square(200.0, 10.0, 90.0), square(80.0, 0.0, 70.0)]
+            .iter()
+            .map(|island| strategy.fill(island, &settings()))
+            .collect();
+        let (laid, from) = check(&islands, None);
+        assert!(laid.len() >= 3, "{}", strategy.name());
+        // From the origin the islands lie one behind the other.
+        assert!([0, 2, 1].iter().eq(from.chunk_by(|a, b| a.0 == b.0).map(|c| &c[0].0)), "{}", strategy.name());
+    }
+}
+
+#[test]
+fn nothing_gives_nothing_and_leaves_the_torch() {
+    let torch = Some(DVec2::new(3.0, 4.0));
+    assert_eq!(check(&[], torch).0, []);
+    assert_eq!(check(&[Fill::default(), Fill { stages: vec![vec![], vec![]], fixed_order: false }], torch).0, []);
+}
+
+#[test]
+fn an_open_pass_begins_at_its_nearer_end() {
+    let line = [(0.0, 0.0), (5.0, 1.0), (10.0, 0.0)];
+    let fill = |reversible| [Fill { stages: vec![vec![open(&line, reversible)]], fixed_order: false }];
+    let torch = Some(DVec2::new(12.0, 0.0));
+    assert_eq!(check(&fill(true), torch).0[0].points[0], DVec2::new(10.0, 0.0));
+    assert_eq!(check(&fill(false), torch).0[0].points[0], DVec2::ZERO, "not reversible");
+    assert_eq!(check(&fill(true), None).0[0].points[0], DVec2::ZERO);
+}
+
+#[test]
+fn a_closed_pass_begins_at_its_nearest_vertex() {
+    let ring = closed(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)]);
+    let fill = [Fill { stages: vec![vec![ring]], fixed_order: false }];
+    for (torch, start) in [((11.0, 9.0), (10.0, 10.0)), ((-1.0, 12.0), (0.0, 10.0)), ((6.0, -3.0), (10.0, 0.0))] {
+        let laid = check(&fill, Some(torch.into())).0;
+        assert_eq!(laid[0].points[0], start.into());
+        assert!(Ring::new(laid[0].points.clone()).area() > 0.0, "the direction stays");
+    }
+}
+
+#[test]
+fn the_nearest_pass_comes_next() {
+    let at = |x: f64| open(&[(x, 0.0), (x, 5.0)], true);
+    let fill = [Fill { stages: vec![vec![at(30.0), at(10.0), at(20.0), at(0.0)]], fixed_order: false }];
+    let laid = check(&fill, None).0;
+    assert_eq!(laid.iter().map(|p| p.points[0].x).collect::<Vec<_>>(), [0.0, 10.0, 20.0, 30.0]);
+    assert_eq!(laid.iter().map(|p| p.points[0].y).collect::<Vec<_>>(), [0.0, 5.0, 0.0, 5.0]);
+}
+
+#[test]
+fn a_fixed_order_is_kept_with_its_directions() {
+    let at = |x: f64| open(&[(x, 0.0), (x, 5.0)], true);
+    let stages = vec![vec![at(30.0), at(10.0), at(20.0)], vec![at(0.0), closed(&[(1.0, 0.0), (2.0, 0.0), (2.0, 3.0)])]];
+    let fill = Fill { stages: stages.clone(), fixed_order: true };
+    assert_eq!(check(&[fill], Some(DVec2::new(20.0, 9.0))).0, stages.concat());
+}
+
+/// Passes of 2 to 6 points within 100 mm.
+fn random_pass() -> impl Strategy<Value = Pass> {
+    let points = prop::collection::vec((0.0..100.0, 0.0..100.0), 2..7);
+    (points, any::<bool>(), any::<bool>()).prop_map(|(points, ring, reversible)| {
+        if ring && points.len() > 2 { closed(&points) } else { open(&points, reversible) }
+    })
+}
+
+#[test]
+fn random_passes_come_out_once_and_stages_stay_in_order() {
+    let stage = || prop::collection::vec(random_pass(), 0..6);
+    let fill = (prop::collection::vec(stage(), 0..4), any::<bool>());
+    let fill = fill.prop_map(|(stages, fixed_order)| Fill { stages, fixed_order });
+    runner(300)
+        .run(&(prop::collection::vec(fill, 0..5), any::<bool>()), |(islands, placed)| {
+            check(&islands, placed.then_some(DVec2::new(50.0, 50.0)));
+            Ok(())
+        })
+        .unwrap();
+}
+
+#[test]
+fn travel_is_not_longer_than_in_the_order_of_the_input() {
+    runner(300)
+        .run(&prop::collection::vec(random_pass(), 15..40), |passes| {
+            let before = travel(&passes, DVec2::ZERO);
+            let (laid, _) = check(&[Fill { stages: vec![passes], fixed_order: false }], None);
+            let after = travel(&laid, DVec2::ZERO);
+            prop_assert!(after <= before, "{after} mm for {before} mm");
+            Ok(())
+        })
+        .unwrap();
+}

@@ -1,0 +1,424 @@
+//! Profiles: the built-in ones, and what is said of a wrong one, with its line and key.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use beadwright::bead::MassBalance;
+use beadwright::post;
+use beadwright::profile::{BUILT_IN, Profile};
+use toml_edit::{Document, DocumentMut, Item, Value};
+
+const KUKA: &str = "cmt-al2319-kuka";
+const CNC: &str = "plasma-304-cnc";
+
+fn text(name: &str) -> &'static str {
+    Profile::built_in_text(name).unwrap()
+}
+
+/// Line, from 1, on which the first occurrence of `words` stands.
+fn line_of(text: &str, words: &str) -> usize {
+    text[..text.find(words).unwrap()].matches('\n').count() + 1
+}
+
+/// The message about a profile names the line and contains the words.
+fn check_text(text: &str, line: usize, expect: &[&str]) {
+    let error = Profile::parse(text).expect_err("the profile was taken").to_string();
+    assert!(error.starts_with(&format!("line {line} of the profile: ")), "{error:?} is not about line {line}");
+    assert!(expect.iter().all(|words| error.contains(words)), "{error:?} lacks one of {expect:?}");
+}
+
+/// Replaces `old` in the profile and expects a message about the line of `new`.
+fn check(profile: &str, old: &str, new: &str, expect: &[&str]) {
+    let edited = text(profile).replacen(old, new, 1);
+    assert_ne!(edited, text(profile), "{old:?} does not stand in {profile}");
+    check_text(&edited, line_of(&edited, new), expect);
+}
+
+#[test]
+fn built_in_profiles_have_no_notes() {
+    for (name, _) in BUILT_IN {
+        let profile = Profile::built_in(name).unwrap();
+        assert_eq!(profile.name, name);
+        assert_eq!(profile.notes(), [""; 0], "{name}");
+        assert!((profile.mass_balance().ratio() - 1.0).abs() < 0.01, "{name}: {}", profile.mass_balance().ratio());
+        assert!(!profile.posts.is_empty() && !profile.description.is_empty());
+        for post in &profile.posts {
+            assert!(post::post(post, "part", &profile).is_ok(), "{name} names the post {post}");
+        }
+    }
+}
+
+#[test]
+fn a_misspelt_name_gets_the_nearest_or_all() {
+    let error = |name: &str| Profile::built_in(name).unwrap_err().to_string();
+    assert!(error("plasma-304").contains("Did you mean \"plasma-304-cnc\"?"));
+    assert!(error("zzz").contains(&format!("Known: {KUKA}, {CNC}.")), "{}", error("zzz"));
+}
+
+#[test]
+fn a_post_without_its_section_is_refused() {
+    let Err(error) = post::post("krl", "part", &Profile::built_in(CNC).unwrap()) else { panic!("it was taken") };
+    let error = error.to_string();
+    assert!(
+        error.contains("no [krl] section") && error.contains(&format!("beadwright profile show {KUKA}")),
+        "{error}"
+    );
+}
+
+#[test]
+fn twenty_mm_per_second_breaks_the_mass_balance_of_zhao() {
+    let mut profile = Profile::built_in(KUKA).unwrap();
+    profile.process.deposition_speed = 20.0;
+    let notes = profile.notes();
+    assert_eq!(notes.len(), 1);
+    assert!(notes[0].contains("A deposition_speed of 10.49 mm/s would fit"), "{}", notes[0]);
+    // 6 m/min of 1.2 mm wire against 2/3 · 7.54 · 2.145 mm².
+    let expect = 100.0 * std::f64::consts::PI * 0.36 / (2.0 / 3.0 * 7.54 * 2.145);
+    assert!((profile.mass_balance().fitting_speed - expect).abs() < 1e-9);
+}
+
+#[test]
+fn layers_that_beads_do_not_rise_to_are_noted() {
+    let mut profile = Profile::built_in(KUKA).unwrap();
+    profile.layers.height = 3.0;
+    let notes = profile.notes();
+    assert_eq!(notes.len(), 1);
+    assert!(notes[0].contains("rise 2.00 mm a layer, but layers are 3.00 mm"), "{}", notes[0]);
+    assert!(notes[0].contains("A bead.height of 3.22 mm or a layers.height of 2.00 mm would fit"), "{}", notes[0]);
+    profile.layers.height = 2.0 * (1.0 + 0.9 * MassBalance::TOLERANCE);
+    assert_eq!(profile.notes(), [""; 0]);
+}
+
+#[test]
+fn stepover_comes_from_the_overlap() {
+    let stepover = |name: &str| Profile::built_in(name).unwrap().stepover();
+    assert!((stepover(KUKA) - 0.715 * 7.54).abs() < 1e-12);
+    assert!((stepover(CNC) - 0.738 * 5.0).abs() < 1e-12);
+    let free = text(CNC).replace("overlap = \"tangent\"", "overlap = \"free\"\nstepover = 3.5");
+    assert_eq!(Profile::parse(&free).unwrap().stepover(), 3.5);
+}
+
+#[test]
+fn raster_angles_turn_as_told() {
+    let angles = |turn: &str, increment: f64| {
+        let text = text(KUKA).replace("raster_turn = \"alternate\"", &format!("raster_turn = \"{turn}\""));
+        let mut profile = Profile::parse(&text).unwrap();
+        profile.fill.raster_increment = increment;
+        [0, 1, 2, 3].map(|k| profile.fill_settings(k).raster_angle.to_degrees().round())
+    };
+    assert_eq!(angles("fixed", 67.0), [0.0; 4]);
+    assert_eq!(angles("alternate", 67.0), [0.0, 90.0, 0.0, 90.0]);
+    assert_eq!(angles("increment", 67.0), [0.0, 67.0, 134.0, 21.0]);
+}
+
+#[test]
+fn unknown_keys_get_the_nearest() {
+    check(KUKA, "diameter =", "diametre =", &["unknown key \"diametre\"", "Did you mean \"diameter\"?"]);
+    check(KUKA, "deposition_speed =", "depositon_speed =", &["Did you mean \"deposition_speed\"?"]);
+    check(KUKA, "[travel]", "[travels]", &["unknown key \"travels\"", "Did you mean \"travel\"?"]);
+    check(
+        CNC,
+        "decimals =",
+        "qqq = 1\ndecimals =",
+        &["unknown key \"qqq\"", "Possible here: extension, block_numbers"],
+    );
+    check(CNC, "close_gap =", "closegap =", &["Did you mean \"close_gap\"?"]);
+}
+
+#[test]
+fn unknown_words_get_the_nearest() {
+    check(
+        KUKA,
+        "\"inclined-flat-top\"",
+        "\"inclined-flat\"",
+        &["unknown value", "Did you mean \"inclined-flat-top\"?"],
+    );
+    check(KUKA, "\"outside-in\"", "\"outside_in\"", &["Did you mean \"outside-in\"?"]);
+    check(KUKA, "\"alternate\"", "\"alternating\"", &["Did you mean \"alternate\"?"]);
+    check(KUKA, "\"even\"", "\"zzz\"", &["unknown value \"zzz\"", "even, exact"]);
+}
+
+#[test]
+fn missing_keys_are_named_at_their_section() {
+    for (section, key) in
+        [("wire", "density"), ("process", "ctwd"), ("bead", "height"), ("fill", "strategy"), ("krl", "home")]
+    {
+        let mut document: DocumentMut = text(KUKA).parse().unwrap();
+        document[section].as_table_mut().unwrap().remove(key).unwrap();
+        let edited = document.to_string();
+        check_text(&edited, line_of(&edited, &format!("\n[{section}]\n")) + 1, &[&format!("\"{key}\" is missing")]);
+    }
+    let error = Profile::parse(text(CNC).split("[travel]").next().unwrap()).unwrap_err().to_string();
+    assert!(error.contains("the key \"travel\" is missing"), "{error}");
+}
+
+#[test]
+fn only_optional_keys_may_be_missing() {
+    let optional = ["fill.stepover", "process.current", "process.voltage", "slice.close_gap", "slice.simplify"];
+    for (name, full) in BUILT_IN {
+        let document: DocumentMut = full.parse().unwrap();
+        for (section, item) in document.iter() {
+            let Some(table) = item.as_table() else { continue };
+            for (key, _) in table.iter() {
+                let mut without = document.clone();
+                without[section].as_table_mut().unwrap().remove(key);
+                let path = format!("{section}.{key}");
+                let taken = Profile::parse(&without.to_string()).is_ok();
+                assert_eq!(taken, optional.contains(&path.as_str()), "{name} without {path}");
+            }
+        }
+    }
+    let without_slice =
+        text(KUKA).replace("[slice]\nclose_gap = 0.5           # mm\nsimplify = 0.01           # mm\n", "");
+    assert_ne!(without_slice, text(KUKA));
+    assert_eq!(Profile::parse(&without_slice).unwrap().slice, Profile::built_in(KUKA).unwrap().slice);
+}
+
+#[test]
+fn wrong_types_are_refused_with_their_line() {
+    check(KUKA, "diameter = 1.2", "diameter = \"thick\"", &["string \"thick\"", "f64"]);
+    check(KUKA, "perimeters = 1", "perimeters = 1.5", &["floating point `1.5`", "u32"]);
+    check(KUKA, "perimeters = 1", "perimeters = -1", &["-1", "u32"]);
+    check(KUKA, "posts = [\"krl\"]", "posts = \"krl\"", &["sequence"]);
+    check(KUKA, "orientation = [0.0, 0.0, 180.0]", "orientation = [0.0, 0.0]", &["array of length 3"]);
+    check(CNC, "block_numbers = true", "block_numbers = \"yes\"", &["string \"yes\"", "boolean"]);
+    // Whole numbers are numbers.
+    assert!(Profile::parse(&text(KUKA).replace("height = 2.0 ", "height = 2 ")).is_ok());
+}
+
+#[test]
+fn what_is_no_toml_is_refused_with_its_line() {
+    check(KUKA, "density = 2.82", "density = = 2.82", &[]);
+    check(KUKA, "[bead]", "[bead", &[]);
+    check(KUKA, "height = 2.0", "height = 2,0", &[]);
+    check(KUKA, "density = 2.82", "diameter = 1.4", &["duplicate key"]);
+    assert!(
+        Profile::parse("").unwrap_err().to_string().starts_with("line 1 of the profile: the key \"name\" is missing")
+    );
+}
+
+/// Sets `section.key` in a built-in profile and expects it to be called impossible, on its line.
+fn impossible(profile: &str, path: &str, value: impl Into<Value>) {
+    let mut document: DocumentMut = text(profile).parse().unwrap();
+    let (section, key) = path.split_once('.').unwrap_or(("", path));
+    let table = if section.is_empty() { document.as_table_mut() } else { document[section].as_table_mut().unwrap() };
+    table[key] = Item::Value(value.into());
+    let edited = document.to_string();
+    let spans = Document::parse(edited.as_str()).unwrap();
+    let table = if section.is_empty() { spans.as_table() } else { spans[section].as_table().unwrap() };
+    let (at, item) = table.get_key_value(key).unwrap();
+    let line = edited[..at.span().unwrap().start].matches('\n').count() + 1;
+    let shown = item.to_string().to_lowercase();
+    check_text(&edited, line, &[&format!("{path} = "), "is impossible"]);
+    let error = Profile::parse(&edited).unwrap_err().to_string();
+    assert!(
+        item.is_array() || error.to_lowercase().contains(shown.trim().trim_end_matches(".0")),
+        "{error:?} does not show {shown}"
+    );
+}
+
+#[test]
+fn impossible_numbers_are_refused_with_line_and_key() {
+    let both = [
+        ("wire.diameter", 0.09, 10.1),
+        ("wire.density", 0.4, 25.5),
+        ("process.wire_feed_speed", 0.0, 101.0),
+        ("process.deposition_speed", 0.0, 2001.0),
+        ("process.efficiency", 0.0, 1.01),
+        ("process.arc_start_delay", -0.1, 61.0),
+        ("process.arc_end_delay", -0.1, 61.0),
+        ("process.gas_flow", -1.0, 201.0),
+        ("process.gas_preflow", -0.1, 61.0),
+        ("process.gas_postflow", -0.1, 61.0),
+        ("process.ctwd", -1.0, 101.0),
+        ("process.current", 0.0, 2001.0),
+        ("process.voltage", -5.0, 501.0),
+        ("bead.width", 0.0, 101.0),
+        ("bead.height", -1.0, 51.0),
+        ("layers.height", 0.0, 51.0),
+        ("fill.contour_gap", 0.05, 2.1),
+        ("fill.machining_allowance", -0.1, 51.0),
+        ("fill.raster_angle", -361.0, 361.0),
+        ("fill.raster_increment", -361.0, 361.0),
+        ("fill.min_pass_length", -1.0, 1001.0),
+        ("slice.close_gap", -0.1, 1001.0),
+        ("slice.simplify", -0.1, 3.0),
+        ("travel.speed", 0.0, 3001.0),
+        ("travel.clearance", -1.0, 1001.0),
+    ];
+    let both = both.map(|(path, low, high)| (KUKA, path, low, high)).into_iter().chain([
+        (KUKA, "krl.ptp_speed", 0.5, 101.0),
+        (KUKA, "krl.blend", -0.1, 51.0),
+        (CNC, "bead.width", f64::NEG_INFINITY, 1e9),
+    ]);
+    for (profile, path, low, high) in both {
+        for value in [low, high, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            impossible(profile, path, value);
+        }
+    }
+}
+
+#[test]
+fn impossible_counts_are_refused_with_line_and_key() {
+    for (profile, path, low, high) in [
+        (KUKA, "fill.perimeters", 0, 1001),
+        (KUKA, "krl.tool", 0, 17),
+        (KUKA, "krl.base", 0, 33),
+        (CNC, "gcode.decimals", 0, 5),
+    ] {
+        impossible(profile, path, low);
+        impossible(profile, path, high);
+    }
+    impossible(KUKA, "krl.orientation", [0.0, 400.0, 0.0].into_iter().collect::<Value>());
+}
+
+#[test]
+fn impossible_words_are_refused_with_line_and_key() {
+    impossible(KUKA, "fill.strategy", "spiral");
+    check(KUKA, "\"compound\"", "\"spiral\"", &["the strategies are raster, zigzag, contour, compound"]);
+    impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
+    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode"]);
+    impossible(CNC, "gcode.extension", "../nc");
+    impossible(CNC, "gcode.extension", "");
+    impossible(KUKA, "krl.home", "X 0,Y 0");
+    impossible(KUKA, "krl.home", "A1 0}; HALT");
+}
+
+#[test]
+fn ranges_depend_on_the_bead() {
+    let free = |stepover: &str| {
+        text(CNC).replace("overlap = \"tangent\"", &format!("overlap = \"free\"\nstepover = {stepover}"))
+    };
+    assert!(Profile::parse(&free("1.0")).is_ok() && Profile::parse(&free("10.0")).is_ok());
+    for bad in ["0.9", "10.1"] {
+        let line = line_of(&free(bad), "stepover = ");
+        check_text(&free(bad), line, &["fill.stepover", "between 1 and 10 mm (0.2 to 2 bead widths)"]);
+    }
+    check(
+        CNC,
+        "simplify = 0.01",
+        "simplify = 1.1",
+        &["slice.simplify", "between 0 and 1 mm (at most 0.2 bead widths)"],
+    );
+}
+
+#[test]
+fn a_stepover_stands_exactly_with_a_free_overlap() {
+    let both = "overlap = \"tangent\"\nstepover = 3.5";
+    let edited = text(CNC).replace("overlap = \"tangent\"", both);
+    check_text(
+        &edited,
+        line_of(&edited, "stepover = 3.5"),
+        &["fill.stepover = 3.5 is impossible", "overlap = \"free\""],
+    );
+}
+
+#[test]
+fn a_free_overlap_without_a_stepover_is_refused_where_it_stands() {
+    check(CNC, "overlap = \"tangent\"", "overlap = \"free\"", &["stepover", "free"]);
+}
+
+#[test]
+fn templates_with_unknown_placeholders_are_refused() {
+    let key = |name: &str, key: &str, line: &str| {
+        let mut document: DocumentMut = text(name).parse().unwrap();
+        let (section, item) = key.split_once('.').unwrap();
+        document[section][item] = Item::Value([line].into_iter().collect::<Value>());
+        let edited = document.to_string();
+        check_text(&edited, line_of(&edited, &format!("\n{item} = ")) + 1, &[key, "is impossible"]);
+        Profile::parse(&edited).unwrap_err().to_string()
+    };
+    for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
+        let error = key(KUKA, &format!("krl.{part}"), "WAIT SEC {{gas_preflw}}");
+        assert!(error.contains("{{gas_preflw}} is not a placeholder; known are program, layer"), "{error}");
+    }
+    for part in ["header", "layer_start", "arc_on", "arc_off", "footer"] {
+        let error = key(CNC, &format!("gcode.{part}"), "(Grüße)");
+        assert!(error.contains("printable ASCII"), "{error}");
+        key(CNC, &format!("gcode.{part}"), "M3\nM5");
+    }
+}
+
+#[test]
+fn templates_with_a_placeholder_that_does_not_end_are_refused() {
+    check(CNC, "\"G4 P{{arc_start_delay}}\"", "\"G4 P{{arc_start_delay}\"", &[]);
+}
+
+#[test]
+fn values_written_in_another_style_have_their_line_too() {
+    let inline = text(CNC).replace("[bead]\nwidth = 5.0               # mm\nheight = 1.5              # mm\n", "");
+    let inline = inline.replace("[wire]", "[bead]\nheight = 1.5\n\"width\" = 500.0\n\n[wire]");
+    check_text(&inline, line_of(&inline, "\"width\""), &["bead.width = 500"]);
+    let inline = inline.replace("[bead]\nheight = 1.5\n\"width\" = 500.0\n", "");
+    let inline = inline.replace("posts =", "bead = { height = 1.5, width = 500.0 }\nposts =");
+    check_text(&inline, line_of(&inline, "bead = {"), &["bead.width = 500"]);
+}
+
+#[test]
+fn profiles_survive_being_written() {
+    for (name, _) in BUILT_IN {
+        let mut profile = Profile::built_in(name).unwrap();
+        assert_eq!(Profile::parse(&toml::to_string(&profile).unwrap()).unwrap(), profile);
+        profile.process.current = Some(120.0);
+        profile.process.voltage = Some(20.5);
+        assert_eq!(Profile::parse(&toml::to_string_pretty(&profile).unwrap()).unwrap(), profile);
+        assert!((profile.heat_input().unwrap() - 120.0 * 20.5 / profile.process.deposition_speed).abs() < 1e-9);
+    }
+}
+
+#[cfg(feature = "schema")]
+mod schema {
+    use super::{BUILT_IN, Profile};
+    use serde_json::Value;
+
+    /// Every object with properties, with its path.
+    fn walk(value: &Value, path: &str, visit: &mut impl FnMut(&str, &Value)) {
+        if let Some(properties) = value.get("properties").and_then(Value::as_object) {
+            properties.iter().for_each(|(key, property)| visit(&format!("{path}.{key}"), property));
+        }
+        match value {
+            Value::Object(map) => map.iter().for_each(|(key, inner)| walk(inner, &format!("{path}/{key}"), visit)),
+            Value::Array(items) => items.iter().for_each(|inner| walk(inner, path, visit)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn every_key_is_described() {
+        let mut count = 0;
+        walk(&Profile::schema(), "", &mut |path, property| {
+            count += 1;
+            let text = property["description"].as_str().unwrap_or_default();
+            assert!(text.len() > 5 && text.ends_with('.'), "{path}: {text:?}");
+        });
+        // Twelve sections and what is in them.
+        assert!(count > 60, "{count}");
+    }
+
+    #[test]
+    fn every_word_of_a_choice_is_described() {
+        let schema = Profile::schema();
+        for choice in ["Overlap", "RasterTurn", "ContourOrder", "RasterSpacing"] {
+            let words = schema["$defs"][choice]["oneOf"].as_array().unwrap();
+            assert!(words.len() > 1);
+            assert!(
+                words.iter().all(|w| w["const"].is_string() && w["description"].is_string()),
+                "{choice}: {words:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_schema_knows_exactly_the_keys_of_the_profiles() {
+        let schema = Profile::schema();
+        for (name, text) in BUILT_IN {
+            let profile: toml::Table = text.parse().unwrap();
+            for (section, value) in &profile {
+                assert!(schema["properties"][section].is_object(), "{name}: {section}");
+                let Some(table) = value.as_table() else { continue };
+                let title = format!("{}{}", section[..1].to_uppercase(), &section[1..]);
+                let title = if section == "bead" { "BeadShape" } else { &title };
+                let known = &schema["$defs"][title]["properties"];
+                assert!(table.keys().all(|key| known[key].is_object()), "{name}: [{section}] {table:?}");
+            }
+        }
+    }
+}
