@@ -20,5 +20,7 @@ pub fn expand(template: &str, values: &[(&str, String)]) -> String {
 
 /// The first placeholder that is not among the known ones.
 pub fn unknown_placeholder<'a>(template: &'a str, known: &[&str]) -> Option<&'a str> {
-    parts(template).find_map(|(_, name)| name.filter(|n| !known.contains(n)))
+    let open = template.rfind("{{").filter(|&at| !template[at..].contains("}}"));
+    let unknown = parts(template).find_map(|(_, name)| name.filter(|n| !known.contains(n)));
+    unknown.or_else(|| open.map(|at| &template[at + 2..]))
 }

@@ -339,7 +339,8 @@ fn templates_with_unknown_placeholders_are_refused() {
 
 #[test]
 fn templates_with_a_placeholder_that_does_not_end_are_refused() {
-    check(CNC, "\"G4 P{{arc_start_delay}}\"", "\"G4 P{{arc_start_delay}\"", &[]);
+    check(CNC, "arc_on = [", "arc_on = [\"G4 P{{gas_preflow}\", ", &["gcode.arc_on", "is impossible"]);
+    check(CNC, "arc_on = [", "arc_on = [\"G4 P{{gas_preflow}} S{{\", ", &["gcode.arc_on", "is impossible"]);
 }
 
 #[test]

@@ -124,6 +124,8 @@ fn a_truncated_binary_file_is_refused_with_byte_and_triangle() {
     let bytes = binary(b"cube", &cube());
     check(&bytes[..300], &["cut short", "announces 12 triangles", "684 bytes", "ends at byte 300", "in triangle 5"]);
     check(&bytes[..683], &["cut short", "ends at byte 683", "in triangle 12"]);
+    let solid = binary(b"solid cube", &cube());
+    check(&solid[..400], &["cut short", "ends at byte 400", "in triangle 7"]);
     check(&bytes[..50], &["not an STL file", "50 bytes", "at least 84"]);
 }
 

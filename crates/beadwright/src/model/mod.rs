@@ -115,7 +115,9 @@ pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     if bytes.is_empty() {
         return Err(ImportError::Empty);
     }
-    if let Some(found) = other_format(bytes) {
+    if stl::announced_size(bytes) != Some(bytes.len())
+        && let Some(found) = other_format(bytes)
+    {
         return Err(ImportError::OtherFormat { found });
     }
     stl::read(bytes, task)

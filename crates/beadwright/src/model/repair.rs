@@ -90,6 +90,9 @@ pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, Rep
         report.non_manifold_edges += usize::from(edge.len() > 2);
     }
     mesh.neighbours = adjacency.neighbours;
+    if report.degenerate + report.duplicate + report.cracks_welded > 0 {
+        drop_unused_vertices(&mut mesh);
+    }
     if mesh.volume() < 0.0 {
         report.inside_out = true;
         mesh.triangles.iter_mut().zip(&mut mesh.neighbours).for_each(|(t, n)| turn(t, n));
@@ -103,6 +106,19 @@ pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, Rep
 fn turn(triangle: &mut [u32; 3], neighbours: &mut [u32; 3]) {
     triangle.swap(1, 2);
     neighbours.swap(0, 2);
+}
+
+/// Keeps only the vertices of triangles, in their order, so that bounds are those of the surface.
+fn drop_unused_vertices(mesh: &mut Mesh) {
+    let mut used: Vec<u32> = mesh.triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let mut new_index = vec![0; mesh.vertices.len()];
+    for (new, &old) in used.iter().enumerate() {
+        new_index[old as usize] = new as u32;
+    }
+    mesh.vertices = used.iter().map(|&v| mesh.vertices[v as usize]).collect();
+    mesh.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = new_index[*v as usize]);
 }
 
 fn drop_degenerate(mesh: &mut Mesh) -> usize {

@@ -46,7 +46,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
 }
 
 /// Size that the triangle count at byte 80 asks for.
-fn announced_size(bytes: &[u8]) -> Option<usize> {
+pub(super) fn announced_size(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(80..HEADER)?;
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);
     Some(HEADER + RECORD * count as usize)
@@ -167,7 +167,11 @@ fn build(
     welder.add(&block, &mut triangles);
     task.step(Stage::Import, 0.6)?;
     let (mesh, mut repair) = repair::mend(welder.into_vertices(), triangles);
-    if mesh.triangles.is_empty() {
+    let area = |&[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|i| mesh.vertices[i as usize]);
+        (b - a).cross(c - a).length_squared()
+    };
+    if !mesh.triangles.iter().any(|t| area(t) > 0.0) {
         return Err(ImportError::NoTriangles { triangles: count });
     }
     repair.normals_against_winding = against;

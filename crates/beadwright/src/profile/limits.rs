@@ -92,8 +92,12 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         return broken("fill.strategy", value, format!("the strategies are {}.", names.join(", ")));
     }
     if (p.fill.overlap.ratio().is_none()) != p.fill.stepover.is_some() {
-        let value = format!("{:?}", p.fill.stepover);
-        return broken("fill.stepover", value, "it is given exactly when overlap = \"free\".".to_owned());
+        return match p.fill.stepover {
+            Some(stepover) => {
+                broken("fill.stepover", format!("{stepover}"), "it is given only with overlap = \"free\".".to_owned())
+            }
+            None => broken("fill.overlap", "\"free\"".to_owned(), "fill.stepover must then be given, mm.".to_owned()),
+        };
     }
     if let Some(post) = p.posts.iter().find(|post| !crate::post::NAMES.contains(&post.as_str())) {
         let names = crate::post::NAMES.join(", ");

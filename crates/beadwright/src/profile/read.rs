@@ -82,18 +82,14 @@ fn line_of(text: &str, byte: usize) -> usize {
 
 /// The line on which a key such as `bead.width` stands.
 fn line_of_key(text: &str, key: &str) -> usize {
-    let (section, name) = key.split_once('.').unwrap_or(("", key));
-    let name = name.split('[').next().unwrap_or(name);
-    let mut current = String::new();
-    for (i, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if let Some(header) = line.strip_prefix('[').and_then(|l| l.split(']').next()) {
-            current = header.trim().to_owned();
-        } else if current == section && line.split('=').next().is_some_and(|k| k.trim() == name) {
-            return i + 1;
-        }
+    let Ok(root) = toml::de::DeTable::parse(text) else { return 1 };
+    let (mut table, mut at) = (Some(root.get_ref()), 0);
+    for part in key.split('.') {
+        let Some((key, value)) = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref() == part)) else { break };
+        at = key.span().start;
+        table = value.get_ref().as_table();
     }
-    1
+    line_of(text, at)
 }
 
 /// Makes a sentence of the parser's message and finds the nearest word among those it expected.

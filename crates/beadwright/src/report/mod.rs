@@ -1,1 +1,95 @@
-//! Report
+//! Showing a plan: `report.html`, a page that needs no network, and the [picture](svg) of one layer.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | [`encode`] | the layers in compact form |
+//! | `tables` | totals, process, files and warnings as HTML |
+//! | [`svg`] | one layer as a standalone picture |
+//! | `page.html`, `page.css` | the page |
+//! | `layers.js`, `picture.js`, `page.js` | reading layers, drawing one, the controls |
+
+pub mod encode;
+pub mod svg;
+mod tables;
+
+use crate::model::RepairReport;
+use crate::plan::{Header, Layer, Pass, Summary};
+use crate::profile::Profile;
+use crate::template;
+use glam::DVec2;
+use serde_json::json;
+
+/// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
+#[derive(Debug, Clone)]
+pub struct Report {
+    header: Header,
+    layers: Vec<String>,
+}
+
+impl Report {
+    /// A report without layers yet.
+    pub fn new(header: &Header) -> Self {
+        Self { header: header.clone(), layers: Vec::with_capacity(header.layers.min(crate::plan::MAX_LAYERS)) }
+    }
+
+    /// Takes the next layer.
+    pub fn layer(&mut self, layer: &Layer) {
+        self.encoded(encode::layer(layer));
+    }
+
+    /// Takes the next layer, already [encoded](encode::layer).
+    pub fn encoded(&mut self, layer: String) {
+        self.layers.push(layer);
+    }
+
+    /// The page. `files` are the names of the files that were written.
+    pub fn finish(self, summary: &Summary, profile: &Profile, repair: &RepairReport, files: &[String]) -> String {
+        let header = &self.header;
+        let values = [
+            ("title", escape(&header.part)),
+            ("css", include_str!("page.css").to_owned()),
+            ("sentence", tables::sentence(header, summary, profile)),
+            ("state", tables::state(summary, repair)),
+            ("totals", tables::totals(summary)),
+            ("process", tables::process(header, profile)),
+            ("model", tables::model(repair)),
+            ("files", tables::files(files)),
+            ("warnings", tables::warnings(summary, repair)),
+            ("data", data(profile, &self.layers)),
+            ("js", [include_str!("layers.js"), include_str!("picture.js"), include_str!("page.js")].concat()),
+        ];
+        template::expand(include_str!("page.html"), &values)
+    }
+}
+
+/// What the scripts need, as JSON that may stand in a `script` element.
+fn data(profile: &Profile, layers: &[String]) -> String {
+    let bead = json!({ "width": profile.bead.width }).to_string().replace('<', "\\u003c");
+    // Base64 needs no escaping.
+    format!("{{\"bead\":{bead},\"layers\":[\n\"{}\"\n]}}", layers.join("\",\n\""))
+}
+
+/// Moves without arc within a layer: from the end of a pass to the start of the next.
+fn travels(layer: &Layer) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+    let passes: Vec<&Pass> = layer.passes.iter().filter(|pass| !pass.points.is_empty()).collect();
+    let ends: Vec<_> = passes.windows(2).filter_map(|w| Some((w[0].end()?, w[1].start()?))).collect();
+    ends.into_iter().map(|(from, to)| (from.truncate(), to.truncate()))
+}
+
+/// Text for HTML and XML, in elements and in attributes.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            // Control characters may not stand in XML.
+            c if c.is_control() && !c.is_whitespace() => escaped.push('\u{fffd}'),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

@@ -43,7 +43,7 @@ struct Reader {
 
 impl Reader {
     fn block(&mut self, words: &[(char, f64)], line: &str) {
-        if words.iter().any(|w| *w == ('G', 4.0)) {
+        if words.contains(&('G', 4.0)) {
             return;
         }
         let mut moves = false;

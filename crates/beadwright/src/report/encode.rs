@@ -1,0 +1,146 @@
+//! The compact form of a layer in `report.html`: base64 of a fixed head and a deflated body.
+//!
+//! The head is [`HEAD`] numbers (f64, little-endian), so that the page can draw its chart without inflating anything:
+//! z, height, slice area, planned area, deposited length, arc time, travel length, passes, warnings, lowest x and y,
+//! size in x and y, resolution, points. The body is a table of u32, the points and the warnings:
+//!
+//! | table | |
+//! | --- | --- |
+//! | `n` | number of u32 that follow |
+//! | islands, then for each: rings, points of each ring | outer ring first |
+//! | passes, then for each: kind + 256 if closed, points, width, speed | width in µm, speed in µm/s |
+//!
+//! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, from the lowest
+//! corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The rest is
+//! JSON: the warnings as `[x, y, text]`.
+
+use crate::fill::PassKind;
+use crate::plan::{Layer, Pass};
+use crate::warning::{Warning, WarningKind};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
+use glam::{DVec2, I64Vec2};
+use planar::{Bounds, Polygon, Ring};
+use std::io::Write;
+
+/// Numbers in the head; 15 × 8 bytes are 160 characters of base64, with nothing left over.
+pub const HEAD: usize = 15;
+
+/// Coordinates are at least this coarse, mm.
+const FINEST: f64 = 0.01;
+
+/// A layer spans at most this many units, so that every difference fits in an Int16.
+const SPAN: f64 = 32_000.0;
+
+/// Warnings of one layer that are told singly.
+const MOST_WARNINGS: usize = 30;
+
+/// One layer as base64. It knows nothing of other layers, so callers may encode several at a time.
+pub fn layer(layer: &Layer) -> String {
+    let bounds = Bounds::of(points(layer)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+    let resolution = (bounds.size().max_element() / SPAN).max(FINEST);
+    let bytes = head(layer, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
+    STANDARD.encode(deflate(bytes, &body(layer, bounds.min, resolution)))
+}
+
+fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
+    let rings = layer.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
+    rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()))
+}
+
+fn head(layer: &Layer, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
+    let size = bounds.size();
+    [
+        layer.z,
+        layer.height,
+        layer.slice_area,
+        layer.planned_area,
+        layer.passes.iter().map(Pass::length).sum(),
+        layer.passes.iter().map(|pass| pass.length() / pass.speed).sum(),
+        super::travels(layer).map(|(from, to)| from.distance(to)).sum(),
+        layer.passes.len() as f64,
+        layer.warnings.len() as f64,
+        bounds.min.x,
+        bounds.min.y,
+        size.x,
+        size.y,
+        resolution,
+        points(layer).count() as f64,
+    ]
+}
+
+fn body(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<u8> {
+    let table = table(layer);
+    let mut bytes = Vec::with_capacity(4 * table.len() + 4 * points(layer).count() + 256);
+    bytes.extend((table.len() as u32).to_le_bytes());
+    bytes.extend(table.iter().flat_map(|v| v.to_le_bytes()));
+    let differences = differences(layer, origin, resolution);
+    bytes.extend(differences.iter().map(|d| d[0].to_le_bytes()[0]));
+    bytes.extend(differences.iter().map(|d| d[0].to_le_bytes()[1]));
+    bytes.extend(differences.iter().map(|d| d[1].to_le_bytes()[0]));
+    bytes.extend(differences.iter().map(|d| d[1].to_le_bytes()[1]));
+    bytes.extend(warnings(&layer.warnings).to_string().into_bytes());
+    bytes
+}
+
+fn table(layer: &Layer) -> Vec<u32> {
+    let mut table = vec![layer.islands.len() as u32];
+    for island in &layer.islands {
+        table.push(island.rings().count() as u32);
+        table.extend(island.rings().map(|ring| ring.points().len() as u32));
+    }
+    table.push(layer.passes.len() as u32);
+    for pass in &layer.passes {
+        let kind = kind(pass.kind) + if pass.closed { 256 } else { 0 };
+        table.extend([kind, pass.points.len() as u32, (pass.width * 1e3).round() as u32]);
+        table.push((pass.speed * 1e3).round() as u32);
+    }
+    table
+}
+
+/// The number of a kind in the page, where everything from 2 on is shown as "other".
+fn kind(kind: PassKind) -> u32 {
+    match kind {
+        PassKind::Contour => 0,
+        PassKind::Infill => 1,
+    }
+}
+
+fn differences(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<[i16; 2]> {
+    let mut last = I64Vec2::ZERO;
+    let step = |p: DVec2| {
+        let at = ((p - origin) / resolution).round().as_i64vec2();
+        let difference = at - std::mem::replace(&mut last, at);
+        [difference.x as i16, difference.y as i16]
+    };
+    points(layer).map(step).collect()
+}
+
+fn deflate(head: Vec<u8>, body: &[u8]) -> Vec<u8> {
+    let mut encoder = DeflateEncoder::new(head, Compression::fast());
+    // Writing into memory does not fail.
+    let written = encoder.write_all(body).and_then(|()| encoder.finish());
+    written.unwrap_or_default()
+}
+
+fn warnings(warnings: &[Warning]) -> serde_json::Value {
+    let round = |v: f64| (v * 100.0).round() / 100.0;
+    let told = warnings.iter().take(MOST_WARNINGS);
+    told.map(|w| serde_json::json!([round(w.place.x), round(w.place.y), short(w)])).collect()
+}
+
+/// A warning in a few words, without its place.
+fn short(warning: &Warning) -> String {
+    let size = warning.size;
+    match warning.kind {
+        WarningKind::GapClosed => format!("gap of {size:.3} mm bridged"),
+        WarningKind::OpenContourDropped => format!("open contour of {size:.1} mm dropped"),
+        WarningKind::ContoursUnited => format!("contours united, {size:.1} mm² changed"),
+        WarningKind::ThinFeature => format!("{size:.1} mm² narrower than a bead left empty"),
+        WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
+        WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
+        WarningKind::EmptyLayer => "nothing to deposit".to_owned(),
+    }
+}

@@ -1,0 +1,235 @@
+// Drawing one layer on a canvas.
+
+const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
+const CHUNKS = 240;
+
+const picture = document.getElementById("picture");
+const view = { scale: 1, x: 0, y: 0, width: 0, height: 0, fitted: true };
+const shown = { layer: null, index: 0, until: Infinity, byOrder: false, width: true, travels: true, ends: true, outline: true };
+let colours = {};
+
+function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  const names = ["stage", "slice", "outline", "travel", "contour", "infill", "other", "start", "end", "mark", "text", "soft", "accent", "line"];
+  colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
+  colours.kinds = [colours.contour, colours.infill, colours.other].map(hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16)));
+}
+
+const rgb = c => `rgb(${c.map(Math.round).join(" ")})`;
+const mix = (c, to, part) => c.map((v, i) => v + (to[i] - v) * part);
+const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
+
+function rampAt(part) {
+  const at = Math.min(Math.max(part, 0), 1) * (RAMP.length - 1), i = Math.min(Math.floor(at), RAMP.length - 2);
+  return mix(RAMP[i], RAMP[i + 1], at - i);
+}
+
+// The whole part in the middle; the same for all layers, so that they can be compared.
+const partBox = heads.reduce((b, h) => h.points ? {
+  left: Math.min(b.left, h.x), right: Math.max(b.right, h.x + h.sizeX),
+  low: Math.min(b.low, h.y), high: Math.max(b.high, h.y + h.sizeY),
+} : b, { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity });
+
+function fit() {
+  const b = partBox, room = data.bead.width, edge = 0.06 * Math.min(view.width, view.height);
+  const width = b.right - b.left + room, height = b.high - b.low + room;
+  view.scale = Math.min((view.width - 2 * edge) / width, (view.height - 2 * edge) / height);
+  view.x = view.width / 2 - view.scale * (b.left + b.right) / 2;
+  view.y = view.height / 2 + view.scale * (b.low + b.high) / 2;
+  view.fitted = true;
+}
+
+function zoom(factor, x, y) {
+  const scale = Math.min(Math.max(view.scale * factor, 1e-4), 2e3);
+  view.x = x + (view.x - x) * scale / view.scale;
+  view.y = y + (view.y - y) * scale / view.scale;
+  view.scale = scale;
+  view.fitted = false;
+}
+
+// The points of a pass between two times, with a point at each of the two.
+function between(pass, from, to) {
+  const { xy, times } = pass, path = new Path2D(), last = times.length - 1;
+  let i = 0;
+  for (let high = last; i < high;) {
+    const middle = (i + high) >> 1;
+    if (times[middle + 1] > from) high = middle; else i = middle + 1;
+  }
+  const [startX, startY] = pointAt(pass, i, from);
+  path.moveTo(startX, startY);
+  for (i++; i <= last && times[i] < to; i++) path.lineTo(xy[2 * i], xy[2 * i + 1]);
+  const end = i <= last ? pointAt(pass, i - 1, to) : [xy[2 * last], xy[2 * last + 1]];
+  path.lineTo(...end);
+  return { path, end };
+}
+
+function pointAt({ xy, times }, i, time) {
+  if (i + 1 >= times.length) return [xy[2 * i], xy[2 * i + 1]];
+  const step = times[i + 1] - times[i], part = step > 0 ? Math.min(Math.max((time - times[i]) / step, 0), 1) : 0;
+  return [0, 1].map(axis => xy[2 * i + axis] + part * (xy[2 * i + 2 + axis] - xy[2 * i + axis]));
+}
+
+function pathOf(points, path = new Path2D()) {
+  for (let i = 0; i < points.length; i += 2) i ? path.lineTo(points[i], points[i + 1]) : path.moveTo(points[0], points[1]);
+  return path;
+}
+
+// What of a pass is to be drawn, as paths with a colour each.
+function strokes(pass, layer) {
+  const until = Math.min(pass.end, shown.until);
+  if (!shown.byOrder) {
+    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: colours.kinds[pass.kind] }];
+    return [{ path: between(pass, pass.start, until).path, colour: colours.kinds[pass.kind] }];
+  }
+  const step = layer.seconds / CHUNKS || 1, list = [];
+  const count = Math.max(1, Math.round((pass.end - pass.start) / step)), chunk = (pass.end - pass.start) / count;
+  for (let k = 0; k < count; k++) {
+    const from = pass.start + k * chunk, to = Math.min(from + chunk, until);
+    if (k && from >= until) break;
+    list.push({ path: between(pass, from, to).path, colour: rampAt((from + to) / 2 / layer.seconds) });
+  }
+  return list;
+}
+
+// A bead looks round: on a dark stroke lie ever narrower and lighter ones.
+function drawBeads(ctx, passes, layer) {
+  const pixel = 1 / view.scale;
+  for (const pass of passes) {
+    const parts = strokes(pass, layer), wide = pass.width;
+    const stroke = (width, colour) => {
+      ctx.lineWidth = width;
+      for (const part of parts) {
+        ctx.strokeStyle = rgb(colour(part.colour));
+        ctx.stroke(part.path);
+      }
+    };
+    if (!shown.width) {
+      stroke(1.6 * pixel, c => c);
+      continue;
+    }
+    stroke(wide, c => mix(c, BLACK, 0.34));
+    const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), 9);
+    for (let k = 0; k < rings; k++) {
+      const part = k / (rings - 1), width = (1 - part) * Math.max(wide - 1.6 * pixel, 0.85 * wide) + part * 0.22 * wide;
+      stroke(width, c => part < 0.4 ? mix(c, BLACK, 0.12 - 0.3 * part) : mix(c, WHITE, 0.4 * (part - 0.4)));
+    }
+  }
+}
+
+function drawTravels(ctx, passes) {
+  const pixel = 1 / view.scale, path = new Path2D();
+  for (let i = 1; i < passes.length; i++) {
+    const a = passes[i - 1].xy, b = passes[i].xy;
+    path.moveTo(a[a.length - 2], a[a.length - 1]);
+    path.lineTo(b[0], b[1]);
+  }
+  for (const [width, colour] of [[3, colours.stage], [1.3, colours.text]]) {
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width * pixel;
+    ctx.setLineDash([6 * pixel, 5 * pixel]);
+    ctx.stroke(path);
+  }
+  ctx.setLineDash([]);
+}
+
+function dot(ctx, x, y, radius, colour) {
+  ctx.beginPath();
+  ctx.arc(x, y, radius, 0, 2 * Math.PI);
+  ctx.fillStyle = colour;
+  ctx.fill();
+}
+
+function drawEnds(ctx, passes) {
+  const pixel = 1 / view.scale;
+  const ends = passes.filter(pass => pass.end <= shown.until);
+  const mark = (x, y, radius, colour) => {
+    dot(ctx, x, y, (radius + 1.2) * pixel, "#ffffff");
+    dot(ctx, x, y, radius * pixel, colour);
+  };
+  for (const { xy } of ends) mark(xy[xy.length - 2], xy[xy.length - 1], 5, colours.end);
+  for (const { xy } of passes) mark(xy[0], xy[1], 3.2, colours.start);
+}
+
+function drawTorch(ctx, pass) {
+  const pixel = 1 / view.scale, [x, y] = between(pass, pass.start, shown.until).end;
+  dot(ctx, x, y, 9 * pixel, "rgb(255 255 255 / 75%)");
+  dot(ctx, x, y, 5 * pixel, "#15181d");
+}
+
+function drawWarnings(ctx, warnings) {
+  const size = 9 / view.scale;
+  for (const [x, y] of warnings) {
+    ctx.beginPath();
+    ctx.moveTo(x, y + size);
+    ctx.lineTo(x + size, y - 0.7 * size);
+    ctx.lineTo(x - size, y - 0.7 * size);
+    ctx.closePath();
+    ctx.fillStyle = colours.stage;
+    ctx.strokeStyle = colours.mark;
+    ctx.lineWidth = 2.2 / view.scale;
+    ctx.fill();
+    ctx.stroke();
+  }
+}
+
+function drawScaleBar(ctx) {
+  const most = 140 / view.scale, power = 10 ** Math.floor(Math.log10(most));
+  const length = [5, 2, 1].find(f => f * power <= most) * power, x = 16, y = view.height - 16, end = x + length * view.scale;
+  const text = `${Number(length.toPrecision(1))} mm`;
+  for (const [width, colour] of [[4, colours.stage], [1.6, colours.text]]) {
+    ctx.beginPath();
+    for (const at of [x, end]) { ctx.moveTo(at, y - 5); ctx.lineTo(at, y + 5); }
+    ctx.moveTo(x, y);
+    ctx.lineTo(end, y);
+    ctx.strokeStyle = colour;
+    ctx.lineWidth = width;
+    ctx.stroke();
+  }
+  ctx.font = "600 13px system-ui, sans-serif";
+  ctx.textAlign = "center";
+  ctx.lineWidth = 4;
+  ctx.strokeStyle = colours.stage;
+  ctx.strokeText(text, (x + end) / 2, y - 9);
+  ctx.fillStyle = colours.text;
+  ctx.fillText(text, (x + end) / 2, y - 9);
+}
+
+function draw() {
+  const ctx = picture.getContext("2d"), ratio = picture.width / view.width || 1, layer = shown.layer;
+  ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+  ctx.fillStyle = colours.stage;
+  ctx.fillRect(0, 0, view.width, view.height);
+  if (!layer) return;
+  ctx.setTransform(ratio * view.scale, 0, 0, -ratio * view.scale, ratio * view.x, ratio * view.y);
+  ctx.lineCap = ctx.lineJoin = "round";
+  layer.outline ??= layer.islands.flat().reduce((path, ring) => pathOf(ring, path), new Path2D());
+  ctx.fillStyle = colours.slice;
+  ctx.fill(layer.outline, "evenodd");
+  const passes = layer.passes.filter(pass => pass.xy.length && (pass.start < shown.until || pass.end <= shown.until));
+  drawBeads(ctx, passes, layer);
+  if (shown.outline) {
+    ctx.strokeStyle = colours.outline;
+    ctx.lineWidth = 1.4 / view.scale;
+    ctx.stroke(layer.outline);
+  }
+  if (shown.travels) drawTravels(ctx, passes);
+  if (shown.ends) drawEnds(ctx, passes);
+  drawWarnings(ctx, layer.warnings);
+  const last = passes.at(-1);
+  if (last && shown.until < layer.seconds) drawTorch(ctx, last);
+  ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+  drawScaleBar(ctx);
+}
+
+let waiting = 0;
+function redraw() {
+  waiting ||= requestAnimationFrame(() => { waiting = 0; draw(); });
+}
+
+function resizeCanvas(canvas, width, height) {
+  const ratio = window.devicePixelRatio || 1;
+  canvas.style.height = `${height}px`;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+}
+

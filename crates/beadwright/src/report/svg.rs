@@ -1,0 +1,207 @@
+//! One layer as a standalone SVG picture, in millimetres.
+
+use super::{escape, travels};
+use crate::fill::PassKind;
+use crate::number::push_fixed;
+use crate::plan::{Layer, Pass};
+use glam::DVec2;
+use planar::{Bounds, Polygon, Ring};
+
+/// Colour of what is for the contour.
+const CONTOUR: &str = "#1f6fd6";
+/// Colour of what is inside.
+const INFILL: &str = "#e8862a";
+/// Colour of moves without arc.
+const TRAVEL: &str = "#6b7280";
+/// Colour of arc starts.
+const START: &str = "#1a9c4b";
+/// Colour of arc ends.
+const END: &str = "#d92d3a";
+
+/// Text and lines scale with the picture: one unit is this part of its larger side.
+const UNITS: f64 = 100.0;
+/// Room for the legend, in units.
+const LEGEND_WIDTH: f64 = 74.0;
+
+/// The picture of a layer, y upwards.
+pub fn layer(layer: &Layer, title: &str) -> String {
+    let frame = Frame::of(layer);
+    let mut svg = frame.open(title);
+    islands(&mut svg, layer, frame.unit);
+    beads(&mut svg, layer, frame.unit);
+    marks(&mut svg, layer, frame.unit);
+    frame.legend(&mut svg);
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Where things stand; y already runs downwards.
+struct Frame {
+    low: DVec2,
+    size: DVec2,
+    unit: f64,
+}
+
+impl Frame {
+    fn of(layer: &Layer) -> Self {
+        let rings = layer.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
+        let points = rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()));
+        let bounds = Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
+        let bead = layer.passes.iter().map(|pass| pass.width).fold(0.0, f64::max);
+        let part = bounds.size() + bead;
+        let unit = part.max_element().max(1e-3) / UNITS;
+        let size = DVec2::new(part.x.max(LEGEND_WIDTH * unit) + 8.0 * unit, part.y + 22.0 * unit);
+        let center = DVec2::new(bounds.center().x, -bounds.center().y);
+        let low = center - DVec2::new(size.x / 2.0, part.y / 2.0 + 11.0 * unit);
+        Self { low, size, unit }
+    }
+
+    fn open(&self, title: &str) -> String {
+        let (low, size, unit, title) = (self.low, self.size, self.unit, escape(title));
+        let mut svg = String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"");
+        push_numbers(&mut svg, &[low.x, low.y, size.x, size.y], ' ');
+        svg.push_str("\" font-family=\"system-ui, sans-serif\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n");
+        svg.push_str(&format!("<title>{title}</title>\n<rect"));
+        attributes(&mut svg, &[("x", low.x), ("y", low.y), ("width", size.x), ("height", size.y)]);
+        svg.push_str(" fill=\"#ffffff\"/>\n");
+        text(&mut svg, low + DVec2::new(4.0, 6.0) * unit, 3.4 * unit, &format!("font-weight=\"600\">{title}"));
+        svg
+    }
+
+    /// Colours and a scale bar below the picture.
+    fn legend(&self, svg: &mut String) {
+        let (unit, y) = (self.unit, self.low.y + self.size.y - 4.0 * self.unit);
+        let mut at = DVec2::new(self.low.x + 4.0 * unit, y);
+        let kinds = [("contour", CONTOUR, 11.0), ("infill", INFILL, 8.6), ("travel", TRAVEL, 8.8)];
+        for (name, colour, width) in kinds {
+            let (thick, dash) = if name == "travel" { (0.35, "1.4 0.9") } else { (1.8, "none") };
+            line(svg, at - DVec2::Y * 0.8 * unit, at + DVec2::new(3.0, -0.8) * unit, thick * unit);
+            let dash = if dash == "none" { String::new() } else { dashes(unit) };
+            svg.push_str(&format!(" stroke=\"{colour}\"{dash}/>\n"));
+            text(svg, at + DVec2::X * 4.6 * unit, 2.2 * unit, &format!(">{name}"));
+            at.x += (width + 4.6) * unit;
+        }
+        for (name, colour) in [("arc start", START), ("arc end", END)] {
+            dot(svg, at + DVec2::new(0.8, -0.8) * unit, 0.9 * unit, colour);
+            text(svg, at + DVec2::X * 2.4 * unit, 2.2 * unit, &format!(">{name}"));
+            at.x += 12.6 * unit;
+        }
+        self.scale_bar(svg);
+    }
+
+    fn scale_bar(&self, svg: &mut String) {
+        let (unit, length) = (self.unit, round_length(20.0 * self.unit));
+        let right = self.low + DVec2::new(self.size.x - 4.0 * unit, 6.0 * unit);
+        let left = right - DVec2::X * length;
+        let tick = DVec2::Y * 0.8 * unit;
+        for (a, b) in [(left, right), (left - tick, left + tick), (right - tick, right + tick)] {
+            line(svg, a, b, 0.35 * unit);
+            svg.push_str(" stroke=\"#111827\"/>\n");
+        }
+        let middle = (left + right) / 2.0 - DVec2::Y * 1.2 * unit;
+        text(svg, middle, 2.2 * unit, &format!("text-anchor=\"middle\">{length} mm"));
+    }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above `length`.
+fn round_length(length: f64) -> f64 {
+    let power = 10_f64.powf(length.log10().floor());
+    [5.0, 2.0].into_iter().find(|f| f * power <= length).unwrap_or(1.0) * power
+}
+
+fn islands(svg: &mut String, layer: &Layer, unit: f64) {
+    svg.push_str("<path fill=\"#e5e7eb\" fill-rule=\"evenodd\" stroke=\"#6b7280\" stroke-width=\"");
+    push_fixed(svg, 0.2 * unit, 3);
+    svg.push_str("\" d=\"");
+    for ring in layer.islands.iter().flat_map(Polygon::rings) {
+        path(svg, ring.points().iter().copied(), true);
+    }
+    svg.push_str("\"/>\n");
+}
+
+fn beads(svg: &mut String, layer: &Layer, unit: f64) {
+    for pass in &layer.passes {
+        stroke(svg, pass, pass.width, " stroke-opacity=\"0.45\"");
+    }
+    for pass in &layer.passes {
+        stroke(svg, pass, 0.25 * unit, "");
+    }
+}
+
+fn stroke(svg: &mut String, pass: &Pass, width: f64, more: &str) {
+    let colour = match pass.kind {
+        PassKind::Contour => CONTOUR,
+        PassKind::Infill => INFILL,
+    };
+    svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
+    push_fixed(svg, width, 3);
+    svg.push_str("\" d=\"");
+    path(svg, pass.points.iter().map(|p| p.truncate()), pass.closed);
+    svg.push_str("\"/>\n");
+}
+
+fn marks(svg: &mut String, layer: &Layer, unit: f64) {
+    let flip = |p: DVec2| DVec2::new(p.x, -p.y);
+    for (from, to) in travels(layer) {
+        line(svg, flip(from), flip(to), 0.25 * unit);
+        svg.push_str(&format!(" stroke=\"{TRAVEL}\"{}/>\n", dashes(unit)));
+    }
+    // On closed passes both fall together: the start stands on the end.
+    for pass in &layer.passes {
+        let at = |p: Option<glam::DVec3>| p.map(|p| flip(p.truncate()));
+        at(pass.end()).into_iter().for_each(|p| dot(svg, p, 0.75 * unit, END));
+        at(pass.start()).into_iter().for_each(|p| dot(svg, p, 0.5 * unit, START));
+    }
+}
+
+fn path(svg: &mut String, points: impl Iterator<Item = DVec2>, closed: bool) {
+    for (i, p) in points.enumerate() {
+        svg.push(if i == 0 { 'M' } else { 'L' });
+        push_numbers(svg, &[p.x, -p.y], ' ');
+    }
+    if closed {
+        svg.push('Z');
+    }
+}
+
+/// A line without its colour and its end.
+fn line(svg: &mut String, a: DVec2, b: DVec2, width: f64) {
+    svg.push_str("<line");
+    attributes(svg, &[("x1", a.x), ("y1", a.y), ("x2", b.x), ("y2", b.y), ("stroke-width", width)]);
+}
+
+fn dashes(unit: f64) -> String {
+    let mut text = String::from(" stroke-dasharray=\"");
+    push_numbers(&mut text, &[0.9 * unit, 0.8 * unit], ' ');
+    text + "\""
+}
+
+fn dot(svg: &mut String, center: DVec2, radius: f64, colour: &str) {
+    svg.push_str("<circle");
+    attributes(svg, &[("cx", center.x), ("cy", center.y), ("r", radius)]);
+    svg.push_str(&format!(" fill=\"{colour}\"/>\n"));
+}
+
+/// `rest` is what stands from the last attributes on, escaped.
+fn text(svg: &mut String, at: DVec2, size: f64, rest: &str) {
+    svg.push_str("<text");
+    attributes(svg, &[("x", at.x), ("y", at.y), ("font-size", size)]);
+    svg.push_str(&format!(" fill=\"#111827\" {rest}</text>\n"));
+}
+
+fn attributes(svg: &mut String, values: &[(&str, f64)]) {
+    for (name, value) in values {
+        svg.push_str(&format!(" {name}=\""));
+        push_fixed(svg, *value, 3);
+        svg.push('"');
+    }
+}
+
+fn push_numbers(svg: &mut String, values: &[f64], between: char) {
+    for (i, value) in values.iter().enumerate() {
+        if i > 0 {
+            svg.push(between);
+        }
+        push_fixed(svg, *value, 3);
+    }
+}

@@ -1,0 +1,177 @@
+//! The words and tables of the page, as HTML.
+
+use super::escape;
+use crate::bead::Overlap;
+use crate::fill::{ContourOrder, RasterSpacing};
+use crate::metrics::Metrics;
+use crate::model::RepairReport;
+use crate::plan::{Header, Summary};
+use crate::profile::{Profile, RasterTurn};
+
+/// One sentence about the whole plan.
+pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
+    let m = &summary.metrics;
+    format!(
+        "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
+        count(m.layers, "layer", "layers"),
+        count(m.passes, "pass", "passes"),
+        escape(&header.strategy),
+        metres(m.deposited_length_mm),
+        mass(m.wire_mass_kg),
+        escape(&profile.wire.material),
+        hours(m.total_time_s)
+    )
+}
+
+/// The badge beside the heading.
+pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
+    match remarks(summary, repair).len() {
+        0 => "<a class=\"badge good\" href=\"#warnings\">Nothing was lost</a>".to_owned(),
+        n => format!("<a class=\"badge warn\" href=\"#warnings\">{}</a>", count(n, "remark", "remarks")),
+    }
+}
+
+/// The totals of the plan.
+pub(super) fn totals(summary: &Summary) -> String {
+    let m: &Metrics = &summary.metrics;
+    let mut rows = vec![
+        ("Layers", m.layers.to_string()),
+        ("Passes", m.passes.to_string()),
+        ("Arc starts", m.arc_starts.to_string()),
+        ("Deposited length", metres(m.deposited_length_mm)),
+        ("Travel length", metres(m.travel_length_mm)),
+        ("Arc time", hours(m.arc_time_s)),
+        ("Total time", hours(m.total_time_s)),
+        ("Wire", format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
+    ];
+    rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
+    rows.push(("Part volume", volume(m.part_volume_mm3)));
+    rows.push(("Deposited volume", volume(m.deposited_volume_mm3)));
+    rows.push(("Planned / slice area", format!("{:.2} %", 100.0 * m.coverage())));
+    table(&rows)
+}
+
+/// The values of the profile that a welder sets or checks.
+pub(super) fn process(header: &Header, profile: &Profile) -> String {
+    let Profile { wire, process: p, bead, layers, fill, travel, .. } = profile;
+    let mut rows = vec![
+        ("Profile", header.profile.clone()),
+        ("Wire", format!("{}, ⌀ {} mm, {} g/cm³", wire.material, wire.diameter, wire.density)),
+        ("Wire feed speed", format!("{} m/min", p.wire_feed_speed)),
+        ("Deposition speed", format!("{} mm/s", p.deposition_speed)),
+    ];
+    rows.extend(p.current.map(|current| ("Current", format!("{current} A"))));
+    rows.extend(p.voltage.map(|voltage| ("Voltage", format!("{voltage} V"))));
+    rows.extend([
+        ("Bead", format!("{} mm wide, {} mm high", bead.width, bead.height)),
+        ("Layer height", format!("{} mm", layers.height)),
+        ("Stepover", format!("{:.2} mm ({})", profile.stepover(), overlap(fill.overlap))),
+        ("Strategy", strategy(&header.strategy, profile)),
+    ]);
+    if fill.machining_allowance != 0.0 {
+        rows.push(("Machining allowance", format!("{} mm", fill.machining_allowance)));
+    }
+    rows.extend([
+        ("Shielding gas", format!("{}, {} L/min", p.gas, p.gas_flow)),
+        ("Gas before / after the arc", format!("{} s / {} s", p.gas_preflow, p.gas_postflow)),
+        ("Wait at arc start / end", format!("{} s / {} s", p.arc_start_delay, p.arc_end_delay)),
+        ("Contact tip to work", format!("{} mm", p.ctwd)),
+        ("Travel", format!("{} mm/s, {} mm above the layer", travel.speed, travel.clearance)),
+    ]);
+    table(&rows)
+}
+
+fn overlap(overlap: Overlap) -> &'static str {
+    match overlap {
+        Overlap::Tangent => "tangent overlap",
+        Overlap::InclinedFlatTop => "inclined flat top",
+        Overlap::Free => "given",
+    }
+}
+
+fn strategy(name: &str, profile: &Profile) -> String {
+    let fill = &profile.fill;
+    let order = match fill.contour_order {
+        ContourOrder::OutsideIn => "outside in",
+        ContourOrder::InsideOut => "inside out",
+    };
+    let spacing = match fill.raster_spacing {
+        RasterSpacing::Even => "evenly spread",
+        RasterSpacing::Exact => "one stepover apart",
+    };
+    let turn = match fill.raster_turn {
+        RasterTurn::Fixed => String::new(),
+        RasterTurn::Alternate => ", turned by 90° on every second layer".to_owned(),
+        RasterTurn::Increment => format!(", turned by {}° a layer", fill.raster_increment),
+    };
+    let raster = format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle);
+    match name {
+        "contour" => format!("contour, {order}"),
+        "compound" => {
+            format!("compound, {} {order}, {raster}", count(fill.perimeters as usize, "perimeter", "perimeters"))
+        }
+        _ => format!("{name}, {raster}"),
+    }
+}
+
+/// What the model consists of.
+pub(super) fn model(repair: &RepairReport) -> String {
+    let closed = if repair.open_edges == 0 { "closed" } else { "with holes" };
+    table(&[
+        ("Triangles", repair.triangles.to_string()),
+        ("Surfaces", format!("{}, {closed}", repair.shells)),
+        ("Mended", if repair.is_clean() { "nothing had to be" } else { "see below" }.to_owned()),
+    ])
+}
+
+/// The names of the files that were written.
+pub(super) fn files(files: &[String]) -> String {
+    let items = files.iter().map(|name| format!("<li>{}</li>", escape(name))).collect::<Vec<_>>().join("\n");
+    format!("<ul class=\"files\">\n{items}\n</ul>")
+}
+
+/// Everything that was mended, lost or does not fit, or that there is none of it.
+pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
+    let item = |(source, text): &(&str, String)| format!("<li><b>{source}</b> {}</li>", escape(text));
+    let items: Vec<String> = remarks(summary, repair).iter().map(item).collect();
+    if items.is_empty() {
+        return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
+                of the profile fit together.</p>"
+            .to_owned();
+    }
+    format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
+}
+
+/// Where a remark comes from, and the remark.
+fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<(&'static str, String)> {
+    let model = repair.sentences().into_iter().map(|s| ("Model", s));
+    let layers = summary.warnings.summaries().map(|w| ("Layers", w.sentence()));
+    let process = summary.notes.iter().map(|s| ("Process", s.clone()));
+    model.chain(layers).chain(process).collect()
+}
+
+fn table(rows: &[(&str, String)]) -> String {
+    let row = |(name, value): &(&str, String)| format!("<tr><th>{name}</th><td>{}</td></tr>", escape(value));
+    format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
+}
+
+fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn metres(mm: f64) -> String {
+    format!("{:.2} m", mm / 1000.0)
+}
+
+fn mass(kg: f64) -> String {
+    if kg < 0.1 { format!("{:.1} g", kg * 1000.0) } else { format!("{kg:.3} kg") }
+}
+
+fn volume(mm3: f64) -> String {
+    format!("{:.2} cm³", mm3 / 1000.0)
+}
+
+fn hours(seconds: f64) -> String {
+    let s = seconds.round() as u64;
+    format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)
+}
