@@ -120,7 +120,7 @@ pub(super) fn model(repair: &RepairReport) -> String {
     table(&[
         ("Triangles", repair.triangles.to_string()),
         ("Surfaces", format!("{}, {closed}", repair.shells)),
-        ("Mended", if repair.is_clean() { "nothing had to be" } else { "see below" }.to_owned()),
+        ("Mended", if repair.is_clean() { "nothing had to be" } else { "see the warnings" }.to_owned()),
     ])
 }
 
@@ -145,7 +145,7 @@ pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
 /// Where a remark comes from, and the remark.
 fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<(&'static str, String)> {
     let model = repair.sentences().into_iter().map(|s| ("Model", s));
-    let layers = summary.warnings.summaries().map(|w| ("Layers", w.sentence()));
+    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence()));
     let process = summary.notes.iter().map(|s| ("Process", s.clone()));
     model.chain(layers).chain(process).collect()
 }
