@@ -181,10 +181,7 @@ fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("arc time", hours(m.arc_time_s)),
         ("total time", hours(m.total_time_s)),
         ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
-        (
-            "deposited / part",
-            format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3),
-        ),
+        ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
         ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));

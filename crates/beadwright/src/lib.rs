@@ -31,12 +31,14 @@
 //! ```
 
 pub mod bead;
+pub mod deposit;
 pub mod example;
 pub mod fill;
 pub mod metrics;
 pub mod model;
 pub mod number;
 pub mod order;
+pub mod pass;
 pub mod plan;
 pub mod plan_file;
 pub mod post;

@@ -46,7 +46,8 @@ pub struct Metrics {
 /// What the totals need from the profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Rates {
-    bead_area: f64,
+    /// Metal laid, mm³/s.
+    metal: f64,
     travel_speed: f64,
     clearance: f64,
     delay: f64,
@@ -59,7 +60,7 @@ impl Metrics {
     pub fn new(profile: &Profile) -> Self {
         let process = &profile.process;
         let rates = Rates {
-            bead_area: profile.bead().area(),
+            metal: profile.bead().area() * process.deposition_speed,
             travel_speed: profile.travel.speed,
             clearance: profile.travel.clearance,
             delay: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
@@ -95,12 +96,12 @@ impl Metrics {
         for pass in &layer.passes {
             let (Some(start), Some(end)) = (pass.start(), pass.end()) else { continue };
             let travel = self.torch.map_or(0.0, |from| travel_length(from, start, self.rates.clearance));
-            let (length, seconds) = (pass.length(), pass.length() / pass.speed);
+            let (length, seconds) = (pass.length(), pass.seconds());
             let wire = self.rates.wire_feed_speed * seconds;
             self.passes += 1;
             self.arc_starts += 1;
             self.deposited_length_mm += length;
-            self.deposited_volume_mm3 += length * self.rates.bead_area;
+            self.deposited_volume_mm3 += seconds * self.rates.metal;
             self.travel_length_mm += travel;
             self.arc_time_s += seconds;
             self.total_time_s += seconds + travel / self.rates.travel_speed + self.rates.delay;

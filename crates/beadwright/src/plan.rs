@@ -3,57 +3,20 @@
 //! [`plan_layers`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
 //! needs the memory of the mesh plus [`BATCH`](crate::slice::BATCH) layers. [`plan`] collects the layers.
 
-use crate::fill::{self, Fill, FillSettings, Pass as Path, PassKind, Strategy};
+use crate::deposit::{DepositSettings, Nominal, Subject};
+use crate::fill::{self, Fill, FillSettings, Pass as Path, Strategy};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::order;
+pub use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
 use crate::slice::{Layer as Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use planar::{Join, Polygon, Region};
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// One path with the arc on, in the part's space.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pass {
-    /// What it is for.
-    pub kind: PassKind,
-    /// Whether it ends where it began; the first point is then not repeated.
-    pub closed: bool,
-    /// Torch tool points, mm; z is the top of the layer.
-    pub points: Vec<DVec3>,
-    /// Bead width, mm.
-    pub width: f64,
-    /// Deposition speed, mm/s.
-    pub speed: f64,
-}
-
-impl Pass {
-    /// All points in order, the first one again at the end of a closed pass.
-    pub fn path(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.points.iter().chain(self.closed.then(|| self.points.first()).flatten()).copied()
-    }
-
-    /// Where the arc starts.
-    pub fn start(&self) -> Option<DVec3> {
-        self.points.first().copied()
-    }
-
-    /// Where the arc ends.
-    pub fn end(&self) -> Option<DVec3> {
-        if self.closed { self.points.first().copied() } else { self.points.last().copied() }
-    }
-
-    /// Deposited length, mm.
-    pub fn length(&self) -> f64 {
-        let mut path = self.path();
-        let Some(mut at) = path.next() else { return 0.0 };
-        path.map(|p| std::mem::replace(&mut at, p).distance(p)).sum()
-    }
-}
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -74,6 +37,20 @@ pub struct Layer {
     pub planned_area: f64,
     /// What was lost or mended here.
     pub warnings: Vec<Warning>,
+}
+
+impl Layer {
+    /// What the deposit model judges.
+    pub fn subject(&self) -> Subject<'_> {
+        Subject { layer: self.index, islands: &self.islands, passes: &self.passes }
+    }
+}
+
+/// The deposit model's settings for plans made with a profile.
+pub fn deposit_settings(profile: &Profile) -> DepositSettings {
+    let (bead, speed) = (profile.bead(), profile.process.deposition_speed);
+    let nominal = Nominal { bead, speed, rise: bead.rise(profile.stepover()) };
+    DepositSettings::new(nominal, profile.fill.machining_allowance)
 }
 
 /// What is the same for all layers of a plan.
@@ -346,8 +323,8 @@ impl<S: Sink> Emitter<'_, S> {
             kind: path.kind,
             closed: path.closed,
             points: path.points.into_iter().map(|p| p.extend(z)).collect(),
-            width,
-            speed,
+            width: Along::Same(width),
+            speed: Along::Same(speed),
         };
         let passes = order::order(fills, &mut self.torch).into_iter().map(lift).collect();
         warnings.iter().for_each(|w| self.warnings.add(*w));

@@ -1,7 +1,7 @@
 //! plan.json, version 1: the plan as text, written layer by layer.
 
 use crate::number::push_fixed;
-use crate::plan::{Header, Layer, Pass};
+use crate::plan::{Along, Header, Layer, Pass};
 use planar::Ring;
 use serde_json::json;
 
@@ -50,10 +50,17 @@ fn pass(text: &mut String, pass: &Pass) {
     text.push_str(&format!("{{\"kind\":\"{}\",\"closed\":{},\"points\":", pass.kind.name(), pass.closed));
     list(text, &pass.points, |text, p| numbers(text, &p.to_array()));
     text.push_str(",\"width\":");
-    push_fixed(text, pass.width, DECIMALS);
+    along(text, &pass.width);
     text.push_str(",\"speed\":");
-    push_fixed(text, pass.speed, DECIMALS);
+    along(text, &pass.speed);
     text.push('}');
+}
+
+fn along(text: &mut String, along: &Along) {
+    match along {
+        Along::Same(value) => push_fixed(text, *value, DECIMALS),
+        Along::Each(values) => numbers(text, values),
+    }
 }
 
 fn ring(text: &mut String, ring: &Ring) {

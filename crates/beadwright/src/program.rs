@@ -78,9 +78,9 @@ impl Programmer {
     }
 
     fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
-        let points = distinct(pass);
-        let [start, rest @ ..] = &points[..] else { return };
-        let (start, Some(&end)) = (*start, rest.last()) else { return };
+        let moves = distinct(pass);
+        let [(start, _), rest @ ..] = &moves[..] else { return };
+        let (start, Some(&(end, _))) = (*start, rest.last()) else { return };
         let top = self.torch.map_or(start.z, |from| from.z.max(start.z)) + self.clearance;
         // Up, across, down; the very first move has no place to rise from.
         let rise = self.torch.map(|from| from.with_z(top));
@@ -88,7 +88,7 @@ impl Programmer {
         out.extend(legs.map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
         let last = rest.len() - 1;
-        let weld = |(i, &to): (usize, &DVec3)| Instruction::Weld { to, speed: pass.speed, last: i == last };
+        let weld = |(i, &(to, speed)): (usize, &(DVec3, f64))| Instruction::Weld { to, speed, last: i == last };
         out.extend(rest.iter().enumerate().map(weld));
         out.push(Instruction::ArcOff { pass: number });
         self.torch = Some(end);
@@ -100,17 +100,20 @@ impl Programmer {
     }
 }
 
-/// The rounded points of a pass without those too close to the last one; the end point stays in any case.
-fn distinct(pass: &Pass) -> Vec<DVec3> {
+/// The rounded points of a pass and the speed on the way to each, without those too close to the last one; the end
+/// point stays in any case.
+fn distinct(pass: &Pass) -> Vec<(DVec3, f64)> {
     let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
-    let mut points: Vec<DVec3> = Vec::with_capacity(pass.points.len() + 1);
-    for p in pass.path().map(round) {
-        if points.last().is_none_or(|last| last.distance(p) >= MIN_MOVE_MM) {
-            points.push(p);
+    let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(pass.points.len() + 1);
+    let first = pass.start().map(|p| (p, pass.speed.at(0)));
+    for (to, speed) in first.into_iter().chain(pass.segments().map(|s| (s.to, s.speed))) {
+        let to = round(to);
+        if moves.last().is_none_or(|(last, _)| last.distance(to) >= MIN_MOVE_MM) {
+            moves.push((to, speed));
         }
     }
-    if let (Some(end), [_, .., last]) = (pass.end().map(round), &mut points[..]) {
-        *last = end;
+    if let (Some(end), [_, .., last]) = (pass.end().map(round), &mut moves[..]) {
+        last.0 = end;
     }
-    points
+    moves
 }

@@ -12,6 +12,8 @@ pub enum Stage {
     Slice,
     /// Laying passes into layers.
     Plan,
+    /// Working out what would be deposited.
+    Deposit,
 }
 
 impl Stage {
@@ -21,6 +23,7 @@ impl Stage {
             Self::Import => "import",
             Self::Slice => "slice",
             Self::Plan => "plan",
+            Self::Deposit => "deposit",
         }
     }
 }

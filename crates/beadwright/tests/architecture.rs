@@ -12,7 +12,8 @@ const ROWS: &[&[&str]] = &[
     &["slice"],
     &["bead"],
     &["fill"],
-    &["order"],
+    &["order", "pass"],
+    &["deposit"],
     // A profile holds the settings of all stages above; its limits know the names of posts.
     &["profile"],
     &["metrics", "plan"],

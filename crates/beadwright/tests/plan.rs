@@ -85,8 +85,8 @@ fn a_machining_allowance_moves_the_outermost_bead_outwards() {
 fn crossing(layer: &Layer) -> Option<(DVec2, DVec2)> {
     let mut segments: Vec<(usize, usize, DVec2, DVec2)> = Vec::new();
     for (k, pass) in layer.passes.iter().enumerate() {
-        let path: Vec<DVec2> = pass.path().map(|p| p.truncate()).collect();
-        segments.extend(path.windows(2).enumerate().map(|(i, w)| (k, i, w[0], w[1])));
+        let ends = pass.segments().map(|s| (s.from.truncate(), s.to.truncate()));
+        segments.extend(ends.enumerate().map(|(i, (from, to))| (k, i, from, to)));
     }
     segments.sort_by(|a, b| a.2.x.min(a.3.x).total_cmp(&b.2.x.min(b.3.x)));
     for (i, s) in segments.iter().enumerate() {

@@ -3,7 +3,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use beadwright::plan::{self, Layer, Pass, Plan};
+use beadwright::plan::{self, Along, Layer, Pass, Plan};
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
 use beadwright::report::{Report, encode, svg};
@@ -29,7 +29,7 @@ struct Decoded {
     head: Vec<f64>,
     rings: Vec<Vec<DVec2>>,
     /// Kind, closed, points, width, speed.
-    passes: Vec<(u32, bool, Vec<DVec2>, f64, f64)>,
+    passes: Vec<(u32, bool, Vec<DVec2>, Vec<[f64; 2]>)>,
     warnings: serde_json::Value,
 }
 
@@ -60,9 +60,11 @@ fn decode(text: &str) -> Decoded {
     }
     let mut passes = Vec::new();
     for _ in 0..next() {
-        let (kind, count, width, speed) = (next(), next(), next(), next());
+        let (flags, count) = (next(), next());
         let points = points.by_ref().take(count as usize).collect();
-        passes.push((kind & 255, kind > 255, points, f64::from(width) / 1e3, f64::from(speed) / 1e3));
+        let values = if flags & 512 > 0 { count } else { 1 };
+        let along = (0..values).map(|_| [next(), next()].map(|v| f64::from(v) / 1e3)).collect();
+        passes.push((flags & 255, flags & 256 > 0, points, along));
     }
     assert!(points.next().is_none() && table.next().is_none(), "something is left over");
     let warnings = serde_json::from_slice(&body[end + 4 * n..]).unwrap();
@@ -81,9 +83,11 @@ fn check_round_trip(layer: &Layer) {
     assert_eq!(decoded.rings.len(), rings.len());
     decoded.rings.iter().zip(rings).for_each(|(points, ring)| check(points, ring.points().to_vec()));
     assert_eq!(decoded.passes.len(), layer.passes.len());
-    for ((kind, closed, points, width, speed), pass) in decoded.passes.iter().zip(&layer.passes) {
+    for ((kind, closed, points, along), pass) in decoded.passes.iter().zip(&layer.passes) {
         assert_eq!((*kind == 0, *closed), (pass.kind == PassKind::Contour, pass.closed));
-        assert!((width - pass.width).abs() < 1e-3 && (speed - pass.speed).abs() < 1e-3);
+        for (i, [width, speed]) in along.iter().enumerate() {
+            assert!((width - pass.width.at(i)).abs() < 1e-3 && (speed - pass.speed.at(i)).abs() < 1e-3);
+        }
         check(points, pass.points.iter().map(|p| p.truncate()).collect());
     }
     let length: f64 = layer.passes.iter().map(Pass::length).sum();
@@ -98,7 +102,7 @@ fn square(size: f64) -> Layer {
     let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
     let pass = |kind, closed, points: &[DVec2]| {
         let points = points.iter().map(|p| p.extend(3.0)).collect();
-        Pass { kind, closed, points, width: 7.54, speed: 10.5 }
+        Pass { kind, closed, points, width: Along::Same(7.54), speed: Along::Same(10.5) }
     };
     let passes = vec![
         pass(PassKind::Contour, true, &corners),

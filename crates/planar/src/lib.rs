@@ -28,6 +28,7 @@ pub mod hull;
 pub mod offset;
 pub mod polyline;
 pub mod ring;
+mod rows;
 pub mod scan;
 pub mod triangulate;
 

@@ -8,14 +8,14 @@
 //! | --- | --- |
 //! | `n` | number of u32 that follow |
 //! | islands, then for each: rings, points of each ring | outer ring first |
-//! | passes, then for each: kind + 256 if closed, points, width, speed | width in µm, speed in µm/s |
+//! | passes, then for each: kind + 256 if closed + 512 if it varies, points, width, speed | width in µm, speed in µm/s; at every point if it varies |
 //!
 //! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, from the lowest
 //! corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The rest is
 //! JSON: the warnings as `[x, y, text]`.
 
 use crate::fill::PassKind;
-use crate::plan::{Layer, Pass};
+use crate::plan::{Along, Layer, Pass};
 use crate::warning::{Warning, WarningKind};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -58,7 +58,7 @@ fn head(layer: &Layer, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
         layer.slice_area,
         layer.planned_area,
         layer.passes.iter().map(Pass::length).sum(),
-        layer.passes.iter().map(|pass| pass.length() / pass.speed).sum(),
+        layer.passes.iter().map(Pass::seconds).sum(),
         super::travels(layer).map(|(from, to)| from.distance(to)).sum(),
         layer.passes.len() as f64,
         layer.warnings.len() as f64,
@@ -93,9 +93,12 @@ fn table(layer: &Layer) -> Vec<u32> {
     }
     table.push(layer.passes.len() as u32);
     for pass in &layer.passes {
-        let kind = kind(pass.kind) + if pass.closed { 256 } else { 0 };
-        table.extend([kind, pass.points.len() as u32, (pass.width * 1e3).round() as u32]);
-        table.push((pass.speed * 1e3).round() as u32);
+        let varies = matches!((&pass.width, &pass.speed), (Along::Each(_), _) | (_, Along::Each(_)));
+        let flags = if pass.closed { 256 } else { 0 } + if varies { 512 } else { 0 };
+        table.extend([kind(pass.kind) + flags, pass.points.len() as u32]);
+        for i in 0..if varies { pass.points.len() } else { 1 } {
+            table.extend([&pass.width, &pass.speed].map(|along| (along.at(i) * 1e3).round() as u32));
+        }
     }
     table
 }

@@ -43,19 +43,28 @@ async function readLayer(text, head) {
   };
   const list = read => Array.from({ length: next() }, read);
   const islands = list(() => list(next)).map(rings => rings.map(count => path(count, true)));
-  const passes = list(() => [next(), next(), next() / 1e3, next() / 1e3])
-    .map(([kind, count, width, speed]) => ({ kind: Math.min(kind & 255, 2), width, speed, xy: path(count, kind > 255) }));
+  const passes = list(() => {
+    const flags = next(), count = next(), closed = (flags & 256) > 0;
+    const along = Array.from({ length: flags & 512 ? count : 1 }, () => [next() / 1e3, next() / 1e3]);
+    if (along.length > 1 && closed) along.push(along[0]);
+    return { kind: Math.min(flags & 255, 2), along, count, closed };
+  }).map(({ kind, along, count, closed }) => ({ kind, along, xy: path(count, closed) }));
   let seconds = 0;
   for (const pass of passes) seconds = timePass(pass, seconds);
   const warnings = JSON.parse(new TextDecoder().decode(body.subarray(end + 4 * head.points)));
   return { islands, passes, seconds, warnings };
 }
 
+// Width and speed from a point to the next: the mean of both ends.
+function after({ along }, i) {
+  return along.length > 1 ? [0, 1].map(k => (along[i][k] + along[i + 1][k]) / 2) : along[0];
+}
+
 // When the torch is at each point, from the start of the layer with the arc on, s.
 function timePass(pass, start) {
-  const { xy, speed } = pass, times = new Float64Array(xy.length / 2);
+  const { xy } = pass, times = new Float64Array(xy.length / 2);
   for (let i = 0, t = start; i < times.length; i++) {
-    if (i) t += Math.hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]) / speed;
+    if (i) t += Math.hypot(xy[2 * i] - xy[2 * i - 2], xy[2 * i + 1] - xy[2 * i - 1]) / after(pass, i - 1)[1];
     times[i] = t;
   }
   pass.times = times;

@@ -74,19 +74,28 @@ function pathOf(points, path = new Path2D()) {
   return path;
 }
 
-// What of a pass is to be drawn, as paths with a colour each.
+// What of a pass is to be drawn, as paths with a colour and a width each.
 function strokes(pass, layer) {
-  const until = Math.min(pass.end, shown.until);
+  const until = Math.min(pass.end, shown.until), { times, along } = pass, wide = along[0][0];
+  if (along.length > 1) {
+    const list = [];
+    for (let i = 0; i + 1 < times.length && (!i || times[i] < until); i++) {
+      const colour = shown.byOrder ? rampAt((times[i] + times[i + 1]) / 2 / layer.seconds) : colours.kinds[pass.kind];
+      const end = times[i + 1] > until ? pointAt(pass, i, until) : [pass.xy[2 * i + 2], pass.xy[2 * i + 3]];
+      list.push({ path: pathOf([pass.xy[2 * i], pass.xy[2 * i + 1], ...end]), colour, wide: after(pass, i)[0] });
+    }
+    return list;
+  }
   if (!shown.byOrder) {
-    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: colours.kinds[pass.kind] }];
-    return [{ path: between(pass, pass.start, until).path, colour: colours.kinds[pass.kind] }];
+    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: colours.kinds[pass.kind], wide }];
+    return [{ path: between(pass, pass.start, until).path, colour: colours.kinds[pass.kind], wide }];
   }
   const step = layer.seconds / CHUNKS || 1, list = [];
   const count = Math.max(1, Math.round((pass.end - pass.start) / step)), chunk = (pass.end - pass.start) / count;
   for (let k = 0; k < count; k++) {
     const from = pass.start + k * chunk, to = Math.min(from + chunk, until);
     if (k && from >= until) break;
-    list.push({ path: between(pass, from, to).path, colour: rampAt((from + to) / 2 / layer.seconds) });
+    list.push({ path: between(pass, from, to).path, colour: rampAt((from + to) / 2 / layer.seconds), wide });
   }
   return list;
 }
@@ -95,10 +104,10 @@ function strokes(pass, layer) {
 function drawBeads(ctx, passes, layer) {
   const pixel = 1 / view.scale;
   for (const pass of passes) {
-    const parts = strokes(pass, layer), wide = pass.width;
+    const parts = strokes(pass, layer), wide = Math.max(...pass.along.map(a => a[0]));
     const stroke = (width, colour) => {
-      ctx.lineWidth = width;
       for (const part of parts) {
+        ctx.lineWidth = shown.width ? width * part.wide / wide : width;
         ctx.strokeStyle = rgb(colour(part.colour));
         ctx.stroke(part.path);
       }

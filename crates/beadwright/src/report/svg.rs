@@ -3,7 +3,7 @@
 use super::{escape, travels};
 use crate::fill::PassKind;
 use crate::number::push_fixed;
-use crate::plan::{Layer, Pass};
+use crate::plan::{Along, Layer};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
 
@@ -47,7 +47,7 @@ impl Frame {
         let rings = layer.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
         let points = rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()));
         let bounds = Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
-        let bead = layer.passes.iter().map(|pass| pass.width).fold(0.0, f64::max);
+        let bead = layer.passes.iter().map(|pass| pass.width.max()).fold(0.0, f64::max);
         let part = bounds.size() + bead;
         let unit = part.max_element().max(1e-3) / UNITS;
         let size = DVec2::new(part.x.max(LEGEND_WIDTH * unit) + 8.0 * unit, part.y + 22.0 * unit);
@@ -121,22 +121,33 @@ fn islands(svg: &mut String, layer: &Layer, unit: f64) {
 
 fn beads(svg: &mut String, layer: &Layer, unit: f64) {
     for pass in &layer.passes {
-        stroke(svg, pass, pass.width, " stroke-opacity=\"0.45\"");
+        let points = || pass.points.iter().map(|p| p.truncate());
+        match pass.width {
+            Along::Same(width) => stroke(svg, pass.kind, points(), pass.closed, width, WIDE),
+            Along::Each(_) => {
+                for s in pass.segments() {
+                    stroke(svg, pass.kind, [s.from.truncate(), s.to.truncate()].into_iter(), false, s.width, WIDE);
+                }
+            }
+        }
     }
     for pass in &layer.passes {
-        stroke(svg, pass, 0.25 * unit, "");
+        stroke(svg, pass.kind, pass.points.iter().map(|p| p.truncate()), pass.closed, 0.25 * unit, "");
     }
 }
 
-fn stroke(svg: &mut String, pass: &Pass, width: f64, more: &str) {
-    let colour = match pass.kind {
+/// Beads show what lies below them.
+const WIDE: &str = " stroke-opacity=\"0.45\"";
+
+fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>, closed: bool, width: f64, more: &str) {
+    let colour = match kind {
         PassKind::Contour => CONTOUR,
         PassKind::Infill => INFILL,
     };
     svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
     push_fixed(svg, width, 3);
     svg.push_str("\" d=\"");
-    path(svg, pass.points.iter().map(|p| p.truncate()), pass.closed);
+    path(svg, points, closed);
     svg.push_str("\"/>\n");
 }
 

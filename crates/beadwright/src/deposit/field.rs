@@ -1,0 +1,129 @@
+//! The height field of a layer on a grid, worked out in bands of rows: only the pieces of bead that reach a band are
+//! looked at, bands run in parallel, and none is kept unless somebody asks.
+
+use super::stroke::{Frame, Stroke};
+use glam::{DVec2, I64Vec2};
+use planar::Bounds;
+use rayon::prelude::*;
+
+/// Rows of a band hold about this many points: they stay in the cache.
+const BAND_POINTS: usize = 1 << 14;
+
+/// Points at whole multiples of the step, so that the grids of all layers lie on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Distance of neighbouring points, mm.
+    pub step: f64,
+    /// The lowest point, in steps.
+    pub low: I64Vec2,
+    /// Points in x.
+    pub columns: usize,
+    /// Points in y.
+    pub rows: usize,
+}
+
+impl Grid {
+    /// The grid that covers a box grown by `margin` (mm).
+    pub fn covering(bounds: &Bounds, margin: f64, step: f64) -> Self {
+        let low = ((bounds.min - margin) / step).floor().as_i64vec2();
+        let high = ((bounds.max + margin) / step).ceil().as_i64vec2();
+        let size = (high - low + 1).max(I64Vec2::ZERO);
+        Self { step, low, columns: size.x as usize, rows: size.y as usize }
+    }
+
+    /// Place of a point, mm.
+    pub fn place(&self, column: usize, row: usize) -> DVec2 {
+        (self.low + I64Vec2::new(column as i64, row as i64)).as_dvec2() * self.step
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// The columns whose points lie from `low` to `high` (mm).
+    pub(super) fn columns_between(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+        let column = |x: f64| (x / self.step - self.low.x as f64).clamp(0.0, self.columns as f64);
+        column(low).ceil() as usize..(column(high).floor() as usize + 1).min(self.columns)
+    }
+
+    /// Rows of one band.
+    pub(super) fn band_rows(&self) -> usize {
+        (BAND_POINTS / self.columns.max(1)).clamp(1, self.rows.max(1))
+    }
+
+    fn row_at(&self, y: f64) -> f64 {
+        y / self.step - self.low.y as f64
+    }
+}
+
+/// Some rows of a height field.
+#[derive(Debug)]
+pub struct Band<'a> {
+    /// The whole grid.
+    pub grid: &'a Grid,
+    /// The first row.
+    pub first: usize,
+    /// Heights, mm, row after row.
+    pub heights: Vec<f64>,
+    /// How many points of how many pieces were worked out.
+    pub work: usize,
+}
+
+impl Band<'_> {
+    /// The rows with their numbers.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.heights.chunks(self.grid.columns.max(1)).enumerate().map(|(k, row)| (self.first + k, row))
+    }
+}
+
+/// Works out all bands of a layer and hands each to `visit`; its answers come back from the lowest band to the
+/// highest, whatever the number of threads.
+pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) -> R + Sync) -> Vec<R> {
+    let frames: Vec<Frame> = strokes.iter().filter_map(Stroke::frame).collect();
+    let height = grid.band_rows();
+    let mut reaching: Vec<Vec<u32>> = vec![Vec::new(); grid.rows.div_ceil(height)];
+    for (i, frame) in frames.iter().enumerate() {
+        let (a, b) = (frame.from.y, frame.from.y + frame.along.y * frame.length);
+        let low = grid.row_at(a.min(b) - frame.a).max(0.0) as usize / height;
+        let high = grid.row_at(a.max(b) + frame.a).max(0.0) as usize / height;
+        reaching.iter_mut().take(high + 1).skip(low).for_each(|band| band.push(i as u32));
+    }
+    let answer = |(k, reaching): (usize, &Vec<u32>)| {
+        let first = k * height;
+        let rows = height.min(grid.rows - first);
+        let mut band = Band { grid, first, heights: vec![0.0; rows * grid.columns], work: 0 };
+        for &i in reaching {
+            lay(&frames[i as usize], &mut band);
+        }
+        visit(band)
+    };
+    reaching.par_iter().enumerate().map(answer).collect()
+}
+
+fn lay(frame: &Frame, band: &mut Band<'_>) {
+    let grid = band.grid;
+    let first = band.first;
+    let mut work = 0;
+    for (k, row) in band.heights.chunks_mut(grid.columns).enumerate() {
+        let y = grid.place(0, first + k).y;
+        let Some((low, high, plain_low, plain_high)) = frame.row(y) else { continue };
+        let all = grid.columns_between(low, high);
+        let plain = grid.columns_between(plain_low, plain_high);
+        let plain = plain.start.clamp(all.start, all.end)..plain.end.clamp(all.start, all.end);
+        let plain = if plain.is_empty() { all.end..all.end } else { plain };
+        let place = |column: usize| DVec2::new((grid.low.x + column as i64) as f64 * grid.step, y);
+        add(&mut row[all.start..plain.start], all.start, |column| frame.height_at(place(column)));
+        add(&mut row[plain.clone()], plain.start, |column| frame.parabola_at(place(column)));
+        add(&mut row[plain.end..all.end], plain.end, |column| frame.height_at(place(column)));
+        work += all.len();
+    }
+    band.work += work;
+}
+
+#[inline]
+fn add(row: &mut [f64], first: usize, height: impl Fn(usize) -> f64) {
+    for (k, value) in row.iter_mut().enumerate() {
+        *value += height(first + k);
+    }
+}

@@ -1,0 +1,251 @@
+//! The deposit model: what a layer's passes would build, as a height field, and what is wrong with it.
+//!
+//! Our plans and anyone's programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their
+//! heights ([`stroke`]: the closed form) add up on a [`Grid`](field::Grid) ([`field`]). Nothing but one layer is held.
+//!
+//! Inside the outline less a quarter of a bead width, a point is a *void* below [`VOID`] of the nominal bead height,
+//! *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than [`OUTSIDE`] of the
+//! bead beyond the outline and the machining allowance.
+
+pub mod corner;
+pub mod field;
+pub mod figures;
+pub mod patch;
+pub mod picture;
+pub mod stack;
+pub mod stroke;
+
+pub use figures::Figures;
+pub use patch::{Cause, Patch};
+pub use picture::Picture;
+pub use stack::Stack;
+pub use stroke::{Nominal, Stroke};
+
+use crate::pass::Pass;
+use crate::task::{Cancelled, Stage, Task};
+use field::{Band, Grid};
+use glam::DVec2;
+use patch::Run;
+use planar::{Bounds, Join, Polygon, Region};
+
+/// Below this part of the nominal bead height a point is a void.
+pub const VOID: f64 = 0.35;
+/// Below this part of the nominal bead height, and no void, a point is low: beads a tangent overlap (0.738 w) apart
+/// leave 0.77 of it at the least.
+pub const LOW: f64 = 0.7;
+/// Above this part of the nominal bead height a point is overfilled.
+pub const OVERFILL: f64 = 1.3;
+/// Metal outside counts above this part of the nominal bead height.
+pub const OUTSIDE: f64 = 0.05;
+/// The edge of a layer is rounded as far as this part of a bead width: no voids are looked for there.
+pub const RIM: f64 = 0.25;
+/// Grid points across a bead where nothing else is asked for.
+pub const POINTS_ACROSS: f64 = 20.0;
+/// No grid has more points: a larger part gets a coarser grid.
+pub const MOST_POINTS: usize = 64_000_000;
+
+/// How to judge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepositSettings {
+    /// The bead that is promised.
+    pub nominal: Nominal,
+    /// How far metal may lie outside the outline, mm.
+    pub machining_allowance: f64,
+    /// Distance of grid points, mm.
+    pub step: f64,
+}
+
+impl DepositSettings {
+    /// With the default grid of a twentieth of a bead.
+    pub fn new(nominal: Nominal, machining_allowance: f64) -> Self {
+        Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS }
+    }
+
+    /// With a step that keeps the grid over a part below [`MOST_POINTS`].
+    pub fn fitted_to(mut self, bounds: &Bounds) -> Self {
+        let area = bounds.size().x * bounds.size().y;
+        self.step = self.step.max((area / MOST_POINTS as f64).sqrt());
+        self
+    }
+}
+
+/// What is judged: the passes of a layer and the slice that they ought to fill.
+#[derive(Debug, Clone, Copy)]
+pub struct Subject<'a> {
+    /// Index from 0.
+    pub layer: usize,
+    /// Outlines of the slice.
+    pub islands: &'a [Polygon],
+    /// Passes in deposition order.
+    pub passes: &'a [Pass],
+}
+
+/// What a layer would be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// Areas and heights.
+    pub figures: Figures,
+    /// Connected voids, the largest first.
+    pub voids: Vec<Patch>,
+    /// Connected overfilled patches, the highest first.
+    pub peaks: Vec<Patch>,
+    /// The height field, coarse, for the eye.
+    pub picture: Option<Picture>,
+    /// How many points of how many strokes were worked out.
+    pub work: usize,
+}
+
+/// Judges layer after layer.
+#[derive(Debug)]
+pub struct Judge {
+    settings: DepositSettings,
+    stack: Option<Stack>,
+    picture_pixels: Option<usize>,
+    total: Figures,
+}
+
+impl Judge {
+    /// A judge that forgets each layer.
+    pub fn new(settings: DepositSettings) -> Self {
+        Self { settings, stack: None, picture_pixels: None, total: Figures::default() }
+    }
+
+    /// Also adds the layers up, to see how peaks grow; `bounds` holds all layers.
+    pub fn with_stack(mut self, bounds: &Bounds) -> Self {
+        self.stack = Some(Stack::new(Grid::covering(bounds, self.settings.nominal.bead.width, self.settings.step)));
+        self
+    }
+
+    /// Also draws the layers, at most so many pixels wide or high.
+    pub fn with_pictures(mut self, pixels: usize) -> Self {
+        self.picture_pixels = Some(pixels);
+        self
+    }
+
+    /// The figures of all layers so far.
+    pub fn total(&self) -> &Figures {
+        &self.total
+    }
+
+    /// The layers added up.
+    pub fn stack(&self) -> Option<&Stack> {
+        self.stack.as_ref()
+    }
+
+    /// How it judges.
+    pub fn settings(&self) -> &DepositSettings {
+        &self.settings
+    }
+
+    /// Judges the next layer.
+    pub fn layer(&mut self, subject: Subject<'_>) -> Judgement {
+        let nominal = self.settings.nominal;
+        let strokes: Vec<Stroke> = subject.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
+        let Some(grid) = grid_of(&subject, &strokes, self.settings.step) else { return Judgement::nothing() };
+        let mask = Mask::new(subject.islands, &self.settings, &grid);
+        let canvas = self.picture_pixels.map(|pixels| picture::Canvas::new(&grid, pixels));
+        let keeps = self.stack.is_some();
+        let look = |band: Band<'_>| Seen {
+            figures: Figures::of(&band, &mask, &nominal),
+            runs: patch::runs(&band, &mask, &nominal),
+            picture: canvas.as_ref().map(|canvas| canvas.paint(&band, &mask, &nominal)),
+            excess: keeps.then(|| stack::excess(&band, &mask, nominal.rise)),
+            work: band.work,
+        };
+        let mut seen = field::bands(&strokes, &grid, look);
+        if let Some(stack) = &mut self.stack {
+            let rows = seen.iter_mut().flat_map(|s| s.excess.take()).flatten();
+            stack.add(&grid, rows);
+        }
+        let mut figures = Figures::default();
+        seen.iter().for_each(|s| figures.add(&s.figures));
+        figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
+        self.total.add(&figures);
+        let work = seen.iter().map(|s| s.work).sum();
+        let (runs, painted): (Vec<_>, Vec<_>) = seen.into_iter().map(|s| (s.runs, s.picture)).unzip();
+        let (voids, peaks) = patch::patches(runs, &grid, &subject, &nominal);
+        let picture = canvas.map(|canvas| canvas.picture(painted.into_iter().flatten()));
+        Judgement { figures, voids, peaks, picture, work }
+    }
+}
+
+/// What is taken from a band before it is forgotten.
+struct Seen {
+    figures: Figures,
+    runs: Vec<Run>,
+    picture: Option<Vec<u8>>,
+    excess: Option<Vec<f32>>,
+    work: usize,
+}
+
+impl Judgement {
+    fn nothing() -> Self {
+        Self { figures: Figures::default(), voids: Vec::new(), peaks: Vec::new(), picture: None, work: 0 }
+    }
+}
+
+fn grid_of(subject: &Subject<'_>, strokes: &[Stroke], step: f64) -> Option<Grid> {
+    let outlines = subject.islands.iter().flat_map(|i| i.outer.points().iter().copied());
+    let bounds = Bounds::of(outlines.chain(strokes.iter().flat_map(|s| [s.from, s.to])))?;
+    let widest = strokes.iter().map(|s| s.bead.width).fold(0.0, f64::max);
+    Some(Grid::covering(&bounds, widest / 2.0 + step, step))
+}
+
+/// Judges a whole stack of layers, with progress.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn judge_all<'a>(
+    judge: &mut Judge,
+    layers: impl ExactSizeIterator<Item = Subject<'a>>,
+    task: &Task,
+) -> Result<Vec<Judgement>, Cancelled> {
+    let count = layers.len().max(1) as f64;
+    let mut judged = Vec::with_capacity(layers.len());
+    for (done, subject) in layers.enumerate() {
+        task.step(Stage::Deposit, done as f64 / count)?;
+        judged.push(judge.layer(subject));
+    }
+    Ok(judged)
+}
+
+/// Where the outline less its rim is, and where metal is outside, as crossings of the grid's rows.
+pub(crate) struct Mask {
+    core: Vec<Vec<f64>>,
+    allowed: Vec<Vec<f64>>,
+}
+
+impl Mask {
+    fn new(islands: &[Polygon], settings: &DepositSettings, grid: &Grid) -> Self {
+        let whole = Region::from_normalised(islands.to_vec());
+        let rows = |region: &Region| region.rows(grid.place(0, 0).y, grid.step, grid.rows);
+        let core = rows(&whole.offset(-RIM * settings.nominal.bead.width, Join::ROUND));
+        let allowance = settings.machining_allowance;
+        let allowed = if allowance > 0.0 { rows(&whole.offset(allowance, Join::ROUND)) } else { rows(&whole) };
+        Self { core, allowed }
+    }
+
+    /// The columns of a row inside the outline less its rim.
+    fn core<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+        columns(&self.core, grid, row)
+    }
+
+    /// The columns of a row where metal may be.
+    fn allowed<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+        columns(&self.allowed, grid, row)
+    }
+}
+
+fn columns<'a>(
+    crossings: &'a [Vec<f64>],
+    grid: &'a Grid,
+    row: usize,
+) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+    let pairs = crossings.get(row).map_or(&[][..], Vec::as_slice).chunks_exact(2);
+    pairs.map(|pair| grid.columns_between(pair[0], pair[1])).filter(|columns| !columns.is_empty())
+}
+
+/// Height at one point, mm: the sum over all pieces.
+pub fn height_at(strokes: &[Stroke], p: DVec2) -> f64 {
+    strokes.iter().map(|s| s.height_at(p)).sum()
+}

@@ -1,0 +1,204 @@
+//! Connected voids and overfilled patches with their places, and what made the peaks.
+
+use super::field::{Band, Grid};
+use super::stroke::Nominal;
+use super::{Mask, OVERFILL, Subject, VOID};
+use crate::fill::PassKind;
+use crate::pass::Pass;
+use glam::DVec2;
+use serde::Serialize;
+use std::ops::Range;
+
+/// What piles metal up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// A pass begins here, on other metal.
+    Start,
+    /// A pass ends here, on other metal.
+    End,
+    /// A pass turns sharply.
+    Corner,
+    /// Scan lines are joined here.
+    Link,
+    /// Several passes meet.
+    Junction,
+    /// One pass runs too close beside itself.
+    Closeness,
+}
+
+impl Cause {
+    /// The word in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::End => "end",
+            Self::Corner => "corner",
+            Self::Link => "link",
+            Self::Junction => "junction",
+            Self::Closeness => "closeness",
+        }
+    }
+}
+
+/// A connected void or overfilled patch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Patch {
+    /// Index of the layer, from 0.
+    pub layer: usize,
+    /// Its lowest (void) or highest (peak) point, mm.
+    pub place: DVec2,
+    /// The height there, mm.
+    pub height: f64,
+    /// Its area, mm².
+    pub area: f64,
+    /// What made it; only peaks have a cause.
+    pub cause: Option<Cause>,
+}
+
+/// Neighbouring points of a row that are all void, or all overfilled.
+#[derive(Debug, Clone)]
+pub(super) struct Run {
+    overfilled: bool,
+    row: usize,
+    columns: Range<usize>,
+    extreme: f64,
+    at: usize,
+}
+
+/// The runs of a band, row after row.
+pub(super) fn runs(band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<Run> {
+    let h = nominal.bead.height;
+    let class = |height: f64| (height < VOID * h).then_some(false).or((height > OVERFILL * h).then_some(true));
+    let mut runs: Vec<Run> = Vec::new();
+    for (row, heights) in band.rows() {
+        for columns in mask.core(band.grid, row) {
+            let mut open: Option<Run> = None;
+            for at in columns {
+                let (height, now) = (heights[at], class(heights[at]));
+                match (&mut open, now) {
+                    (Some(run), Some(overfilled)) if run.overfilled == overfilled => {
+                        run.columns.end = at + 1;
+                        if (height > run.extreme) == overfilled {
+                            (run.extreme, run.at) = (height, at);
+                        }
+                    }
+                    (open, now) => {
+                        runs.extend(open.take());
+                        *open = now.map(|overfilled| Run { overfilled, row, columns: at..at + 1, extreme: height, at });
+                    }
+                }
+            }
+            runs.extend(open);
+        }
+    }
+    runs
+}
+
+/// Runs of all bands joined where they touch: voids, the largest first, and peaks, the highest first.
+pub(super) fn patches(
+    runs: Vec<Vec<Run>>,
+    grid: &Grid,
+    subject: &Subject<'_>,
+    nominal: &Nominal,
+) -> (Vec<Patch>, Vec<Patch>) {
+    let runs: Vec<Run> = runs.into_iter().flatten().collect();
+    let mut parents: Vec<usize> = (0..runs.len()).collect();
+    // Both rows are walked once: a run of this row against those of the last row that end after it begins.
+    let (mut row_start, mut last_row) = (0, 0..0);
+    for i in 0..runs.len() {
+        if runs[i].row != runs[row_start].row {
+            let touching = runs[row_start].row + 1 == runs[i].row;
+            last_row = if touching { row_start..i } else { i..i };
+            row_start = i;
+        }
+        while last_row.start < last_row.end && runs[last_row.start].columns.end < runs[i].columns.start {
+            last_row.start += 1;
+        }
+        for j in last_row.clone().take_while(|&j| runs[j].columns.start <= runs[i].columns.end) {
+            if runs[j].overfilled == runs[i].overfilled {
+                let (a, b) = (root(&mut parents, i), root(&mut parents, j));
+                parents[a.max(b)] = a.min(b);
+            }
+        }
+    }
+    let cell = grid.step * grid.step;
+    let mut found: Vec<Option<(bool, Patch)>> = vec![None; runs.len()];
+    for (i, run) in runs.iter().enumerate() {
+        let area = run.columns.len() as f64 * cell;
+        let (place, height) = (grid.place(run.at, run.row), run.extreme);
+        let patch = Patch { layer: subject.layer, place, height, area, cause: None };
+        match &mut found[root(&mut parents, i)] {
+            Some((overfilled, known)) => {
+                known.area += area;
+                if (height > known.height) == *overfilled {
+                    (known.place, known.height) = (place, height);
+                }
+            }
+            none => *none = Some((run.overfilled, patch)),
+        }
+    }
+    let (mut peaks, mut voids): (Vec<_>, Vec<_>) = found.into_iter().flatten().partition(|(overfilled, _)| *overfilled);
+    voids.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
+    peaks.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
+    let plain = |(_, patch)| patch;
+    let told = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, subject.passes, nominal), ..patch };
+    // Causes are looked up for the peaks that are told.
+    let rest = peaks.split_off(peaks.len().min(TOLD_PEAKS));
+    let peaks = peaks.into_iter().map(told).chain(rest.into_iter().map(plain)).collect();
+    (voids.into_iter().map(plain).collect(), peaks)
+}
+
+/// The highest peaks of a layer get a cause.
+const TOLD_PEAKS: usize = 32;
+
+fn root(parents: &mut [usize], mut i: usize) -> usize {
+    while parents[i] != i {
+        parents[i] = parents[parents[i]];
+        i = parents[i];
+    }
+    i
+}
+
+/// A turn sharper than this piles metal up on its inner side: cos 30°.
+const SHARP: f64 = 0.866;
+
+/// The nearest start, end or sharp turn within half a bead; else whether one or several passes come that near.
+fn cause(place: DVec2, passes: &[Pass], nominal: &Nominal) -> Option<Cause> {
+    let reach = nominal.bead.width / 2.0;
+    let mut nearest = (reach, None);
+    let mut near = |p: DVec2, cause: Cause| {
+        let distance = p.distance(place);
+        if distance < nearest.0 {
+            nearest = (distance, Some(cause));
+        }
+    };
+    let mut passes_near = 0;
+    for pass in passes {
+        let points: Vec<DVec2> = pass.points.iter().map(|p| p.truncate()).collect();
+        let beside = pass.segments().any(|s| {
+            let (a, b) = (s.from.truncate(), s.to.truncate());
+            planar::polyline::distance_squared_to_segment(place, a, b) < reach * reach
+        });
+        if !beside {
+            continue;
+        }
+        passes_near += 1;
+        if !pass.closed {
+            points.first().into_iter().for_each(|p| near(*p, Cause::Start));
+            points.last().into_iter().for_each(|p| near(*p, Cause::End));
+        }
+        let turn = if pass.kind == PassKind::Infill { Cause::Link } else { Cause::Corner };
+        for corner in points.windows(3) {
+            let (a, b) = ((corner[1] - corner[0]).normalize_or_zero(), (corner[2] - corner[1]).normalize_or_zero());
+            if a.dot(b) < SHARP {
+                near(corner[1], turn);
+            }
+        }
+    }
+    nearest.1.or(match passes_near {
+        0 => None,
+        1 => Some(Cause::Closeness),
+        _ => Some(Cause::Junction),
+    })
+}

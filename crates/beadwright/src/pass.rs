@@ -1,0 +1,136 @@
+//! A pass in space: the path with the arc on, and the width and speed along it.
+
+use crate::fill::PassKind;
+use glam::DVec3;
+
+/// A value along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Along {
+    /// The same everywhere.
+    Same(f64),
+    /// One value a point; on the way to the next point the mean of both holds.
+    Each(Vec<f64>),
+}
+
+impl Along {
+    /// The value at a point.
+    pub fn at(&self, point: usize) -> f64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Each(values) => values.get(point).or(values.first()).copied().unwrap_or_default(),
+        }
+    }
+
+    /// The value on the way from a point to the next; behind the last point comes the first.
+    pub fn after(&self, point: usize) -> f64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Each(_) => (self.at(point) + self.at(point + 1)) / 2.0,
+        }
+    }
+
+    /// The largest value.
+    pub fn max(&self) -> f64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Each(values) => values.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// The values changed one by one.
+    pub fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Self::Same(value) => Self::Same(change(*value)),
+            Self::Each(values) => Self::Each(values.iter().map(|v| change(*v)).collect()),
+        }
+    }
+
+    /// The values from the last point to the first.
+    pub fn reverse(&mut self) {
+        if let Self::Each(values) = self {
+            values.reverse();
+        }
+    }
+
+    /// The values with the point of that index first.
+    pub fn rotate_left(&mut self, index: usize) {
+        if let Self::Each(values) = self {
+            let places = index.min(values.len());
+            values.rotate_left(places);
+        }
+    }
+}
+
+/// One path with the arc on, in the part's space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// What it is for.
+    pub kind: PassKind,
+    /// Whether it ends where it began; the first point is then not repeated.
+    pub closed: bool,
+    /// Torch tool points, mm; z is the top of the layer.
+    pub points: Vec<DVec3>,
+    /// Bead width, mm.
+    pub width: Along,
+    /// Deposition speed, mm/s.
+    pub speed: Along,
+}
+
+/// One straight piece of a pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Where it begins, mm.
+    pub from: DVec3,
+    /// Where it ends, mm.
+    pub to: DVec3,
+    /// Bead width, mm.
+    pub width: f64,
+    /// Deposition speed, mm/s.
+    pub speed: f64,
+}
+
+impl Segment {
+    /// Length, mm.
+    pub fn length(&self) -> f64 {
+        self.from.distance(self.to)
+    }
+
+    /// Time with the arc on, s.
+    pub fn seconds(&self) -> f64 {
+        self.length() / self.speed
+    }
+}
+
+impl Pass {
+    /// The straight pieces in order, with the closing one of a closed pass.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let count = if self.closed { self.points.len() } else { self.points.len().saturating_sub(1) };
+        let to = self.points.iter().cycle().skip(1);
+        self.points.iter().zip(to).take(count).enumerate().map(|(i, (&from, &to))| Segment {
+            from,
+            to,
+            width: self.width.after(i),
+            speed: self.speed.after(i),
+        })
+    }
+
+    /// Where the arc starts.
+    pub fn start(&self) -> Option<DVec3> {
+        self.points.first().copied()
+    }
+
+    /// Where the arc ends.
+    pub fn end(&self) -> Option<DVec3> {
+        if self.closed { self.points.first().copied() } else { self.points.last().copied() }
+    }
+
+    /// Deposited length, mm.
+    pub fn length(&self) -> f64 {
+        self.segments().map(|s| s.length()).sum()
+    }
+
+    /// Time with the arc on, s.
+    pub fn seconds(&self) -> f64 {
+        self.segments().map(|s| s.seconds()).sum()
+    }
+}
