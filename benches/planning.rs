@@ -3,12 +3,15 @@
 //! The model is taken from `BEADWRIGHT_MODELS` (default `../shared/models`); without it nothing is measured.
 #![allow(clippy::unwrap_used)]
 
+use beadwright::deposit::Judge;
+use beadwright::example;
 use beadwright::model::{self, Mesh};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::slice::{SliceOptions, Slicer};
 use beadwright::task::Task;
 use divan::{Bencher, black_box};
+use rayon::prelude::*;
 use std::io::Read;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -80,4 +83,38 @@ fn plan_997_layers(bencher: Bencher) {
     if let Some(mesh) = MESH.as_ref() {
         bencher.bench_local(|| plan::plan("bunny", mesh, &profile, &Task::new()).unwrap());
     }
+}
+
+/// Planning of the propeller, the yardstick of the next one.
+#[divan::bench]
+fn plan_propeller(bencher: Bencher) {
+    let (mesh, profile) = propeller();
+    bencher.bench(|| plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap());
+}
+
+/// Judging all layers of the propeller at w/20; items are points × strokes.
+#[divan::bench]
+fn judge_propeller(bencher: Bencher) {
+    let (mesh, profile) = propeller();
+    let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
+    let judge = || {
+        let mut judge = Judge::new(plan::deposit_settings(&profile));
+        plan.layers.iter().map(|layer| judge.layer(layer.subject()).work).sum::<usize>()
+    };
+    let work = judge();
+    bencher.counter(divan::counter::ItemsCount::new(work)).bench(judge);
+}
+
+/// The bound of the last one: adding a number to as many places in memory (f64, larger than the cache), on all threads.
+#[divan::bench]
+fn add_to_memory(bencher: Bencher) {
+    let mut field = vec![0.0_f64; 1 << 24];
+    let count = divan::counter::ItemsCount::new(field.len());
+    bencher
+        .counter(count)
+        .bench_local(|| field.par_chunks_mut(1 << 16).for_each(|c| c.iter_mut().for_each(|v| *v += 1.5)));
+}
+
+fn propeller() -> (Mesh, Profile) {
+    (example::find("propeller").unwrap().mesh(), Profile::built_in("cmt-al2319-kuka").unwrap())
 }

@@ -2,13 +2,17 @@
 //!
 //! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage.
 
+mod compare;
 mod example;
 mod inspect;
 mod model;
 mod output;
 mod plan;
 mod profile;
+mod program;
 mod progress;
+mod reproduce;
+mod simulate;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -25,6 +29,12 @@ struct Arguments {
 enum Command {
     /// Plan a model: writes the program, plan.json, metrics.json and report.html.
     Plan(plan::Arguments),
+    /// Plan a model with every strategy, and judge them side by side.
+    Compare(compare::Arguments),
+    /// Judge a plan or anyone's program by what it would build.
+    Simulate(simulate::Arguments),
+    /// Make the papers' experiments again: ours beside theirs.
+    Reproduce(reproduce::Arguments),
     /// Tell what a model holds and what is wrong with it.
     Inspect(inspect::Arguments),
     /// Write one of the example parts as STL; without a name, list them.
@@ -37,6 +47,9 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),
         Command::Profile(command) => profile::run(&command),

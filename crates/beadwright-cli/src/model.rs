@@ -24,7 +24,7 @@ pub(crate) struct Model {
     pub(crate) turn: DVec3,
 }
 
-fn parse_units(text: &str) -> Result<Units, String> {
+pub(crate) fn parse_units(text: &str) -> Result<Units, String> {
     let found = Units::ALL.iter().find(|(name, _)| *name == text);
     found.map(|(_, unit)| *unit).ok_or_else(|| "the units are mm, cm, m and in".to_owned())
 }

@@ -2,8 +2,11 @@
 
 use crate::output::Output;
 use crate::{model, profile, progress};
+use beadwright::compare::MAP_PIXELS;
+use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::metrics::Metrics;
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
+use beadwright::planar::Bounds;
 use beadwright::post::{self, Chunk, Post};
 use beadwright::profile::Profile;
 use beadwright::program::Programmer;
@@ -34,12 +37,23 @@ pub(crate) struct Arguments {
     /// Also write a picture of this layer, counted from 1, as SVG.
     #[arg(long, value_name = "LAYER")]
     picture: Vec<usize>,
+    /// Leave the deposit model out: no voids and no height fields in the report, but done sooner.
+    #[arg(long)]
+    no_deposit: bool,
+    /// Distance of the deposit model's grid points, mm; a twentieth of the bead width when left out.
+    #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
+    grid: Option<f64>,
     /// Print the metrics as JSON instead of the summary.
     #[arg(long)]
     json: bool,
     /// Threads; all of the machine's when left out. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+}
+
+pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
+    let step: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
+    if (1e-3..=100.0).contains(&step) { Ok(step) } else { Err("the grid must lie between 0.001 and 100 mm".to_owned()) }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -57,7 +71,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let import = arguments.model.placed(profile.bead.width, &task)?;
     let output = Output::new(&arguments.output)?;
     let programmer = Programmer::new(profile.travel.clearance);
-    let mut files = Files { output, posts, programmer, pictures: arguments.picture.clone(), report: None, first: true };
+    let settings = deposit_settings(arguments.grid, &profile, &import);
+    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let pictures = arguments.picture.clone();
+    let mut files = Files { output, posts, programmer, pictures, settings, judge, report: None, first: true };
     let planned = plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files);
     bar.finish_and_clear();
     let summary = planned.map_err(|error| match error {
@@ -65,13 +82,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
         other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
     })?;
+    let figures = files.judge.as_ref().map(|judge| *judge.total());
     let names = files.finish(&summary, &profile, &import)?;
 
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        writeln!(out, "{}", serde_json::to_string_pretty(&metrics_json(&summary))?)?;
+        writeln!(out, "{}", serde_json::to_string_pretty(&metrics_json(&summary, figures.as_ref()))?)?;
     } else {
-        print_summary(&mut out, &part, arguments, &profile, &import, &summary, &names)?;
+        print_summary(&mut out, arguments, &profile, &import, &summary, figures.as_ref(), &names)?;
     }
     Ok(())
 }
@@ -82,6 +100,8 @@ struct Files {
     posts: Vec<Box<dyn Post>>,
     programmer: Programmer,
     pictures: Vec<usize>,
+    settings: DepositSettings,
+    judge: Option<Judge>,
     report: Option<Report>,
     first: bool,
 }
@@ -101,7 +121,8 @@ impl Files {
         let leave = self.programmer.leave();
         self.each_post(|post| post.end(leave))?;
         self.output.append("plan.json", plan_file::tail())?;
-        self.output.append("metrics.json", &format!("{:#}\n", metrics_json(summary)))?;
+        self.output
+            .append("metrics.json", &format!("{:#}\n", metrics_json(summary, self.judge.as_ref().map(Judge::total))))?;
         let mut names = self.output.names();
         names.push("report.html".to_owned());
         if let Some(report) = self.report.take() {
@@ -117,7 +138,7 @@ impl Sink for Files {
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         self.report = Some(Report::new(header));
-        self.output.append("plan.json", &plan_file::head(header))?;
+        self.output.append("plan.json", &plan_file::head(header, &self.settings))?;
         self.each_post(|post| post.begin(header.layers))
     }
 
@@ -130,36 +151,49 @@ impl Sink for Files {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
+        let judgement = self.judge.as_mut().map(|judge| judge.layer(layer.subject()));
         if let Some(report) = &mut self.report {
-            report.layer(&layer);
+            report.layer(&layer, judgement.as_ref());
         }
         Ok(())
     }
 }
 
-fn metrics_json(summary: &Summary) -> serde_json::Value {
+/// How the layers of a part are judged: the grid as asked for, or one that fits the part.
+pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, import: &Import) -> DepositSettings {
+    let (low, high) = import.mesh.bounds();
+    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
+    let settings = plan::deposit_settings(profile);
+    match grid {
+        Some(step) => DepositSettings { step, ..settings },
+        None => settings.fitted_to(&bounds, (high.z / profile.layers.height) as usize),
+    }
+}
+
+fn metrics_json(summary: &Summary, figures: Option<&Figures>) -> serde_json::Value {
     let warnings: Vec<_> = summary.warnings.summaries().collect();
     let mut value = serde_json::json!(summary.metrics);
     value["coverage"] = summary.metrics.coverage().into();
     value["warnings"] = serde_json::json!(warnings);
     value["notes"] = serde_json::json!(summary.notes);
+    value["deposit"] = serde_json::json!(figures.map(Figures::summary));
     value
 }
 
 fn print_summary(
     out: &mut impl Write,
-    part: &str,
     arguments: &Arguments,
     profile: &Profile,
     import: &Import,
     summary: &Summary,
+    figures: Option<&Figures>,
     files: &[String],
 ) -> std::io::Result<()> {
-    let (size, m) = (import.mesh.size(), &summary.metrics);
+    let (part, size, m) = (arguments.model.part(), import.mesh.size(), &summary.metrics);
     writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {} triangles", size.x, size.y, size.z, import.repair.triangles)?;
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
     writeln!(out)?;
-    for (name, value) in totals(m) {
+    for (name, value) in totals(m).into_iter().chain(figures.map(deposit_rows).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;
     }
     writeln!(out)?;
@@ -186,6 +220,14 @@ fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows
+}
+
+/// What the deposit model says, as people read it.
+pub(crate) fn deposit_rows(f: &Figures) -> [(&'static str, String); 2] {
+    [
+        ("void / low area", format!("{:.2} / {:.2} %", f.void_percent(), f.low_percent())),
+        ("overfill / outside", format!("{:.2} / {:.2} %", f.overfill_percent(), f.outside_percent())),
+    ]
 }
 
 fn hours(seconds: f64) -> String {

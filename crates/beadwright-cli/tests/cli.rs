@@ -218,3 +218,45 @@ fn every_shared_model_plans_or_is_refused() {
         }
     }
 }
+
+#[test]
+fn plans_and_programs_are_simulated_alike() {
+    let folder = folder_with("cross");
+    let planned = ok(
+        folder.path(),
+        &["plan", "cross.stl", "-p", "plasma-304-cnc", "-o", "out", "--json", "--set", "fill.raster_turn=\"fixed\""],
+    );
+    let planned: serde_json::Value = serde_json::from_str(&planned).unwrap();
+    let simulate = |file: &str| -> serde_json::Value {
+        let more = ["--model", "cross.stl", "-p", "plasma-304-cnc", "--json", "-o", "sim.html"];
+        serde_json::from_str(&ok(folder.path(), &[&["simulate", file], &more[..]].concat())).unwrap()
+    };
+    let (plan, program) = (simulate("out/plan.json"), simulate("out/cross.nc"));
+    for name in ["void_percent", "low_percent", "overfill_percent", "outside_percent", "mean_height_mm"] {
+        let value = |json: &serde_json::Value| json["deposit"][name].as_f64().unwrap();
+        assert!((value(&plan) - value(&planned)).abs() < 1e-9, "{name}");
+        assert!((value(&program) - value(&planned)).abs() < 0.02, "{name}");
+    }
+    assert_eq!(plan["totals"]["arc_starts"], planned["arc_starts"]);
+    assert_eq!(program["totals"]["arc_starts"], planned["arc_starts"]);
+    assert!(fs::read_to_string(folder.path().join("sim.html")).unwrap().contains("</html>"));
+    fs::write(folder.path().join("bad.nc"), "G1 X1 Y2\nG1 X10 Yten\n").unwrap();
+    assert!(refused(folder.path(), &["simulate", "bad.nc"], 1).contains("line 2"));
+    fs::write(folder.path().join("dry.nc"), "G0 X1 Y2\nG1 X10\n").unwrap();
+    assert!(refused(folder.path(), &["simulate", "dry.nc"], 1).contains("--arc-on"));
+}
+
+#[test]
+fn strategies_are_compared_and_papers_reproduced() {
+    let folder = folder_with("star");
+    let arguments = ["compare", "star.stl", "--layers", "2,4-5", "-s", "contour", "-s", "compound", "-o", "c.html"];
+    let table = ok(folder.path(), &arguments);
+    assert!(table.contains("contour") && table.contains("compound") && table.contains("void %") && table.contains('*'));
+    let page = fs::read_to_string(folder.path().join("c.html")).unwrap();
+    assert!(page.contains("layer 4, z 8.00 mm") && !page.contains("layer 3,"));
+    assert!(refused(folder.path(), &["compare", "star.stl", "--layers", "0"], 2).contains("counted from 1"));
+    let said = ok(folder.path(), &["reproduce", "c-compound", "-o", "papers"]);
+    assert!(said.contains("void at 0.738 w over"));
+    assert!(folder.path().join("papers/reproduce-c-compound.html").is_file());
+    assert!(refused(folder.path(), &["reproduce", "x"], 1).contains("c-compound"));
+}

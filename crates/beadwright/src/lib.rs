@@ -31,6 +31,7 @@
 //! ```
 
 pub mod bead;
+pub mod compare;
 pub mod deposit;
 pub mod example;
 pub mod fill;
@@ -44,7 +45,10 @@ pub mod plan_file;
 pub mod post;
 pub mod profile;
 pub mod program;
+pub mod readback;
 pub mod report;
+pub mod reproduce;
+pub mod simulate;
 pub mod slice;
 pub mod task;
 pub mod template;

@@ -8,24 +8,16 @@ use glam::DVec3;
 pub enum Along {
     /// The same everywhere.
     Same(f64),
-    /// One value a point; on the way to the next point the mean of both holds.
+    /// One value a point, which holds on the way to the next point.
     Each(Vec<f64>),
 }
 
 impl Along {
-    /// The value at a point.
-    pub fn at(&self, point: usize) -> f64 {
-        match self {
-            Self::Same(value) => *value,
-            Self::Each(values) => values.get(point).or(values.first()).copied().unwrap_or_default(),
-        }
-    }
-
-    /// The value on the way from a point to the next; behind the last point comes the first.
+    /// The value on the way from a point to the next.
     pub fn after(&self, point: usize) -> f64 {
         match self {
             Self::Same(value) => *value,
-            Self::Each(_) => (self.at(point) + self.at(point + 1)) / 2.0,
+            Self::Each(values) => values.get(point).or(values.last()).copied().unwrap_or_default(),
         }
     }
 
@@ -45,10 +37,12 @@ impl Along {
         }
     }
 
-    /// The values from the last point to the first.
+    /// The values of the path run backwards: every piece keeps its own, also the closing one.
     pub fn reverse(&mut self) {
-        if let Self::Each(values) = self {
-            values.reverse();
+        if let Self::Each(values) = self
+            && let [pieces @ .., _] = &mut values[..]
+        {
+            pieces.reverse();
         }
     }
 
@@ -127,6 +121,16 @@ impl Pass {
     /// Deposited length, mm.
     pub fn length(&self) -> f64 {
         self.segments().map(|s| s.length()).sum()
+    }
+
+    /// Turns sharper than 30° from one piece to the next.
+    pub fn turns(&self) -> usize {
+        const COS_30: f64 = 0.866_025;
+        let way = |s: &Segment| (s.to - s.from).normalize_or_zero();
+        let ways: Vec<DVec3> = self.segments().map(|s| way(&s)).collect();
+        let closing = self.closed.then(|| ways.last().zip(ways.first())).flatten();
+        let pairs = ways.windows(2).map(|w| (&w[0], &w[1])).chain(closing);
+        pairs.filter(|(a, b)| a.dot(**b) < COS_30).count()
     }
 
     /// Time with the arc on, s.

@@ -1,8 +1,13 @@
-//! plan.json, version 1: the plan as text, written layer by layer.
+//! plan.json, version 1: the plan as text, written layer by layer, and read back.
 
+use crate::bead::Bead;
+use crate::deposit::{DepositSettings, Nominal};
+use crate::fill::PassKind;
 use crate::number::push_fixed;
 use crate::plan::{Along, Header, Layer, Pass};
-use planar::Ring;
+use glam::{DVec2, DVec3};
+use planar::{Polygon, Ring};
+use serde::Deserialize;
 use serde_json::json;
 
 /// Version of the format.
@@ -12,9 +17,15 @@ pub const VERSION: u32 = 1;
 const DECIMALS: usize = 4;
 
 /// The text before the first layer.
-pub fn head(header: &Header) -> String {
+pub fn head(header: &Header, settings: &DepositSettings) -> String {
     let Header { part, profile, strategy, .. } = header;
-    let fields = json!({ "part": part, "profile": profile, "strategy": strategy }).to_string();
+    let Nominal { bead, speed, rise } = settings.nominal;
+    let fields = json!({
+        "part": part, "profile": profile, "strategy": strategy,
+        "bead": { "width": bead.width, "height": bead.height, "speed": speed, "rise": rise },
+        "machining_allowance": settings.machining_allowance,
+    });
+    let fields = fields.to_string();
     format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
@@ -80,4 +91,144 @@ fn list<T>(text: &mut String, items: &[T], mut write: impl FnMut(&mut String, &T
         write(text, item);
     }
     text.push(']');
+}
+
+/// A plan read from its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanFile {
+    /// Part, profile and strategy.
+    pub header: Header,
+    /// The bead it was made for; none in files that do not tell.
+    pub settings: Option<DepositSettings>,
+    /// Its layers; planned areas and warnings are not in the file.
+    pub layers: Vec<Layer>,
+}
+
+/// Why a plan file cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanFileError {
+    /// Not JSON, or not a plan.
+    #[error("this is not a plan.json of Beadwright: {0}. Make the plan again with `beadwright plan`.")]
+    Malformed(#[from] serde_json::Error),
+    /// Another version.
+    #[error("this plan.json has version {0}; version {VERSION} is read. Make the plan again with `beadwright plan`.")]
+    Version(u32),
+    /// Values that do not belong together.
+    #[error("layer {layer}, pass {pass}: {reason}. Make the plan again with `beadwright plan`.")]
+    Pass {
+        /// Number of the layer, from 1.
+        layer: usize,
+        /// Number of the pass, from 1.
+        pass: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
+}
+
+/// Reads a plan file.
+///
+/// # Errors
+/// [`PlanFileError`] with the line, or the layer and pass.
+pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
+    let file: File = serde_json::from_str(text)?;
+    if file.version != VERSION {
+        return Err(PlanFileError::Version(file.version));
+    }
+    let settings = file.bead.map(|b| {
+        let bead = Bead { width: b.width, height: b.height };
+        DepositSettings::new(Nominal { bead, speed: b.speed, rise: b.rise }, file.machining_allowance)
+    });
+    let layers = file.layers.into_iter().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
+    let header = Header { part: file.part, profile: file.profile, strategy: file.strategy, layers: layers.len() };
+    Ok(PlanFile { header, settings, layers })
+}
+
+#[derive(Deserialize)]
+struct File {
+    version: u32,
+    #[serde(default)]
+    part: String,
+    #[serde(default)]
+    profile: String,
+    #[serde(default)]
+    strategy: String,
+    bead: Option<FileBead>,
+    #[serde(default)]
+    machining_allowance: f64,
+    layers: Vec<FileLayer>,
+}
+
+#[derive(Deserialize)]
+struct FileBead {
+    width: f64,
+    height: f64,
+    speed: f64,
+    rise: f64,
+}
+
+#[derive(Deserialize)]
+struct FileLayer {
+    index: usize,
+    z: f64,
+    height: f64,
+    islands: Vec<FileIsland>,
+    passes: Vec<FilePass>,
+}
+
+#[derive(Deserialize)]
+struct FileIsland {
+    outline: Vec<DVec2>,
+    holes: Vec<Vec<DVec2>>,
+}
+
+#[derive(Deserialize)]
+struct FilePass {
+    kind: PassKind,
+    closed: bool,
+    points: Vec<DVec3>,
+    width: FileAlong,
+    speed: FileAlong,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum FileAlong {
+    Same(f64),
+    Each(Vec<f64>),
+}
+
+impl FileLayer {
+    fn layer(self) -> Result<Layer, PlanFileError> {
+        let Self { index, z, height, islands, passes } = self;
+        let islands: Vec<Polygon> = islands.into_iter().map(FileIsland::polygon).collect();
+        let read = |(i, pass): (usize, FilePass)| {
+            pass.pass().map_err(|reason| PlanFileError::Pass { layer: index + 1, pass: i + 1, reason })
+        };
+        let passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+        let slice_area = islands.iter().map(Polygon::area).sum();
+        Ok(Layer { index, z, height, islands, passes, slice_area, ..Layer::default() })
+    }
+}
+
+impl FileIsland {
+    fn polygon(self) -> Polygon {
+        Polygon { outer: Ring::new(self.outline), holes: self.holes.into_iter().map(Ring::new).collect() }
+    }
+}
+
+impl FilePass {
+    fn pass(self) -> Result<Pass, &'static str> {
+        let count = self.points.len();
+        if count < 2 {
+            return Err("a pass needs two points");
+        }
+        let along = |along: FileAlong| match along {
+            FileAlong::Same(value) if value > 0.0 => Ok(Along::Same(value)),
+            FileAlong::Each(values) if values.len() != count => Err("width and speed need one value, or one per point"),
+            FileAlong::Each(values) if values.iter().all(|&v| v > 0.0) => Ok(Along::Each(values)),
+            _ => Err("widths and speeds must be greater than 0"),
+        };
+        let (width, speed) = (along(self.width)?, along(self.speed)?);
+        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, speed })
+    }
 }

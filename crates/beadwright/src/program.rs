@@ -105,7 +105,7 @@ impl Programmer {
 fn distinct(pass: &Pass) -> Vec<(DVec3, f64)> {
     let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
     let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(pass.points.len() + 1);
-    let first = pass.start().map(|p| (p, pass.speed.at(0)));
+    let first = pass.start().map(|p| (p, pass.speed.after(0)));
     for (to, speed) in first.into_iter().chain(pass.segments().map(|s| (s.to, s.speed))) {
         let to = round(to);
         if moves.last().is_none_or(|(last, _)| last.distance(to) >= MIN_MOVE_MM) {

@@ -24,3 +24,8 @@ pub fn unknown_placeholder<'a>(template: &'a str, known: &[&str]) -> Option<&'a 
     let unknown = parts(template).find_map(|(_, name)| name.filter(|n| !known.contains(n)));
     unknown.or_else(|| open.map(|at| &template[at + 2..]))
 }
+
+/// Whether a template has a placeholder.
+pub fn has_placeholder(template: &str) -> bool {
+    parts(template).any(|(_, name)| name.is_some())
+}

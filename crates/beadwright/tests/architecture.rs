@@ -13,6 +13,8 @@ const ROWS: &[&[&str]] = &[
     &["bead"],
     &["fill"],
     &["order", "pass"],
+    // Reads text and needs nothing; the deposit model judges what it finds.
+    &["readback"],
     &["deposit"],
     // A profile holds the settings of all stages above; its limits know the names of posts.
     &["profile"],
@@ -20,7 +22,10 @@ const ROWS: &[&[&str]] = &[
     &["plan_file", "program"],
     &["post"],
     &["report"],
+    &["simulate"],
     &["example"],
+    &["compare"],
+    &["reproduce"],
 ];
 
 /// Arrows that run within a row or up, on purpose.

@@ -98,7 +98,7 @@ fn no_volume_is_lost() {
         // y = a sin φ takes the steep edge out; along t the height has kinks at ±ρ from both ends.
         let across = |phi: f64| {
             let (y, rho) = (2.5 * phi.sin(), 2.5 * phi.cos());
-            let mut kinks = vec![-rho, rho, length - rho, length + rho];
+            let mut kinks = [-rho, rho, length - rho, length + rho];
             kinks.sort_by(f64::total_cmp);
             let inner = |pair: &[f64]| {
                 // t = middle − half cos ψ takes the roots at the kinks out.
@@ -197,8 +197,8 @@ fn width_and_speed_change_the_bead_by_the_balance_of_metal() {
     // Half the speed is twice the metal; spread over 6 mm instead of 5.
     assert!((height(&pass, (25.0, 0.0)) - 1.5 * 2.0 * 5.0 / 6.0).abs() < 1e-9);
     assert_eq!(height(&pass, (25.0, 3.01)), 0.0);
-    // On the way from one value to another the mean holds.
-    pass.width = Along::Each(vec![4.0, 6.0]);
+    // A value holds on the way to the next point.
+    pass.width = Along::Each(vec![5.0, 6.0]);
     pass.speed = Along::Same(4.0);
     assert!((height(&pass, (25.0, 0.0)) - 1.5).abs() < 1e-9);
 }

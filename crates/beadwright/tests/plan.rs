@@ -210,7 +210,8 @@ fn gcode_reads_back_as_planned() {
 fn plan_json_holds_the_plan() {
     let profile = profile("cmt-al2319-kuka", "compound", 0.0);
     let plan = plan_of(&example::find("gear").unwrap().mesh(), &profile);
-    let mut text = plan_file::head(&plan.header);
+    let settings = plan::deposit_settings(&profile);
+    let mut text = plan_file::head(&plan.header, &settings);
     plan.layers.iter().for_each(|l| text.push_str(&plan_file::layer(l, l.index == 0)));
     text.push_str(plan_file::tail());
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -228,6 +229,22 @@ fn plan_json_holds_the_plan() {
             assert!(points.iter().zip(&pass.points).all(|(a, b)| distance(*a, b.to_array()) < 1e-4));
             assert_eq!(read["speed"].as_f64(), Some(10.5));
         }
+    }
+    let read = plan_file::read(&text).unwrap();
+    assert_eq!((read.header, read.settings.unwrap()), (plan.header.clone(), settings));
+    for (read, layer) in read.layers.iter().zip(&plan.layers) {
+        assert!((read.slice_area / layer.slice_area - 1.0).abs() < 1e-6);
+        assert_eq!(read.passes.len(), layer.passes.len());
+        assert!(read.passes.iter().zip(&layer.passes).all(|(a, b)| (a.length() - b.length()).abs() < 0.01));
+    }
+    for (from, to, word) in [
+        ("\"version\":1", "\"version\":9", "version 9"),
+        ("\"speed\":10.5", "\"speed\":-1", "greater than 0"),
+        ("\"kind\":\"contour\"", "\"kind\":\"loop\"", "unknown variant"),
+        ("\"layers\":[", "\"layers\":{", "line 1"),
+    ] {
+        let error = plan_file::read(&text.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(error.contains(word), "{from}: {error}");
     }
 }
 

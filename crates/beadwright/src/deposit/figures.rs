@@ -127,6 +127,18 @@ impl Figures {
         if self.area > 0.0 { (self.squares / self.area - mean * mean).max(0.0).sqrt() } else { 0.0 }
     }
 
+    /// All figures for machines, the percentages among them.
+    pub fn summary(&self) -> serde_json::Value {
+        let mut value = serde_json::json!(self);
+        value["void_percent"] = self.void_percent().into();
+        value["low_percent"] = self.low_percent().into();
+        value["overfill_percent"] = self.overfill_percent().into();
+        value["outside_percent"] = self.outside_percent().into();
+        value["mean_height_mm"] = self.mean().into();
+        value["height_deviation_mm"] = self.deviation().into();
+        value
+    }
+
     fn percent(&self, part: f64) -> f64 {
         if self.area > 0.0 { 100.0 * part / self.area } else { 0.0 }
     }

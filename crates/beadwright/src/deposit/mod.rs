@@ -41,8 +41,10 @@ pub const OUTSIDE: f64 = 0.05;
 pub const RIM: f64 = 0.25;
 /// Grid points across a bead where nothing else is asked for.
 pub const POINTS_ACROSS: f64 = 20.0;
-/// No grid has more points: a larger part gets a coarser grid.
-pub const MOST_POINTS: usize = 64_000_000;
+/// A part whose layers have more points in all gets a coarser grid.
+pub const MANY_POINTS: f64 = 5e8;
+/// No layer has more points.
+pub const MOST_POINTS: f64 = 6.4e7;
 
 /// How to judge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,10 +63,12 @@ impl DepositSettings {
         Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS }
     }
 
-    /// With a step that keeps the grid over a part below [`MOST_POINTS`].
-    pub fn fitted_to(mut self, bounds: &Bounds) -> Self {
+    /// With a grid for a part of so many layers: up to twice as coarse where all layers together would have more than
+    /// [`MANY_POINTS`], and as coarse as need be where one would have more than [`MOST_POINTS`].
+    pub fn fitted_to(mut self, bounds: &Bounds, layers: usize) -> Self {
         let area = bounds.size().x * bounds.size().y;
-        self.step = self.step.max((area / MOST_POINTS as f64).sqrt());
+        let many = (area * layers as f64 / MANY_POINTS).sqrt();
+        self.step = self.step.max(many.min(2.0 * self.step)).max((area / MOST_POINTS).sqrt());
         self
     }
 }

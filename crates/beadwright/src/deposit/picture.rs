@@ -48,7 +48,8 @@ impl Canvas {
     pub(super) fn paint(&self, band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<u8> {
         let (h, columns) = (nominal.bead.height, band.grid.columns);
         let steps = f64::from(u8::MAX - FIRST_HEIGHT);
-        let value = |height: f64| FIRST_HEIGHT + (height / h / FULL_SCALE * steps).round().clamp(0.0, steps) as u8;
+        let scale = steps / (h * FULL_SCALE);
+        let value = |height: f64| FIRST_HEIGHT + (height * scale + 0.5).min(steps) as u8;
         let mut values: Vec<u8> =
             band.heights.iter().map(|&height| if height > NO_METAL { value(height) } else { EMPTY }).collect();
         for (row, heights) in band.rows() {

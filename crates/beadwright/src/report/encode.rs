@@ -2,7 +2,8 @@
 //!
 //! The head is [`HEAD`] numbers (f64, little-endian), so that the page can draw its chart without inflating anything:
 //! z, height, slice area, planned area, deposited length, arc time, travel length, passes, warnings, lowest x and y,
-//! size in x and y, resolution, points. The body is a table of u32, the points and the warnings:
+//! size in x and y, resolution, points, judged area, void area, overfilled area. The body is a table of u32, the points
+//! and the warnings:
 //!
 //! | table | |
 //! | --- | --- |
@@ -13,7 +14,11 @@
 //! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, from the lowest
 //! corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The rest is
 //! JSON: the warnings as `[x, y, text]`.
+//!
+//! The [height field](map) of a layer is base64 of a deflated body: lowest x and y, pixel, pixels in x and y (f64,
+//! little-endian), then a byte a pixel as in [`Picture`].
 
+use crate::deposit::{Figures, Picture};
 use crate::fill::PassKind;
 use crate::plan::{Along, Layer, Pass};
 use crate::warning::{Warning, WarningKind};
@@ -25,8 +30,8 @@ use glam::{DVec2, I64Vec2};
 use planar::{Bounds, Polygon, Ring};
 use std::io::Write;
 
-/// Numbers in the head; 15 × 8 bytes are 160 characters of base64, with nothing left over.
-pub const HEAD: usize = 15;
+/// Numbers in the head; 18 × 8 bytes are 192 characters of base64, with nothing left over.
+pub const HEAD: usize = 18;
 
 /// Coordinates are at least this coarse, mm.
 const FINEST: f64 = 0.01;
@@ -37,11 +42,12 @@ const SPAN: f64 = 32_000.0;
 /// Warnings of one layer that are told singly.
 const MOST_WARNINGS: usize = 30;
 
-/// One layer as base64. It knows nothing of other layers, so callers may encode several at a time.
-pub fn layer(layer: &Layer) -> String {
+/// One layer, and what the deposit model says of it, as base64. It knows nothing of other layers, so callers may encode
+/// several at a time.
+pub fn layer(layer: &Layer, figures: Option<&Figures>) -> String {
     let bounds = Bounds::of(points(layer)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let resolution = (bounds.size().max_element() / SPAN).max(FINEST);
-    let bytes = head(layer, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
+    let bytes = head(layer, figures, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
     STANDARD.encode(deflate(bytes, &body(layer, bounds.min, resolution)))
 }
 
@@ -50,8 +56,9 @@ fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
     rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()))
 }
 
-fn head(layer: &Layer, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
+fn head(layer: &Layer, figures: Option<&Figures>, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
     let size = bounds.size();
+    let figures = figures.copied().unwrap_or_default();
     [
         layer.z,
         layer.height,
@@ -68,7 +75,18 @@ fn head(layer: &Layer, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
         size.y,
         resolution,
         points(layer).count() as f64,
+        figures.area,
+        figures.void,
+        figures.overfill,
     ]
+}
+
+/// A height field as base64.
+pub fn map(picture: &Picture) -> String {
+    let head = [picture.low.x, picture.low.y, picture.pixel, picture.width as f64, picture.height as f64];
+    let mut bytes: Vec<u8> = head.iter().flat_map(|v| v.to_le_bytes()).collect();
+    bytes.extend(&picture.values);
+    STANDARD.encode(deflate(Vec::new(), &bytes))
 }
 
 fn body(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<u8> {
@@ -97,7 +115,7 @@ fn table(layer: &Layer) -> Vec<u32> {
         let flags = if pass.closed { 256 } else { 0 } + if varies { 512 } else { 0 };
         table.extend([kind(pass.kind) + flags, pass.points.len() as u32]);
         for i in 0..if varies { pass.points.len() } else { 1 } {
-            table.extend([&pass.width, &pass.speed].map(|along| (along.at(i) * 1e3).round() as u32));
+            table.extend([&pass.width, &pass.speed].map(|along| (along.after(i) * 1e3).round() as u32));
         }
     }
     table

@@ -1,19 +1,13 @@
 // Reading layers: encode.rs tells the format. A layer is inflated when it is shown.
 
-const HEAD = 15, HEAD_CHARACTERS = 160, KEPT = 48;
-
-const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+const HEAD = 18, HEAD_CHARACTERS = 192, KEPT = 48;
 
 function readHead(text) {
-  const [z, height, slice, planned, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points] =
+  const [z, height, slice, planned, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points, judged, empty, full] =
     new Float64Array(bytesOf(text.slice(0, HEAD_CHARACTERS)).buffer, 0, HEAD);
   const share = slice > 0 ? 100 * planned / slice : 0;
-  return { z, height, slice, planned, share, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points };
-}
-
-async function inflate(bytes) {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const voids = judged > 0 ? 100 * empty / judged : 0, overfill = judged > 0 ? 100 * full / judged : 0;
+  return { judged, voids, overfill, z, height, slice, planned, share, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points };
 }
 
 // The points of all paths as [x0, y0, x1, y1, …], mm.
@@ -46,7 +40,6 @@ async function readLayer(text, head) {
   const passes = list(() => {
     const flags = next(), count = next(), closed = (flags & 256) > 0;
     const along = Array.from({ length: flags & 512 ? count : 1 }, () => [next() / 1e3, next() / 1e3]);
-    if (along.length > 1 && closed) along.push(along[0]);
     return { kind: Math.min(flags & 255, 2), along, count, closed };
   }).map(({ kind, along, count, closed }) => ({ kind, along, xy: path(count, closed) }));
   let seconds = 0;
@@ -55,10 +48,14 @@ async function readLayer(text, head) {
   return { islands, passes, seconds, warnings };
 }
 
-// Width and speed from a point to the next: the mean of both ends.
-function after({ along }, i) {
-  return along.length > 1 ? [0, 1].map(k => (along[i][k] + along[i + 1][k]) / 2) : along[0];
+// A layer with its height field, if it has one.
+async function readWhole(index) {
+  const [layer, map] = await Promise.all([readLayer(data.layers[index], heads[index]), readMap(data.maps[index])]);
+  return { ...layer, map };
 }
+
+// Width and speed from a point to the next.
+const after = ({ along }, i) => along[along.length > 1 ? i : 0];
 
 // When the torch is at each point, from the start of the layer with the arc on, s.
 function timePass(pass, start) {
@@ -78,7 +75,7 @@ const kept = new Map();
 
 // The promise of a layer; the last ones are kept.
 function layerAt(index) {
-  const layer = kept.get(index) ?? readLayer(data.layers[index], heads[index]);
+  const layer = kept.get(index) ?? readWhole(index);
   kept.delete(index);
   kept.set(index, layer);
   if (kept.size > KEPT) kept.delete(kept.keys().next().value);

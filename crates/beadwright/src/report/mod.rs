@@ -5,13 +5,17 @@
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`svg`] | one layer as a standalone picture |
+//! | [`sheet`], [`plot`] | other pages: height fields side by side, tables, curves |
 //! | `page.html`, `page.css` | the page |
-//! | `layers.js`, `picture.js`, `page.js` | reading layers, drawing one, the controls |
+//! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 
 pub mod encode;
+pub mod plot;
+pub mod sheet;
 pub mod svg;
 mod tables;
 
+use crate::deposit::{Figures, Judgement};
 use crate::model::RepairReport;
 use crate::plan::{Header, Layer, Pass, Summary};
 use crate::profile::Profile;
@@ -24,22 +28,23 @@ use serde_json::json;
 pub struct Report {
     header: Header,
     layers: Vec<String>,
+    maps: Vec<String>,
+    figures: Option<Figures>,
 }
 
 impl Report {
     /// A report without layers yet.
     pub fn new(header: &Header) -> Self {
-        Self { header: header.clone(), layers: Vec::with_capacity(header.layers.min(crate::plan::MAX_LAYERS)) }
+        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None }
     }
 
-    /// Takes the next layer.
-    pub fn layer(&mut self, layer: &Layer) {
-        self.encoded(encode::layer(layer));
-    }
-
-    /// Takes the next layer, already [encoded](encode::layer).
-    pub fn encoded(&mut self, layer: String) {
-        self.layers.push(layer);
+    /// Takes the next layer, and what the deposit model says of it.
+    pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) {
+        self.layers.push(encode::layer(layer, judgement.map(|j| &j.figures)));
+        if let Some(judgement) = judgement {
+            self.figures.get_or_insert_default().add(&judgement.figures);
+            self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
+        }
     }
 
     /// The page. `files` are the names of the files that were written.
@@ -50,23 +55,34 @@ impl Report {
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, repair)),
-            ("totals", tables::totals(summary)),
+            ("totals", tables::totals(summary, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
             ("warnings", tables::warnings(summary, repair)),
-            ("data", data(profile, &self.layers)),
-            ("js", [include_str!("layers.js"), include_str!("picture.js"), include_str!("page.js")].concat()),
+            ("data", data(profile, &self.layers, &self.maps)),
+            (
+                "js",
+                [
+                    include_str!("inflate.js"),
+                    include_str!("layers.js"),
+                    include_str!("heat.js"),
+                    include_str!("picture.js"),
+                    include_str!("page.js"),
+                ]
+                .concat(),
+            ),
         ];
         template::expand(include_str!("page.html"), &values)
     }
 }
 
 /// What the scripts need, as JSON that may stand in a `script` element.
-fn data(profile: &Profile, layers: &[String]) -> String {
+fn data(profile: &Profile, layers: &[String], maps: &[String]) -> String {
     let bead = json!({ "width": profile.bead.width }).to_string().replace('<', "\\u003c");
     // Base64 needs no escaping.
-    format!("{{\"bead\":{bead},\"layers\":[\n\"{}\"\n]}}", layers.join("\",\n\""))
+    let list = |texts: &[String]| texts.iter().map(|text| format!("\n\"{text}\"")).collect::<Vec<_>>().join(",");
+    format!("{{\"bead\":{bead},\"layers\":[{}],\"maps\":[{}]}}", list(layers), list(maps))
 }
 
 /// Moves without arc within a layer: from the end of a pass to the start of the next.

@@ -19,6 +19,7 @@ function tellLayer() {
     ["Passes", `${head.passes}`], ["Deposited length", metres(head.length)], ["Arc time", clock(head.seconds)],
     ["Travel across", metres(head.travel)], ["Layer height", `${head.height.toFixed(2)} mm`],
     ["Planned / slice area", area(head.planned), ` of ${area(head.slice)} (${head.share.toFixed(1)} %)`],
+    ...head.judged ? [["Void", `${head.voids.toFixed(2)} %`], ["Overfill", `${head.overfill.toFixed(2)} %`]] : [],
     ["Warnings", head.warnings ? `${head.warnings}` : "none"],
   ];
   $("numbers").replaceChildren(...numbers.map(([name, value, more]) => {
@@ -63,7 +64,7 @@ async function show(index) {
   for (const near of [index + 1, index - 1]) if (near >= 0 && near < heads.length) layerAt(near);
 }
 
-const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, share: v => `${v.toFixed(1)} %` };
+const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, share: v => `${v.toFixed(1)} %`, voids: v => `${v.toFixed(2)} %`, overfill: v => `${v.toFixed(2)} %` };
 
 function drawBars() {
   const ctx = bars.getContext("2d"), width = bars.clientWidth, height = bars.clientHeight, n = heads.length;
@@ -170,8 +171,8 @@ function connect() {
   document.querySelectorAll("[name=colour]").forEach(radio => {
     radio.onchange = () => {
       shown.byOrder = radio.value === "order";
-      $("key-kind").hidden = shown.byOrder;
-      $("key-order").hidden = !shown.byOrder;
+      shown.heat = radio.value === "heat";
+      for (const key of ["kind", "order", "heat"]) $(`key-${key}`).hidden = radio.value !== key;
       redraw();
     };
   });
@@ -195,6 +196,10 @@ function connect() {
 
 function start() {
   if (!heads.length) return void ($("viewer").hidden = true);
+  if (data.maps.length) {
+    document.querySelectorAll(".judged").forEach(node => { node.hidden = false; });
+    drawHeatKey($("heat-ramp"));
+  }
   readColours();
   connect();
   followPointers();

@@ -5,7 +5,7 @@ const CHUNKS = 240;
 
 const picture = document.getElementById("picture");
 const view = { scale: 1, x: 0, y: 0, width: 0, height: 0, fitted: true };
-const shown = { layer: null, index: 0, until: Infinity, byOrder: false, width: true, travels: true, ends: true, outline: true };
+const shown = { layer: null, index: 0, until: Infinity, byOrder: false, heat: false, width: true, travels: true, ends: true, outline: true };
 let colours = {};
 
 function readColours() {
@@ -215,14 +215,15 @@ function draw() {
   ctx.fillStyle = colours.slice;
   ctx.fill(layer.outline, "evenodd");
   const passes = layer.passes.filter(pass => pass.xy.length && (pass.start < shown.until || pass.end <= shown.until));
-  drawBeads(ctx, passes, layer);
+  if (shown.heat && layer.map) drawMap(ctx, layer.map, view.scale);
+  else drawBeads(ctx, passes, layer);
   if (shown.outline) {
     ctx.strokeStyle = colours.outline;
     ctx.lineWidth = 1.4 / view.scale;
     ctx.stroke(layer.outline);
   }
-  if (shown.travels) drawTravels(ctx, passes);
-  if (shown.ends) drawEnds(ctx, passes);
+  if (shown.travels && !shown.heat) drawTravels(ctx, passes);
+  if (shown.ends && !shown.heat) drawEnds(ctx, passes);
   drawWarnings(ctx, layer.warnings);
   const last = passes.at(-1);
   if (last && shown.until < layer.seconds) drawTorch(ctx, last);

@@ -2,6 +2,7 @@
 
 use super::escape;
 use crate::bead::Overlap;
+use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -32,7 +33,7 @@ pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
 }
 
 /// The totals of the plan.
-pub(super) fn totals(summary: &Summary) -> String {
+pub(super) fn totals(summary: &Summary, figures: Option<&Figures>) -> String {
     let m: &Metrics = &summary.metrics;
     let mut rows = vec![
         ("Layers", m.layers.to_string()),
@@ -48,6 +49,11 @@ pub(super) fn totals(summary: &Summary) -> String {
     rows.push(("Part volume", volume(m.part_volume_mm3)));
     rows.push(("Deposited volume", volume(m.deposited_volume_mm3)));
     rows.push(("Planned / slice area", format!("{:.2} %", 100.0 * m.coverage())));
+    if let Some(f) = figures {
+        rows.push(("Void, low", format!("{:.2} %, {:.2} % of the area", f.void_percent(), f.low_percent())));
+        rows.push(("Overfill, outside", format!("{:.2} %, {:.2} %", f.overfill_percent(), f.outside_percent())));
+        rows.push(("Height", format!("{:.2} mm ± {:.2} mm a layer", f.mean(), f.deviation())));
+    }
     table(&rows)
 }
 

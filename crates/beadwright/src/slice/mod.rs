@@ -60,10 +60,20 @@ impl Layer {
     }
 }
 
+/// Where a layer lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slab {
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// Thickness, mm; the layer is cut at its middle.
+    pub height: f64,
+}
+
 /// A mesh prepared for cutting; layers can be cut in any order.
 pub struct Slicer<'a> {
     mesh: &'a Mesh,
     options: SliceOptions,
+    slabs: Vec<Slab>,
     /// Height of each plane, mm.
     planes: Vec<f64>,
     /// Level of each vertex. Small integers, so that sorting and walking seldom touch the coordinates.
@@ -80,12 +90,22 @@ impl<'a> Slicer<'a> {
     /// # Errors
     /// [`Cancelled`] when the task was.
     pub fn new(mesh: &'a Mesh, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
-        task.step(Stage::Slice, 0.0)?;
-        let h = options.layer_height;
+        let height = options.layer_height;
         let top = mesh.bounds().1.z.max(0.0);
         // A last layer that would be less than half full is left out: its middle lies above the part.
-        let count = (top / h - 0.5).ceil().max(1.0) as usize;
-        let planes: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * h).collect();
+        let count = (top / height - 0.5).ceil().max(1.0) as usize;
+        let slabs = (0..count).map(|k| Slab { z: (k + 1) as f64 * height, height }).collect();
+        Self::of_slabs(mesh, slabs, options, task)
+    }
+
+    /// Sorts the triangles into layers of any thickness, the lowest first; `options.layer_height` tells their usual one.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn of_slabs(mesh: &'a Mesh, slabs: Vec<Slab>, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
+        task.step(Stage::Slice, 0.0)?;
+        let (h, count) = (options.layer_height, slabs.len());
+        let planes: Vec<f64> = slabs.iter().map(|slab| slab.z - slab.height / 2.0).collect();
         let levels: Vec<u32> = mesh.vertices.par_iter().map(|v| level(&planes, h, v.z)).collect();
         task.check()?;
         let batches = |t: &[u32; 3]| {
@@ -107,7 +127,7 @@ impl<'a> Slicer<'a> {
             }
         }
         starts.pop();
-        Ok(Self { mesh, options, planes, levels, starts, items, scratch: Mutex::default() })
+        Ok(Self { mesh, options, slabs, planes, levels, starts, items, scratch: Mutex::default() })
     }
 
     /// Number of layers.
@@ -162,8 +182,8 @@ impl<'a> Slicer<'a> {
     }
 
     fn cut(&self, index: usize, triangles: &[u32]) -> Layer {
-        let SliceOptions { layer_height: height, close_gap, simplify } = self.options;
-        let mut layer = Layer { index, z: (index + 1) as f64 * height, height, ..Layer::default() };
+        let (Slab { z, height }, SliceOptions { close_gap, simplify, .. }) = (self.slabs[index], self.options);
+        let mut layer = Layer { index, z, height, ..Layer::default() };
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
         let Trace { mut rings, open } =
@@ -187,15 +207,11 @@ impl<'a> Slicer<'a> {
 
 /// How many planes lie at height `z` or below.
 fn level(planes: &[f64], spacing: f64, z: f64) -> u32 {
-    // Right but for rounding; the planes themselves decide.
-    let mut level = ((z / spacing + 0.5) as usize).min(planes.len());
-    while level > 0 && planes[level - 1] > z {
-        level -= 1;
-    }
-    while level < planes.len() && planes[level] <= z {
-        level += 1;
-    }
-    level as u32
+    // Right for equal layers but for rounding; the planes themselves decide.
+    let guess = ((z / spacing + 0.5) as usize).min(planes.len());
+    let above = guess == planes.len() || planes[guess] > z;
+    let right = above && (guess == 0 || planes[guess - 1] <= z);
+    if right { guess as u32 } else { planes.partition_point(|&plane| plane <= z) as u32 }
 }
 
 /// The planes that cross a triangle: those above its lowest corner and not above its highest.

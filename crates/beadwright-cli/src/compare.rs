@@ -1,0 +1,107 @@
+//! `beadwright compare`: strategies and programs side by side.
+
+use crate::output::write_file;
+use crate::plan::{deposit_settings, parse_grid};
+use crate::{model, profile, program, progress};
+use anyhow::Context;
+use beadwright::compare::{self, COLUMNS, Chosen, Entry};
+use beadwright::fill;
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: model::Model,
+    /// Profile: a built-in name or a TOML file.
+    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
+    profile: String,
+    /// A value of the profile; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Strategies; all when left out. May be given several times.
+    #[arg(long, short, value_name = "NAME")]
+    strategy: Vec<String>,
+    /// A program of the same part, to be judged beside them; may be given several times.
+    #[arg(long, value_name = "FILE")]
+    program: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: program::Reading,
+    /// Layers to be judged, counted from 1, such as 1,5,10-20; all when left out.
+    #[arg(long, value_parser = parse_layers, value_name = "LIST")]
+    layers: Option<Chosen>,
+    /// Distance of the deposit model's grid points, mm; a twentieth of the bead width when left out.
+    #[arg(long, value_name = "MM", value_parser = parse_grid)]
+    grid: Option<f64>,
+    /// Page with the table and the height fields.
+    #[arg(long, short, default_value = "compare.html", value_name = "FILE")]
+    output: PathBuf,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_layers(text: &str) -> Result<Chosen, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|n| *n > 0);
+    let range = |part: &str| {
+        let (from, to) = part.split_once('-').unwrap_or((part, part));
+        number(from).zip(number(to)).map(|(from, to)| from - 1..to)
+    };
+    let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
+    let ranges = ranges.ok_or_else(|| "layers are counted from 1, such as 1,5,10-20".to_owned())?;
+    Ok(Some(ranges.into_iter().flatten().collect()))
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let all = || fill::STRATEGIES.iter().map(|s| s.name().to_owned()).collect();
+    let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
+    let (task, bar) = progress::task()?;
+    let import = arguments.model.placed(profile.bead.width, &task)?;
+    let settings = deposit_settings(arguments.grid, &profile, &import);
+    let chosen = arguments.layers.clone().flatten();
+    let mut entries = Vec::new();
+    for name in &names {
+        let entry = compare::strategy(&import.mesh, &profile, name, settings, &chosen, &task);
+        entries.push(entry.with_context(|| format!("{}", arguments.model.model.display()))?);
+    }
+    let mut notes = Vec::new();
+    for path in &arguments.program {
+        let loaded = arguments.reading.load(path, &profile, Some(&import), &task)?;
+        entries.push(compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &chosen, &task)?);
+        notes.extend(loaded.notes.into_iter().map(|note| format!("{}: {note}", loaded.name)));
+    }
+    bar.finish_and_clear();
+    let part = arguments.model.part();
+    let lead = format!("Profile {}, beads of {} mm; less is better in every column.", profile.name, profile.bead.width);
+    write_file(&arguments.output, compare::page(&part, &lead, &entries).html().as_bytes())?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value: Vec<_> = entries
+            .iter()
+            .map(|e| serde_json::json!({ "name": e.name, "totals": e.totals, "deposit": e.figures.summary() }))
+            .collect();
+        writeln!(out, "{:#}", serde_json::Value::from(value))?;
+        return Ok(());
+    }
+    print(&mut out, &entries)?;
+    notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    writeln!(out, "\nheight fields in {}", arguments.output.display())?;
+    Ok(())
+}
+
+/// The table, with a star at the best of each column.
+fn print(out: &mut impl Write, entries: &[Entry]) -> std::io::Result<()> {
+    let widest = entries.iter().map(|e| e.name.chars().count()).max().unwrap_or(0);
+    write!(out, "{:widest$}", "")?;
+    COLUMNS.iter().try_for_each(|c| write!(out, " {:>11}", c.name))?;
+    writeln!(out)?;
+    for (entry, cells) in entries.iter().zip(compare::table(entries)) {
+        write!(out, "{:widest$}", entry.name)?;
+        for (text, best) in cells {
+            write!(out, " {:>11}", if best { format!("*{text}") } else { text })?;
+        }
+        writeln!(out)?;
+    }
+    writeln!(out, "{:widest$} * best", "")
+}

@@ -1,0 +1,137 @@
+//! `beadwright simulate`: what a plan or anyone's program would build.
+
+use crate::output::write_file;
+use crate::plan::{deposit_rows, parse_grid};
+use crate::{model, profile, program, progress};
+use beadwright::compare::{self, Entry};
+use beadwright::deposit::DepositSettings;
+use beadwright::model::Units;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// plan.json, or a program in G-code (also a printer's), KRL or RAPID; of several files the main one.
+    file: PathBuf,
+    /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are told.
+    #[arg(long, value_name = "MODEL")]
+    model: Option<PathBuf>,
+    /// Unit of the part's coordinates.
+    #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", requires = "model")]
+    units: Option<Units>,
+    /// Profile with the bead that the program lays: a built-in name or a TOML file.
+    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
+    profile: String,
+    /// A value of the profile, such as bead.width=5; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    #[command(flatten)]
+    reading: program::Reading,
+    /// Distance of grid points, mm; a twentieth of the bead width when left out.
+    #[arg(long, value_name = "MM", value_parser = parse_grid)]
+    grid: Option<f64>,
+    /// Page with the height fields.
+    #[arg(long, short, default_value = "simulate.html", value_name = "FILE")]
+    output: PathBuf,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let (task, bar) = progress::task()?;
+    let part = program::part(arguments.model.as_deref(), arguments.units, &profile, &task)?;
+    let loaded = arguments.reading.load(&arguments.file, &profile, part.as_ref(), &task)?;
+    let settings = DepositSettings { step: arguments.grid.unwrap_or(loaded.settings.step), ..loaded.settings };
+    let entry = compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &None, &task)?;
+    bar.finish_and_clear();
+    let lead = format!(
+        "{} in {} layers, judged by the deposit model with beads of {} mm.",
+        loaded.language,
+        entry.layers.len(),
+        settings.nominal.bead.width
+    );
+    let page = compare::page(&loaded.name, &lead, std::slice::from_ref(&entry));
+    write_file(&arguments.output, page.html().as_bytes())?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let layers: Vec<_> = entry.layers.iter().map(|l| serde_json::json!({ "index": l.index, "z": l.z, "figures": l.figures.summary(), "voids": l.voids, "peaks": l.peaks })).collect();
+        let value = serde_json::json!({ "totals": entry.totals, "deposit": entry.figures.summary(), "layers": layers, "growth": entry.growth, "notes": loaded.notes });
+        writeln!(out, "{value:#}")?;
+        return Ok(());
+    }
+    print(&mut out, &loaded, &entry)?;
+    writeln!(out, "\nheight fields in {}", arguments.output.display())?;
+    Ok(())
+}
+
+fn print(out: &mut impl Write, loaded: &program::Loaded, entry: &Entry) -> std::io::Result<()> {
+    let (t, f) = (&entry.totals, &entry.figures);
+    writeln!(out, "{}  {}, {} layers\n", loaded.name, loaded.language, entry.layers.len())?;
+    let mut rows = vec![
+        ("arc starts", t.arc_starts.to_string()),
+        ("deposited length", format!("{:.2} m", t.deposited_length_mm / 1e3)),
+        ("travel length", format!("{:.2} m", t.travel_length_mm / 1e3)),
+        ("time", format!("{:.1} min", t.total_time_s / 60.0)),
+        ("metal", format!("{:.2} cm³", t.metal_volume_mm3 / 1e3)),
+    ];
+    if f.area > 0.0 {
+        rows.extend(deposit_rows(f));
+        rows.push((
+            "height a layer",
+            format!("{:.2} ± {:.2} mm, {:.2} to {:.2} mm", f.mean(), f.deviation(), f.min, f.max),
+        ));
+    }
+    for (name, value) in rows {
+        writeln!(out, "  {name:<22} {value}")?;
+    }
+    if f.area > 0.0 {
+        print_patches(out, entry)?;
+    }
+    loaded.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))
+}
+
+/// The worst places, and how the stack grows.
+fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
+    const TOLD: usize = 5;
+    let place =
+        |p: &beadwright::deposit::Patch| format!("layer {}, x {:.1} y {:.1}", p.layer + 1, p.place.x, p.place.y);
+    let mut voids: Vec<_> = entry.layers.iter().flat_map(|l| &l.voids).collect();
+    voids.sort_by(|a, b| b.area.total_cmp(&a.area));
+    let mut peaks: Vec<_> = entry.layers.iter().flat_map(|l| &l.peaks).collect();
+    peaks.sort_by(|a, b| b.height.total_cmp(&a.height));
+    if !voids.is_empty() {
+        writeln!(out, "\n  largest voids")?;
+    }
+    for void in voids.iter().take(TOLD) {
+        writeln!(out, "    {:8.2} mm²  {}", void.area, place(void))?;
+    }
+    if !peaks.is_empty() {
+        writeln!(out, "\n  highest peaks")?;
+    }
+    for peak in peaks.iter().take(TOLD) {
+        let cause = peak.cause.map_or("", |c| c.name());
+        writeln!(out, "    {:8.2} mm   {}  {cause}", peak.height, place(peak))?;
+    }
+    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
+    peaks.iter().filter_map(|p| p.cause).for_each(|c| *causes.entry(c.name()).or_default() += 1);
+    if !causes.is_empty() {
+        let counts: Vec<String> = causes.iter().map(|(name, n)| format!("{name} {n}")).collect();
+        writeln!(out, "    by cause: {}", counts.join(", "))?;
+    }
+    if let Some(last) = entry.growth.last().filter(|_| entry.growth.len() > 1) {
+        writeln!(
+            out,
+            "\n  after all layers the highest point stands {:.2} mm above the nominal height (x {:.1} y {:.1}),",
+            last.peak, last.peak_place.x, last.peak_place.y
+        )?;
+        writeln!(
+            out,
+            "  the deepest {:.2} mm below it (x {:.1} y {:.1})",
+            last.hollow, last.hollow_place.x, last.hollow_place.y
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,271 @@
+//! Strategies and programs side by side: what each lays, and what the deposit model says of it.
+
+use crate::deposit::{DepositSettings, Figures, Judge, Nominal, Patch, Picture, stack::Growth};
+use crate::metrics::Metrics;
+use crate::model::Mesh;
+use crate::pass::{Pass, Segment};
+use crate::plan::{self, Header, Layer, PlanError, Sink};
+use crate::profile::Profile;
+use crate::readback;
+use crate::report::plot::{Curve, Plot};
+use crate::report::sheet::Sheet;
+use crate::task::{Cancelled, Stage, Task};
+use glam::DVec2;
+use planar::Bounds;
+use serde::Serialize;
+use std::collections::BTreeSet;
+use std::convert::Infallible;
+
+/// Which layers are judged, by index from 0; none for all.
+pub type Chosen = Option<BTreeSet<usize>>;
+
+/// One strategy or program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Name of the strategy or of the file.
+    pub name: String,
+    /// What it takes.
+    pub totals: Totals,
+    /// What it builds, over the judged layers.
+    pub figures: Figures,
+    /// The judged layers.
+    pub layers: Vec<JudgedLayer>,
+    /// How the stack grows over the judged layers.
+    pub growth: Vec<Growth>,
+}
+
+/// What a strategy or program takes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Totals {
+    /// Arc starts, one a pass.
+    pub arc_starts: usize,
+    /// Length of all beads, mm.
+    pub deposited_length_mm: f64,
+    /// Length of all other moves, mm.
+    pub travel_length_mm: f64,
+    /// Whole time, s.
+    pub total_time_s: f64,
+    /// Wire or filament, by volume, mm³.
+    pub metal_volume_mm3: f64,
+    /// Turns sharper than 30° within passes.
+    pub turns: usize,
+}
+
+/// One layer of an entry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedLayer {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// Its figures.
+    pub figures: Figures,
+    /// The largest voids and the highest peaks.
+    pub voids: Vec<Patch>,
+    /// The highest peaks.
+    pub peaks: Vec<Patch>,
+    /// Its height field.
+    pub picture: Option<Picture>,
+}
+
+/// Pixels of a height field, along its longer side.
+pub const MAP_PIXELS: usize = 320;
+
+/// Patches kept of each layer.
+const KEPT_PATCHES: usize = 8;
+
+/// Judges layers as they come.
+struct Judging<'a> {
+    judge: Judge,
+    chosen: &'a Chosen,
+    layers: Vec<JudgedLayer>,
+    turns: usize,
+}
+
+impl<'a> Judging<'a> {
+    fn new(settings: DepositSettings, bounds: &Bounds, chosen: &'a Chosen) -> Self {
+        let judge = Judge::new(settings).with_stack(bounds).with_pictures(MAP_PIXELS);
+        Self { judge, chosen, layers: Vec::new(), turns: 0 }
+    }
+
+    fn take(&mut self, layer: &Layer) {
+        self.turns += layer.passes.iter().map(Pass::turns).sum::<usize>();
+        if self.chosen.as_ref().is_some_and(|chosen| !chosen.contains(&layer.index)) {
+            return;
+        }
+        let mut judged = self.judge.layer(layer.subject());
+        judged.voids.truncate(KEPT_PATCHES);
+        judged.peaks.truncate(KEPT_PATCHES);
+        let (index, z) = (layer.index, layer.z);
+        let (figures, voids, peaks, picture) = (judged.figures, judged.voids, judged.peaks, judged.picture);
+        self.layers.push(JudgedLayer { index, z, figures, voids, peaks, picture });
+    }
+
+    fn entry(self, name: &str, totals: Totals) -> Entry {
+        let growth = self.judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
+        Entry { name: name.to_owned(), totals, figures: *self.judge.total(), layers: self.layers, growth }
+    }
+}
+
+impl Sink for Judging<'_> {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: &Header) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.take(&layer);
+        Ok(())
+    }
+}
+
+fn bounds(mesh: &Mesh) -> Bounds {
+    let (low, high) = mesh.bounds();
+    Bounds { min: low.truncate(), max: high.truncate() }
+}
+
+/// Plans a mesh with a strategy and judges the chosen layers; only these are kept.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn strategy(
+    mesh: &Mesh,
+    profile: &Profile,
+    name: &str,
+    settings: DepositSettings,
+    chosen: &Chosen,
+    task: &Task,
+) -> Result<Entry, PlanError<Infallible>> {
+    let mut profile = profile.clone();
+    profile.fill.strategy = name.to_owned();
+    let mut judging = Judging::new(settings, &bounds(mesh), chosen);
+    let metrics = plan::plan_layers(name, mesh, &profile, task, &mut judging)?.metrics;
+    let totals = Totals { turns: judging.turns, ..Totals::of_plan(&metrics) };
+    Ok(judging.entry(name, totals))
+}
+
+impl Totals {
+    /// Of a plan.
+    pub fn of_plan(metrics: &Metrics) -> Self {
+        Self {
+            arc_starts: metrics.arc_starts,
+            deposited_length_mm: metrics.deposited_length_mm,
+            travel_length_mm: metrics.travel_length_mm,
+            total_time_s: metrics.total_time_s,
+            metal_volume_mm3: metrics.deposited_volume_mm3,
+            turns: 0,
+        }
+    }
+
+    /// Of a program read back; `layers` are its layers.
+    pub fn of_program(totals: &readback::Totals, layers: &[Layer], nominal: &Nominal) -> Self {
+        let metal = |s: Segment| s.length() * nominal.bead_at(s.width, s.speed).area();
+        Self {
+            arc_starts: totals.arc_starts,
+            deposited_length_mm: totals.deposited_length_mm,
+            travel_length_mm: totals.travel_length_mm,
+            total_time_s: totals.time_s,
+            metal_volume_mm3: layers.iter().flat_map(|l| &l.passes).flat_map(Pass::segments).map(metal).sum(),
+            turns: 0,
+        }
+    }
+}
+
+/// Judges the chosen layers of a program or plan. `layers` hold the islands of the part.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn program(
+    name: &str,
+    layers: &[Layer],
+    totals: Totals,
+    settings: DepositSettings,
+    chosen: &Chosen,
+    task: &Task,
+) -> Result<Entry, Cancelled> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
+    let bounds = Bounds::of(points.chain(outlines)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+    let mut judging = Judging::new(settings, &bounds, chosen);
+    for (done, layer) in layers.iter().enumerate() {
+        task.step(Stage::Deposit, done as f64 / layers.len() as f64)?;
+        judging.take(layer);
+    }
+    let totals = Totals { turns: judging.turns, ..totals };
+    Ok(judging.entry(name, totals))
+}
+
+/// One column of the comparison.
+pub struct Column {
+    /// Heading, with unit.
+    pub name: &'static str,
+    /// Decimals shown.
+    pub decimals: usize,
+    /// Its value.
+    pub value: fn(&Entry) -> f64,
+}
+
+/// The columns; in each, less is better.
+pub const COLUMNS: [Column; 10] = [
+    Column { name: "arc starts", decimals: 0, value: |e| e.totals.arc_starts as f64 },
+    Column { name: "bead m", decimals: 2, value: |e| e.totals.deposited_length_mm / 1e3 },
+    Column { name: "travel m", decimals: 2, value: |e| e.totals.travel_length_mm / 1e3 },
+    Column { name: "time min", decimals: 1, value: |e| e.totals.total_time_s / 60.0 },
+    Column { name: "metal cm³", decimals: 1, value: |e| e.totals.metal_volume_mm3 / 1e3 },
+    Column { name: "turns", decimals: 0, value: |e| e.totals.turns as f64 },
+    Column { name: "void %", decimals: 2, value: |e| e.figures.void_percent() },
+    Column { name: "low %", decimals: 2, value: |e| e.figures.low_percent() },
+    Column { name: "overfill %", decimals: 2, value: |e| e.figures.overfill_percent() },
+    Column { name: "outside %", decimals: 2, value: |e| e.figures.outside_percent() },
+];
+
+/// The cells of the table as text, and whether each is the best of its column.
+pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
+    let text = |entry: &Entry, column: &Column| format!("{:.*}", column.decimals, (column.value)(entry));
+    let best = |column: &Column| {
+        let least = entries.iter().min_by(|a, b| (column.value)(a).total_cmp(&(column.value)(b)));
+        least.map(|entry| text(entry, column))
+    };
+    let cell = |entry: &Entry, column: &Column| {
+        let text = text(entry, column);
+        let is_best = entries.len() > 1 && best(column).as_ref() == Some(&text);
+        (text, is_best)
+    };
+    entries.iter().map(|entry| COLUMNS.iter().map(|column| cell(entry, column)).collect()).collect()
+}
+
+/// The page with the table and the height fields side by side.
+pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
+    let mut page = Sheet::new(title, lead);
+    let head: Vec<&str> = ["", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
+    let rows: Vec<_> = entries
+        .iter()
+        .zip(table(entries))
+        .map(|(entry, cells)| {
+            let first = [entry.name.clone(), entry.layers.len().to_string()].map(|text| (text, false));
+            first.into_iter().chain(cells).collect()
+        })
+        .collect();
+    page.table(&head, &rows);
+    let longest = entries.iter().map(|e| &e.layers).max_by_key(|layers| layers.len());
+    let labels: Vec<String> =
+        longest.into_iter().flatten().map(|l| format!("layer {}, z {:.2} mm", l.index + 1, l.z)).collect();
+    let mut columns = Vec::new();
+    for entry in entries {
+        let maps = (0..labels.len()).map(|k| entry.layers.get(k)?.picture.as_ref()).collect();
+        columns.push((entry.name.clone(), maps));
+    }
+    page.maps(&labels, &columns);
+    if labels.len() > 1 {
+        page.svg(&layer_plot("Void", entries, Figures::void_percent).svg());
+        page.svg(&layer_plot("Overfill", entries, Figures::overfill_percent).svg());
+    }
+    page
+}
+
+fn layer_plot(title: &str, entries: &[Entry], value: fn(&Figures) -> f64) -> Plot {
+    let points = |e: &Entry| e.layers.iter().map(|l| DVec2::new(l.index as f64 + 1.0, value(&l.figures))).collect();
+    let curves = entries.iter().map(|e| Curve { name: e.name.clone(), points: points(e) }).collect();
+    Plot { title: title.to_owned(), x: "layer".to_owned(), y: "% of the area".to_owned(), curves, marks: Vec::new() }
+}

@@ -1,0 +1,147 @@
+//! A line plot as SVG.
+
+use super::escape;
+use crate::number::fixed;
+use glam::DVec2;
+
+/// One curve.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// Name in the legend.
+    pub name: String,
+    /// Points, x ascending.
+    pub points: Vec<DVec2>,
+}
+
+/// A plot.
+#[derive(Debug, Clone, Default)]
+pub struct Plot {
+    /// Title, and names of the axes with their units.
+    pub title: String,
+    /// Name of the x axis with its unit.
+    pub x: String,
+    /// Name of the y axis with its unit.
+    pub y: String,
+    /// The curves.
+    pub curves: Vec<Curve>,
+    /// Values of x with a vertical line and a word.
+    pub marks: Vec<(f64, String)>,
+}
+
+const SIZE: DVec2 = DVec2::new(720.0, 400.0);
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 44.0;
+const BOTTOM: f64 = 56.0;
+const COLOURS: [&str; 6] = ["#1f6fd6", "#d92d3a", "#1a9c4b", "#e8862a", "#7e57c2", "#0e7490"];
+
+impl Plot {
+    /// The picture.
+    pub fn svg(&self) -> String {
+        let all = || self.curves.iter().flat_map(|c| c.points.iter().copied());
+        let marks = self.marks.iter().map(|(x, _)| DVec2::new(*x, 0.0));
+        let Some(bounds) = planar::Bounds::of(all().chain(marks)) else { return String::new() };
+        let (x, y) = (Axis::new(bounds.min.x, bounds.max.x), Axis::new(bounds.min.y.min(0.0), bounds.max.y));
+        let place = |p: DVec2| {
+            let inner = SIZE - DVec2::new(LEFT + RIGHT, TOP + BOTTOM);
+            DVec2::new(LEFT + x.part(p.x) * inner.x, TOP + (1.0 - y.part(p.y)) * inner.y)
+        };
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"system-ui, sans-serif\" font-size=\"13\" class=\"plot\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+            SIZE.x, SIZE.y
+        );
+        text(&mut svg, DVec2::new(LEFT, 20.0), "start", &self.title, "font-weight=\"600\"");
+        for at in x.ticks() {
+            let (a, b) = (place(DVec2::new(at, y.low)), place(DVec2::new(at, y.high)));
+            line(&mut svg, a, b, "#e5e7eb", 1.0);
+            text(&mut svg, a + DVec2::Y * 18.0, "middle", &tick(at, x.step), "");
+        }
+        for at in y.ticks() {
+            let (a, b) = (place(DVec2::new(x.low, at)), place(DVec2::new(x.high, at)));
+            line(&mut svg, a, b, "#e5e7eb", 1.0);
+            text(&mut svg, a + DVec2::new(-8.0, 4.0), "end", &tick(at, y.step), "");
+        }
+        for (at, word) in &self.marks {
+            let (a, b) = (place(DVec2::new(*at, y.low)), place(DVec2::new(*at, y.high)));
+            line(&mut svg, a, b, "#6b7280", 1.5);
+            text(&mut svg, b + DVec2::new(5.0, 12.0), "start", word, "fill=\"#374151\"");
+        }
+        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
+            let points: Vec<String> = curve.points.iter().map(|p| numbers(place(*p))).collect();
+            svg += &format!(
+                "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\" stroke-linejoin=\"round\" points=\"{}\"/>\n",
+                points.join(" ")
+            );
+        }
+        let middle = LEFT + (SIZE.x - LEFT - RIGHT) / 2.0;
+        text(&mut svg, DVec2::new(middle, SIZE.y - 14.0), "middle", &self.x, "");
+        svg += &format!(
+            "<text transform=\"translate(16 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+            SIZE.y / 2.0,
+            escape(&self.y)
+        );
+        self.legend(&mut svg);
+        svg + "</svg>\n"
+    }
+
+    fn legend(&self, svg: &mut String) {
+        let mut at = DVec2::new(LEFT, 36.0);
+        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
+            line(svg, at - DVec2::Y * 4.0, at + DVec2::new(22.0, -4.0), colour, 3.0);
+            text(svg, at + DVec2::X * 28.0, "start", &curve.name, "");
+            at.x += 46.0 + 7.2 * curve.name.chars().count() as f64;
+        }
+    }
+}
+
+struct Axis {
+    low: f64,
+    high: f64,
+    step: f64,
+}
+
+impl Axis {
+    /// About six ticks at 1, 2 or 5 times a power of ten.
+    fn new(low: f64, high: f64) -> Self {
+        let span = (high - low).max(1e-9);
+        let power = 10_f64.powf((span / 6.0).log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * power).find(|s| span / s <= 7.0).unwrap_or(span);
+        Self { low: (low / step).floor() * step, high: (high / step).ceil() * step, step }
+    }
+
+    fn part(&self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low).max(1e-12)
+    }
+
+    fn ticks(&self) -> impl Iterator<Item = f64> + '_ {
+        let count = ((self.high - self.low) / self.step).round() as usize;
+        (0..=count).map(|k| self.low + k as f64 * self.step)
+    }
+}
+
+fn tick(value: f64, step: f64) -> String {
+    fixed(value, (-step.log10().floor()).clamp(0.0, 6.0) as usize)
+}
+
+fn numbers(p: DVec2) -> String {
+    format!("{},{}", fixed(p.x, 1), fixed(p.y, 1))
+}
+
+fn line(svg: &mut String, a: DVec2, b: DVec2, colour: &str, width: f64) {
+    *svg += &format!(
+        "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{colour}\" stroke-width=\"{width}\"/>\n",
+        fixed(a.x, 1),
+        fixed(a.y, 1),
+        fixed(b.x, 1),
+        fixed(b.y, 1)
+    );
+}
+
+fn text(svg: &mut String, at: DVec2, anchor: &str, words: &str, more: &str) {
+    *svg += &format!(
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\" {more}>{}</text>\n",
+        fixed(at.x, 1),
+        fixed(at.y, 1),
+        escape(words)
+    );
+}

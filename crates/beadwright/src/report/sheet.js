@@ -1,0 +1,48 @@
+// Height fields side by side.
+
+function make(name, parent, properties = {}) {
+  const node = Object.assign(document.createElement(name), properties);
+  parent.append(node);
+  return node;
+}
+
+async function paint(canvas, text) {
+  const size = canvas.clientWidth, ratio = window.devicePixelRatio || 1, map = await readMap(text);
+  canvas.width = canvas.height = Math.round(size * ratio);
+  if (!map) return;
+  const scale = 0.94 * canvas.width / Math.max(map.width, map.height), ctx = canvas.getContext("2d");
+  ctx.setTransform(scale, 0, 0, -scale, canvas.width / 2 - scale * (map.x + map.width / 2), canvas.height / 2 + scale * (map.y + map.height / 2));
+  drawMap(ctx, map, scale / ratio);
+}
+
+function showMaps(card) {
+  const data = JSON.parse(card.querySelector("script").textContent);
+  const key = make("div", card, { className: "key" });
+  key.append("0");
+  drawHeatKey(make("canvas", key, { width: 160, height: 12 }));
+  key.append("2 × bead height");
+  make("i", key);
+  key.append("void");
+  const grid = make("div", card, { className: "grid" });
+  const canvases = data.columns.map(column => {
+    const figure = make("figure", grid), canvas = make("canvas", figure);
+    make("figcaption", figure, { textContent: column.name });
+    return canvas;
+  });
+  let at = data.labels.length >> 1;
+  const show = () => canvases.forEach((canvas, k) => paint(canvas, data.columns[k].maps[at]));
+  if (data.labels.length > 1) {
+    const row = make("div", card, { className: "slide" });
+    const slider = make("input", row, { type: "range", min: 0, max: data.labels.length - 1, value: at });
+    const label = make("span", row, { textContent: data.labels[at] });
+    slider.oninput = () => {
+      at = Number(slider.value);
+      label.textContent = data.labels[at];
+      show();
+    };
+  }
+  show();
+  window.addEventListener("resize", show);
+}
+
+document.querySelectorAll(".maps").forEach(showMaps);

@@ -1,0 +1,88 @@
+//! A page of pictures and tables: `compare.html`, `simulate.html` and the pages of `reproduce`.
+
+use super::{encode, escape};
+use crate::deposit::Picture;
+use crate::template;
+
+/// A page that is put together piece by piece. All text is escaped.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    title: String,
+    lead: String,
+    body: String,
+}
+
+/// A row of a table: its cells, and whether each is to be marked as the best.
+pub type Row = Vec<(String, bool)>;
+
+impl Sheet {
+    /// A page with a heading and a sentence.
+    pub fn new(title: &str, lead: &str) -> Self {
+        Self { title: title.to_owned(), lead: lead.to_owned(), body: String::new() }
+    }
+
+    /// A heading.
+    pub fn heading(&mut self, text: &str) -> &mut Self {
+        self.push(&format!("<h2>{}</h2>", escape(text)))
+    }
+
+    /// A paragraph.
+    pub fn text(&mut self, text: &str) -> &mut Self {
+        self.push(&format!("<p>{}</p>", escape(text)))
+    }
+
+    /// A table.
+    pub fn table(&mut self, head: &[&str], rows: &[Row]) -> &mut Self {
+        let cell = |(text, best): &(String, bool)| {
+            format!("<td{}>{}</td>", if *best { " class=\"best\"" } else { "" }, escape(text))
+        };
+        let row = |row: &Row| format!("<tr>{}</tr>", row.iter().map(cell).collect::<String>());
+        let head: String = head.iter().map(|h| format!("<th>{}</th>", escape(h))).collect();
+        let rows: Vec<String> = rows.iter().map(row).collect();
+        self.push(&format!("<div class=\"card\"><table><tr>{head}</tr>\n{}</table></div>", rows.join("\n")))
+    }
+
+    /// A finished SVG.
+    pub fn svg(&mut self, svg: &str) -> &mut Self {
+        self.push(&format!("<div class=\"card\">{svg}</div>"))
+    }
+
+    /// Height fields side by side under a slider; `labels` tells what a place of the slider is.
+    pub fn maps(&mut self, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
+        let map = |picture: &Option<&Picture>| format!("\"{}\"", picture.map(encode::map).unwrap_or_default());
+        let column = |(name, pictures): &(String, Vec<Option<&Picture>>)| {
+            let maps: Vec<String> = pictures.iter().map(map).collect();
+            format!("{{\"name\":{},\"maps\":[{}]}}", json(name), maps.join(",\n"))
+        };
+        let columns: Vec<String> = columns.iter().map(column).collect();
+        let labels: Vec<String> = labels.iter().map(|label| json(label)).collect();
+        self.push(&format!(
+            "<div class=\"card maps\"><script type=\"application/json\">{{\"labels\":[{}],\"columns\":[{}]}}</script></div>",
+            labels.join(","),
+            columns.join(",\n")
+        ))
+    }
+
+    /// The page.
+    pub fn html(&self) -> String {
+        let values = [
+            ("title", escape(&self.title)),
+            ("lead", escape(&self.lead)),
+            ("css", include_str!("sheet.css").to_owned()),
+            ("body", self.body.clone()),
+            ("js", [include_str!("inflate.js"), include_str!("heat.js"), include_str!("sheet.js")].concat()),
+        ];
+        template::expand(include_str!("sheet.html"), &values)
+    }
+
+    fn push(&mut self, html: &str) -> &mut Self {
+        self.body.push_str(html);
+        self.body.push('\n');
+        self
+    }
+}
+
+/// A string for JSON that may stand in a `script` element.
+fn json(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('<', "\\u003c")
+}

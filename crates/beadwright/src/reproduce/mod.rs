@@ -1,0 +1,36 @@
+//! The papers' experiments made again: ours beside theirs. A paper is one file and one line in [`PAPERS`].
+
+pub mod c_compound;
+
+use crate::report::sheet::Sheet;
+use crate::task::Task;
+
+/// What came of an experiment.
+pub struct Reproduced {
+    /// Tables and pictures.
+    pub page: Sheet,
+    /// The findings in a few lines, for the terminal.
+    pub lines: Vec<String>,
+}
+
+/// A paper.
+pub struct Paper {
+    /// The name people type.
+    pub name: &'static str,
+    /// Authors, year and subject.
+    pub about: &'static str,
+    /// Does the experiment.
+    pub run: fn(&Task) -> Result<Reproduced, ReproduceError>,
+}
+
+/// The papers.
+pub const PAPERS: [Paper; 1] = [Paper {
+    name: "c-compound",
+    about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figure 7)",
+    run: c_compound::run,
+}];
+
+/// Why an experiment could not be made.
+#[derive(Debug, thiserror::Error)]
+#[error("the experiment could not be made: {0}")]
+pub struct ReproduceError(pub String);

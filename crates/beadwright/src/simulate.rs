@@ -1,0 +1,78 @@
+//! A program read back becomes layers that the deposit model can judge, over the slices of the part it was made for.
+
+use crate::deposit::DepositSettings;
+use crate::model::Mesh;
+use crate::pass::{Along, Pass};
+use crate::plan::Layer;
+use crate::readback::{Program, ReadLayer, ReadPass};
+use crate::slice::{Slab, SliceOptions, Slicer};
+use crate::task::{Cancelled, Task};
+use glam::DVec2;
+use planar::Bounds;
+
+/// The passes of a program by layer. Widths are `width`, else the program's own, else the nominal bead's. The speed of
+/// a piece is that at which the nominal wire feed lays its metal: the program's own where the arc tells of metal, and
+/// from the volume where the program tells that.
+pub fn layers(program: &Program, settings: &DepositSettings, width: Option<f64>) -> Vec<Layer> {
+    let read = program.layers();
+    let layer = |(index, read): (usize, ReadLayer)| {
+        let height = if read.height > 0.0 { read.height } else { settings.nominal.rise };
+        let passes = read.passes.iter().filter_map(|p| pass(p, settings, width)).collect();
+        Layer { index, z: read.z, height, passes, ..Layer::default() }
+    };
+    read.into_iter().enumerate().map(layer).collect()
+}
+
+fn pass(read: &ReadPass, settings: &DepositSettings, width: Option<f64>) -> Option<Pass> {
+    let nominal = &settings.nominal;
+    let mut points = vec![*read.points.first()?];
+    let (mut widths, mut speeds) = (Vec::new(), Vec::new());
+    for (i, pair) in read.points.windows(2).enumerate() {
+        let length = pair[0].distance(pair[1]);
+        if length < 1e-6 {
+            continue;
+        }
+        points.push(pair[1]);
+        widths.push(width.or(read.width[i]).unwrap_or(nominal.bead.width));
+        speeds.push(match read.volume[i] {
+            Some(volume) => nominal.speed * nominal.bead.area() * length / volume.max(1e-9),
+            None if read.speed[i] > 0.0 => read.speed[i],
+            None => nominal.speed,
+        });
+    }
+    // The last point has no piece behind it.
+    widths.push(*widths.last()?);
+    speeds.push(*speeds.last()?);
+    let kind = crate::fill::PassKind::Infill;
+    Some(Pass { kind, closed: false, points, width: Along::Each(widths), speed: Along::Each(speeds) })
+}
+
+/// Where the part lies in the program's coordinates: nowhere else if the program's beads keep within the part, grown by
+/// a bead width; else their middles are brought together and the shift is told, mm.
+pub fn shift(layers: &[Layer], mesh: &Mesh, settings: &DepositSettings) -> Option<DVec2> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let (beads, (low, high)) = (Bounds::of(points)?, mesh.bounds());
+    let room = settings.nominal.bead.width;
+    let within = beads.min.cmpge(low.truncate() - room).all() && beads.max.cmple(high.truncate() + room).all();
+    (!within).then(|| (low + high).truncate() / 2.0 - beads.center())
+}
+
+/// Moves all passes, mm.
+pub fn translate(layers: &mut [Layer], by: DVec2) {
+    let points = layers.iter_mut().flat_map(|l| &mut l.passes).flat_map(|p| &mut p.points);
+    points.for_each(|p| *p += by.extend(0.0));
+}
+
+/// Cuts the part at the middle of every layer and gives each its islands.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn outline(layers: &mut [Layer], mesh: &Mesh, options: SliceOptions, task: &Task) -> Result<(), Cancelled> {
+    let slabs = layers.iter().map(|l| Slab { z: l.z, height: l.height }).collect();
+    let slices = Slicer::of_slabs(mesh, slabs, options, task)?.all(task)?;
+    for (layer, slice) in layers.iter_mut().zip(slices) {
+        layer.slice_area = slice.area();
+        layer.islands = slice.islands;
+    }
+    Ok(())
+}
