@@ -27,8 +27,10 @@ PY
     done | sort -n | awk -v n="$name" '{l[NR]=$0} END {split(l[int((NR+1)/2)],m," "); printf "%-34s CPU %6.2f s  wall %6.2f s  peak %4d MB\n", n, m[1], m[2], m[3]}'
 }
 
-measure "beadwright plan (all files)" target/release/beadwright plan "$work/bunny.stl" \
-    -p benches/fdm-0.45x0.2.toml -o "$work/out"
+measure "beadwright plan, deposit model" target/release/beadwright plan "$work/bunny.stl" \
+    -p benches/fdm-0.45x0.2.toml -o "$work/judged"
+measure "beadwright plan --no-deposit" target/release/beadwright plan "$work/bunny.stl" \
+    -p benches/fdm-0.45x0.2.toml --no-deposit -o "$work/out"
 if command -v prusa-slicer > /dev/null; then
     measure "prusa-slicer" prusa-slicer --export-gcode "$work/bunny.stl" -o "$work/prusa.gcode" \
         --layer-height 0.2 --first-layer-height 0.2 --nozzle-diameter 0.4 --extrusion-width 0.45 --perimeters 1 \

@@ -234,7 +234,8 @@ fn plans_and_programs_are_simulated_alike() {
     let (plan, program) = (simulate("out/plan.json"), simulate("out/cross.nc"));
     for name in ["void_percent", "low_percent", "overfill_percent", "outside_percent", "mean_height_mm"] {
         let value = |json: &serde_json::Value| json["deposit"][name].as_f64().unwrap();
-        assert!((value(&plan) - value(&planned)).abs() < 1e-9, "{name}");
+        // The file keeps a tenth of a micrometre.
+        assert!((value(&plan) - value(&planned)).abs() < 1e-3, "{name}");
         assert!((value(&program) - value(&planned)).abs() < 0.02, "{name}");
     }
     assert_eq!(plan["totals"]["arc_starts"], planned["arc_starts"]);

@@ -113,6 +113,11 @@ pub enum PlanFileError {
     /// Another version.
     #[error("this plan.json has version {0}; version {VERSION} is read. Make the plan again with `beadwright plan`.")]
     Version(u32),
+    /// An impossible bead.
+    #[error(
+        "width, height, speed and rise of the bead must be greater than 0. Make the plan again with `beadwright plan`."
+    )]
+    Bead,
     /// Values that do not belong together.
     #[error("layer {layer}, pass {pass}: {reason}. Make the plan again with `beadwright plan`.")]
     Pass {
@@ -133,6 +138,9 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     let file: File = serde_json::from_str(text)?;
     if file.version != VERSION {
         return Err(PlanFileError::Version(file.version));
+    }
+    if file.bead.as_ref().is_some_and(|b| [b.width, b.height, b.speed, b.rise].iter().any(|&v| v <= 0.0)) {
+        return Err(PlanFileError::Bead);
     }
     let settings = file.bead.map(|b| {
         let bead = Bead { width: b.width, height: b.height };
