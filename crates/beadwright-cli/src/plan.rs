@@ -22,9 +22,12 @@ pub(crate) struct Arguments {
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// Strategy instead of the profile's: raster, zigzag, contour or compound.
+    /// Strategy instead of the profile's: raster, zigzag, contour, compound or hybrid.
     #[arg(long, short, value_name = "NAME")]
     strategy: Option<String>,
+    /// Let the strategy hybrid follow the paper to the letter.
+    #[arg(long)]
+    literal: bool,
     /// Dialect instead of the profile's; may be given several times: krl, gcode.
     #[arg(long, value_name = "NAME")]
     post: Vec<String>,
@@ -62,6 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let mut settings = arguments.set.clone();
     settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
+    settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
     let profile = profile::load(&arguments.profile, &settings)?;
     let part = arguments.model.part();
     let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };

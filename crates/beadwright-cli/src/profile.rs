@@ -80,10 +80,13 @@ fn set(document: &mut toml_edit::DocumentMut, setting: &str) -> anyhow::Result<(
         Some(whole) if expects_float(document, key.trim()) => (whole as f64).into(),
         _ => value,
     };
+    let parts: Vec<&str> = key.trim().split('.').collect();
     let mut item = document.as_item_mut();
-    for part in key.trim().split('.') {
+    for (i, part) in parts.iter().enumerate() {
         let table = item.as_table_like_mut().with_context(|| format!("{key} is not a key of a profile"))?;
-        item = table.entry(part).or_insert(toml_edit::Item::None);
+        // A section whose keys all have defaults may be missing.
+        let missing = if i + 1 < parts.len() { toml_edit::table() } else { toml_edit::Item::None };
+        item = table.entry(part).or_insert(missing);
     }
     *item = toml_edit::value(value);
     Ok(())

@@ -63,8 +63,10 @@ fn entry(pass: &Pass, from: DVec2) -> (usize, f64) {
 fn begin_at(pass: &mut Pass, index: usize) {
     if pass.closed {
         pass.points.rotate_left(index);
+        pass.width.rotate_left(index);
     } else if index > 0 {
         pass.points.reverse();
+        pass.width.reverse();
     }
 }
 

@@ -318,13 +318,14 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let (width, speed) = (self.profile.bead.width, self.profile.process.deposition_speed);
+        let (nominal, speed) = (self.profile.bead.width, self.profile.process.deposition_speed);
         let lift = |path: Path| Pass {
             kind: path.kind,
             closed: path.closed,
             points: path.points.into_iter().map(|p| p.extend(z)).collect(),
-            width: Along::Same(width),
-            speed: Along::Same(speed),
+            // The bead keeps its height: a wider one is laid more slowly.
+            speed: path.width.map(|width| speed * nominal / width),
+            width: path.width,
         };
         let passes = order::order(fills, &mut self.torch).into_iter().map(lift).collect();
         warnings.iter().for_each(|w| self.warnings.add(*w));

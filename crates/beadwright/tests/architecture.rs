@@ -11,8 +11,8 @@ const ROWS: &[&[&str]] = &[
     &["model"],
     &["slice"],
     &["bead"],
-    &["fill"],
-    &["order", "pass"],
+    &["fill", "pass"],
+    &["order"],
     // Reads text and needs nothing; the deposit model judges what it finds.
     &["readback"],
     &["deposit"],
@@ -30,6 +30,8 @@ const ROWS: &[&[&str]] = &[
 
 /// Arrows that run within a row or up, on purpose.
 const ALLOWED: &[(&str, &str, &str)] = &[
+    ("fill", "pass", "a centre-line tells its width as a pass does"),
+    ("pass", "fill", "a pass tells what it is for"),
     ("metrics", "plan", "totals are taken from planned layers"),
     ("plan", "metrics", "a plan carries its totals"),
     ("profile", "post", "a profile names only posts that exist"),

@@ -5,6 +5,7 @@ mod solids;
 
 use beadwright::fill::{Fill, FillSettings, Pass, PassKind, STRATEGIES};
 use beadwright::order::order;
+use beadwright::pass::Along;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
 use proptest::prelude::*;
@@ -12,7 +13,7 @@ use solids::runner;
 
 fn open(points: &[(f64, f64)], reversible: bool) -> Pass {
     let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
-    Pass { kind: PassKind::Infill, closed: false, points, reversible }
+    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), reversible }
 }
 
 fn closed(points: &[(f64, f64)]) -> Pass {

@@ -132,7 +132,10 @@ fn totals_are_the_sums_of_the_layers() {
         let length: f64 = passes().map(|p| p.length()).sum();
         assert_eq!(m.arc_starts, passes().count(), "{case}");
         assert!((m.deposited_length_mm - length).abs() < 1e-6 * length, "{case}");
-        assert!((m.arc_time_s - length / profile.process.deposition_speed).abs() < 1e-6 * length, "{case}");
+        let seconds: f64 = passes().map(|p| p.seconds()).sum();
+        assert!((m.arc_time_s - seconds).abs() < 1e-6 * seconds, "{case}");
+        let metal = seconds * profile.bead().area() * profile.process.deposition_speed;
+        assert!((m.deposited_volume_mm3 - metal).abs() < 1e-9 * metal, "{case}");
         let wire = m.arc_time_s * profile.process.wire_feed_speed / 60.0;
         assert!((m.wire_length_m - wire).abs() < 1e-9 * wire, "{case}");
         assert!((0.5..=1.0).contains(&m.coverage()), "{case}: {}", m.coverage());
@@ -176,8 +179,9 @@ fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
         assert!(distance(*weld.points.last().unwrap(), pass.end().unwrap().to_array()) < 0.002, "{case}");
         let length: f64 = weld.points.windows(2).map(|w| distance(w[0], w[1])).sum();
         assert!((length - pass.length()).abs() < 0.02 + 1e-4 * length, "{case}: {length} for {}", pass.length());
-        let speed = profile.process.deposition_speed;
-        assert!(weld.speeds.iter().all(|s| (s - speed).abs() < 0.01 * speed), "{case}: speeds");
+        // Dropping short moves may shift a change of speed by one of them; the time tells that nothing else did.
+        let time: f64 = weld.points.windows(2).zip(&weld.speeds).map(|(w, s)| distance(w[0], w[1]) / s).sum();
+        assert!((time / pass.seconds() - 1.0).abs() < 0.01, "{case}: {time} s for {}", pass.seconds());
     }
     // The last lift is not in the plan's totals.
     let travel = motion.travel - profile.travel.clearance;

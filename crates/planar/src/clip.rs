@@ -1,7 +1,7 @@
 //! Open lines cut by a region.
 
 use crate::Region;
-use crate::grid::{from_grid, region_to_grid, to_grid};
+use crate::grid::{GridPoint, from_grid, region_to_grid, to_grid};
 use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::string::clip::{ClipRule, IntClip};
@@ -15,6 +15,31 @@ pub enum Keep {
     Outside,
 }
 
+/// Pieces that the library left in two although nothing lies between them, put together again.
+fn whole(pieces: Vec<Vec<GridPoint>>) -> Vec<Vec<GridPoint>> {
+    let mut whole: Vec<Vec<GridPoint>> = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        let after = whole.iter().position(|w| w.last() == piece.first() && w.first() != w.last());
+        let index = match after {
+            Some(index) => {
+                whole[index].extend(&piece[1..]);
+                index
+            }
+            None => {
+                whole.push(piece);
+                whole.len() - 1
+            }
+        };
+        let before = (0..whole.len()).find(|&i| i != index && whole[i].first() == whole[index].last());
+        if let Some(before) = before {
+            let tail = whole[before][1..].to_vec();
+            whole[index].extend(tail);
+            whole.swap_remove(before);
+        }
+    }
+    whole
+}
+
 impl Region {
     /// The pieces of the open line through `points` inside or outside this region, in no fixed order; each runs
     /// in the direction of the line.
@@ -23,6 +48,6 @@ impl Region {
         let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: true };
         let path: Vec<_> = points.iter().map(|&p| to_grid(p)).collect();
         let pieces = region_to_grid(self).clip_path(&path, FillRule::NonZero, rule);
-        pieces.into_iter().map(|piece| piece.into_iter().map(from_grid).collect()).collect()
+        whole(pieces).into_iter().map(|piece| piece.into_iter().map(from_grid).collect()).collect()
     }
 }

@@ -12,6 +12,9 @@
 //! | [`scan`] | parallel scan lines through a region, and how their ends hang together along its boundary |
 //! | [`polyline`] | length, simplification |
 //! | [`hull`] | convex hull, minimum-area rectangle |
+//! | [`ladder`] | narrow regions as pairs of opposite boundary points: their medial axis and thickness |
+//! | [`stroke`] | lines grown to areas |
+//! | [`medial`] | medial axis: centre-lines with local thickness |
 //! | [`triangulate`] | triangles that fill a polygon |
 //!
 //! # The grid underneath
@@ -25,11 +28,14 @@ pub mod boolean;
 pub mod clip;
 mod grid;
 pub mod hull;
+pub mod ladder;
+pub mod medial;
 pub mod offset;
 pub mod polyline;
 pub mod ring;
 mod rows;
 pub mod scan;
+pub mod stroke;
 pub mod triangulate;
 
 pub use glam::DVec2;
@@ -37,3 +43,4 @@ pub use grid::{GRID_MM, MAX_COORDINATE_MM};
 pub use hull::{OrientedRect, convex_hull, min_area_rect};
 pub use offset::Join;
 pub use ring::{Bounds, FillRule, Polygon, Region, Ring};
+pub use stroke::buffer;

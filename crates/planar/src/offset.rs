@@ -34,7 +34,7 @@ impl Join {
     /// A round join within [`ARC_TOLERANCE_MM`].
     pub const ROUND: Self = Self::Round(ARC_TOLERANCE_MM);
 
-    fn to_style(self, distance: f64) -> IntLineJoin {
+    pub(crate) fn to_style(self, distance: f64) -> IntLineJoin {
         let angle = |radians: f64| Angle::from_radians(radians).unwrap_or(Angle::from_bits(0));
         match self {
             Self::Round(tolerance) => {

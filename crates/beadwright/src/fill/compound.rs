@@ -19,7 +19,7 @@ impl Strategy for Compound {
         if outermost.is_empty() {
             return Fill::default();
         }
-        let (perimeters, innermost) = rings(outermost, settings.stepover, settings.perimeters);
+        let (perimeters, innermost) = rings(outermost, settings, settings.perimeters);
         let core = innermost.offset(-settings.contour_gap, Join::ROUND);
         let mut stages = vec![zigzag(&core, settings)];
         stages.extend(settings.ordered(perimeters));

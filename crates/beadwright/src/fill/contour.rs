@@ -12,21 +12,21 @@ impl Strategy for Contour {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let (rings, _) = rings(settings.outermost(island), settings.stepover, u32::MAX);
+        let (rings, _) = rings(settings.outermost(island), settings, u32::MAX);
         Fill { stages: settings.ordered(rings), fixed_order: false }
     }
 }
 
 /// Up to `count` rings from `outermost` inwards, and the region that the innermost ones bound.
-pub(super) fn rings(outermost: Region, stepover: f64, count: u32) -> (Vec<Vec<Pass>>, Region) {
+pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (Vec<Vec<Pass>>, Region) {
     let mut stages = Vec::new();
     let mut region = outermost;
     for done in 1.. {
-        stages.push(region.rings().cloned().map(Pass::ring).collect());
+        stages.push(region.rings().map(|ring| Pass::ring(ring.clone(), settings.bead_width)).collect());
         if done == count {
             break;
         }
-        region = region.offset(-stepover, Join::ROUND);
+        region = region.offset(-settings.stepover, Join::ROUND);
         if region.is_empty() {
             break;
         }

@@ -9,19 +9,23 @@
 //! | [`zigzag`] | scan lines joined along the boundary |
 //! | [`contour`] | rings parallel to the boundary, until nothing is left |
 //! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
+//! | [`hybrid`] | contours, and their pockets filled along their medial axis (Zhao et al. 2023) |
 
 pub mod compound;
 pub mod contour;
+pub mod hybrid;
 pub mod raster;
 pub mod zigzag;
 
+use crate::pass::Along;
 use glam::DVec2;
 use planar::scan::Spacing;
 use planar::{Join, Polygon, Region, Ring};
 use serde::{Deserialize, Serialize};
 
 /// The strategies by name.
-pub const STRATEGIES: [&dyn Strategy; 4] = [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound];
+pub const STRATEGIES: [&dyn Strategy; 5] =
+    [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound, &hybrid::Hybrid];
 
 /// The strategy of that name.
 pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
@@ -45,6 +49,8 @@ pub enum PassKind {
     Contour,
     /// Scan lines.
     Infill,
+    /// Fill of pockets between contours.
+    Skeleton,
 }
 
 impl PassKind {
@@ -53,6 +59,7 @@ impl PassKind {
         match self {
             Self::Contour => "contour",
             Self::Infill => "infill",
+            Self::Skeleton => "skeleton",
         }
     }
 }
@@ -66,26 +73,31 @@ pub struct Pass {
     pub closed: bool,
     /// Centre-line, mm.
     pub points: Vec<DVec2>,
+    /// Bead width, mm.
+    pub width: Along,
     /// Whether it may be laid from its end to its start.
     pub reversible: bool,
 }
 
 impl Pass {
-    fn ring(ring: Ring) -> Self {
-        Self { kind: PassKind::Contour, closed: true, points: ring.into_points(), reversible: true }
+    fn ring(ring: Ring, width: f64) -> Self {
+        let (kind, width) = (PassKind::Contour, Along::Same(width));
+        Self { kind, closed: true, points: ring.into_points(), width, reversible: true }
     }
 
-    fn infill(points: Vec<DVec2>, reversible: bool) -> Self {
-        Self { kind: PassKind::Infill, closed: false, points, reversible }
+    fn line(kind: PassKind, points: Vec<DVec2>, width: f64) -> Self {
+        Self { kind, closed: false, points, width: Along::Same(width), reversible: true }
+    }
+
+    /// The points in order, the first one again at the end of a closed pass.
+    pub fn path(&self) -> Vec<DVec2> {
+        let again = self.closed.then(|| self.points.first()).flatten();
+        self.points.iter().chain(again).copied().collect()
     }
 
     /// Length of the centre-line, mm.
     pub fn length(&self) -> f64 {
-        let closing = match (self.closed, &self.points[..]) {
-            (true, [first, .., last]) => first.distance(*last),
-            _ => 0.0,
-        };
-        planar::polyline::length(&self.points) + closing
+        planar::polyline::length(&self.path())
     }
 }
 
@@ -123,6 +135,8 @@ pub enum RasterSpacing {
 /// What a strategy needs to know; lengths in mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FillSettings {
+    /// Index of the layer, from 0: seams move from layer to layer.
+    pub layer: usize,
     /// Bead width, mm.
     pub bead_width: f64,
     /// Distance between neighbouring centre-lines, mm.
@@ -141,6 +155,8 @@ pub struct FillSettings {
     pub raster_spacing: RasterSpacing,
     /// Shorter passes are left out, mm.
     pub min_pass_length: f64,
+    /// Thresholds of the hybrid.
+    pub hybrid: hybrid::HybridSettings,
 }
 
 impl FillSettings {

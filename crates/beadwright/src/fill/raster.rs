@@ -1,6 +1,6 @@
 //! Parallel scan lines, each a pass of its own, all in one direction.
 
-use super::{Fill, FillSettings, Pass, Strategy};
+use super::{Fill, FillSettings, Pass, PassKind, Strategy};
 use planar::Polygon;
 use planar::scan::{End, Scan};
 
@@ -16,7 +16,7 @@ impl Strategy for Raster {
         let scan = Scan::new(&settings.outermost(island), settings.raster_angle, settings.spacing());
         let line = |span| {
             let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
-            Pass::infill(points.to_vec(), false)
+            Pass { reversible: false, ..Pass::line(PassKind::Infill, points.to_vec(), settings.bead_width) }
         };
         Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
     }

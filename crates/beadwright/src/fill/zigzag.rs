@@ -3,7 +3,7 @@
 //!
 //! The link follows the boundary itself, so it neither leaves the region nor crosses another line.
 
-use super::{Fill, FillSettings, Pass, Strategy};
+use super::{Fill, FillSettings, Pass, PassKind, Strategy};
 use glam::DVec2;
 use planar::scan::{Chain, End, Scan};
 use planar::{Polygon, Region};
@@ -32,7 +32,7 @@ pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
     let scan = Scan::new(region, settings.raster_angle, settings.spacing());
     let mut weaver = Weaver { scan: &scan, used: vec![false; scan.spans().len()], stepover: settings.stepover };
     let passes = (0..scan.spans().len()).filter_map(|span| weaver.path_from(span));
-    passes.map(|points| Pass::infill(points, true)).collect()
+    passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead_width)).collect()
 }
 
 struct Weaver<'a> {

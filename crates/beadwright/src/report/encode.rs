@@ -126,6 +126,7 @@ fn kind(kind: PassKind) -> u32 {
     match kind {
         PassKind::Contour => 0,
         PassKind::Infill => 1,
+        PassKind::Skeleton => 2,
     }
 }
 

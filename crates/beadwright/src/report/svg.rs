@@ -11,6 +11,8 @@ use planar::{Bounds, Polygon, Ring};
 const CONTOUR: &str = "#1f6fd6";
 /// Colour of what is inside.
 const INFILL: &str = "#e8862a";
+/// Colour of what fills pockets.
+const SKELETON: &str = "#7e57c2";
 /// Colour of moves without arc.
 const TRAVEL: &str = "#6b7280";
 /// Colour of arc starts.
@@ -143,6 +145,7 @@ fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>,
     let colour = match kind {
         PassKind::Contour => CONTOUR,
         PassKind::Infill => INFILL,
+        PassKind::Skeleton => SKELETON,
     };
     svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
     push_fixed(svg, width, 3);

@@ -1,0 +1,77 @@
+//! Widths that follow the room: where neighbours lie wider or closer than a stepover, each bead takes the half of the
+//! way to its neighbour on either side, within the limits of the process. Metal is laid where there is room for it, and
+//! small gaps close without a bead of their own.
+
+use super::near::Near;
+use crate::fill::{FillSettings, Pass};
+use crate::pass::Along;
+use glam::DVec2;
+use planar::Polygon;
+
+/// Neighbours are looked for this far away, in stepovers; without one, a side counts as a stepover.
+const SIGHT: f64 = 1.6;
+/// Widths are looked at this often, in bead widths.
+const STEP: f64 = 0.35;
+/// Widths are multiples of this part of a bead width, so that the speed changes seldom.
+const GRAIN: f64 = 0.05;
+/// Stands for the outline where passes have their numbers.
+const OUTLINE: usize = usize::MAX;
+
+/// Gives every pass the widths that its neighbours leave; none reaches out of the island and its allowance.
+pub fn widths(passes: &mut [Pass], island: &Polygon, settings: &FillSettings) {
+    let mut near = Near::new(SIGHT * settings.stepover);
+    for (number, pass) in passes.iter().enumerate() {
+        near.add_line(number, &pass.path());
+    }
+    for ring in island.rings() {
+        near.add_line(OUTLINE, &closed(ring.points()));
+    }
+    for (number, pass) in passes.iter_mut().enumerate() {
+        adapt(number, pass, &near, settings);
+    }
+}
+
+fn closed(points: &[DVec2]) -> Vec<DVec2> {
+    points.iter().chain(points.first()).copied().collect()
+}
+
+fn adapt(number: usize, pass: &mut Pass, near: &Near, settings: &FillSettings) {
+    let d = settings.stepover;
+    let path = pass.path();
+    let (mut points, mut widths) = (Vec::new(), Vec::new());
+    for (k, pair) in path.windows(2).enumerate() {
+        let (a, b) = (pair[0], pair[1]);
+        let Some(way) = (b - a).try_normalize() else { continue };
+        let count = (a.distance(b) / (STEP * settings.bead_width)).ceil().max(1.0) as usize;
+        for i in 0..count {
+            let middle = a.lerp(b, (i as f64 + 0.5) / count as f64);
+            let (low, mut high) = settings.hybrid.width_limits;
+            let mut room = 0.0;
+            for normal in [way.perp(), -way.perp()] {
+                room += match near.sight(middle, normal, (number, k)) {
+                    Some((OUTLINE, distance)) => {
+                        high = high.min(2.0 * (distance + settings.machining_allowance) + 1e-3);
+                        d / 2.0
+                    }
+                    Some((_, distance)) => distance / 2.0,
+                    None => d / 2.0,
+                };
+            }
+            let grain = GRAIN * settings.bead_width;
+            let width = ((settings.bead_width * room / d / grain).round() * grain).max(low).min(high);
+            // Pieces of one line with one width are one.
+            if i > 0 && widths.last() == Some(&width) {
+                continue;
+            }
+            points.push(a.lerp(b, i as f64 / count as f64));
+            widths.push(width);
+        }
+    }
+    let Some(&last) = widths.last() else { return };
+    if !pass.closed {
+        points.extend(path.last());
+        widths.push(last);
+    }
+    pass.points = points;
+    pass.width = if widths.iter().all(|&w| w == last) { Along::Same(last) } else { Along::Each(widths) };
+}

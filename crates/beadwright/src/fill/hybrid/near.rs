@@ -1,0 +1,70 @@
+//! Which lines lie near a place: a grid of cells over pieces of lines.
+
+use glam::{DVec2, IVec2};
+use std::collections::HashMap;
+
+/// Lines by number, cut in pieces, by place.
+pub struct Near {
+    size: f64,
+    cells: HashMap<IVec2, Vec<Piece>>,
+}
+
+/// Number of the line, number of the piece in it, and its ends.
+type Piece = (usize, usize, DVec2, DVec2);
+
+impl Near {
+    /// No lines yet; nothing is seen further than `sight` (mm).
+    pub fn new(sight: f64) -> Self {
+        Self { size: sight, cells: HashMap::new() }
+    }
+
+    /// How far is seen, mm.
+    pub fn sight_mm(&self) -> f64 {
+        self.size
+    }
+
+    /// Adds a line.
+    pub fn add_line(&mut self, number: usize, points: &[DVec2]) {
+        for (k, pair) in points.windows(2).enumerate() {
+            for cell in covered(pair[0], pair[1], self.size) {
+                self.cells.entry(cell).or_default().push((number, k, pair[0], pair[1]));
+            }
+        }
+    }
+
+    /// The line that is met first in a direction and its distance, mm. The piece `own` and those beside it do not count.
+    pub fn sight(&self, from: DVec2, way: DVec2, own: (usize, usize)) -> Option<(usize, f64)> {
+        let to = from + way * self.size;
+        let mut nearest = (0, f64::INFINITY);
+        for (number, k, a, b) in self.around(from, to) {
+            if number == own.0 && k.abs_diff(own.1) <= 1 {
+                continue;
+            }
+            let (edge, start) = (b - a, a - from);
+            let cross = way.perp_dot(edge);
+            let (t, u) = (start.perp_dot(edge) / cross, start.perp_dot(way) / cross);
+            let seen = cross.abs() > 1e-12 && t > 1e-6 && t <= self.size && (0.0..=1.0).contains(&u);
+            if seen && t < nearest.1 {
+                nearest = (number, t);
+            }
+        }
+        nearest.1.is_finite().then_some(nearest)
+    }
+
+    /// Whether a line crosses the segment; touching does not count.
+    pub fn crosses(&self, a: DVec2, b: DVec2) -> bool {
+        let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+        let cut = |c: DVec2, d: DVec2| side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+        self.around(a, b).any(|(_, _, c, d)| cut(c, d))
+    }
+
+    fn around(&self, a: DVec2, b: DVec2) -> impl Iterator<Item = Piece> + '_ {
+        covered(a, b, self.size).flat_map(|cell| self.cells.get(&cell).into_iter().flatten().copied())
+    }
+}
+
+/// The cells of the box around two points.
+fn covered(a: DVec2, b: DVec2, size: f64) -> impl Iterator<Item = IVec2> {
+    let (low, high) = ((a.min(b) / size).floor().as_ivec2(), (a.max(b) / size).floor().as_ivec2());
+    (low.x..=high.x).flat_map(move |x| (low.y..=high.y).map(move |y| IVec2::new(x, y)))
+}

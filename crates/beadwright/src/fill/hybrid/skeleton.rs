@@ -1,0 +1,127 @@
+//! The fill of the skeleton regions: what is left between the contours.
+//!
+//! With T the contours and links that are laid, P₀ less the neighbourhood of T within d2 is filled, so that skeleton
+//! fill and contours keep exactly d2. Narrow pieces get beads along their [medial axis](super::medial); wide ones, and
+//! by the paper all, a zigzag in the direction of their smallest rectangle.
+
+use super::near::Near;
+use super::{ScanAlong, medial};
+use crate::fill::{FillSettings, Pass, zigzag};
+use glam::DVec2;
+use planar::{Join, Polygon, Region, buffer, min_area_rect};
+
+/// At forks and where the number of beads changes, a first filling leaves room for more.
+const ROUNDS: usize = 3;
+
+/// The passes of all skeleton regions. `contours` are laid already, joined.
+pub fn fill(outermost: &Region, regions: &Region, contours: &[Pass], settings: &FillSettings) -> Vec<Pass> {
+    let mut free = room(outermost, contours, settings);
+    let mut laid = Near::new(settings.stepover);
+    contours.iter().for_each(|pass| laid.add_line(0, &pass.path()));
+    let mut passes = Vec::new();
+    for _ in 0..if settings.hybrid.literal { 1 } else { ROUNDS } {
+        let more = fill_room(&free, outermost, regions, &mut laid, settings);
+        if more.is_empty() {
+            break;
+        }
+        free = room(&free, &more, settings);
+        passes.extend(more);
+    }
+    passes
+}
+
+fn fill_room(
+    free: &Region,
+    outermost: &Region,
+    regions: &Region,
+    laid: &mut Near,
+    settings: &FillSettings,
+) -> Vec<Pass> {
+    let mut passes = Vec::new();
+    for piece in free.polygons() {
+        if piece.area() < settings.hybrid.min_pocket_area {
+            continue;
+        }
+        if settings.hybrid.literal {
+            // The paper fills its regions only.
+            let near = regions.offset(settings.stepover, Join::ROUND).intersection(&piece.clone().into());
+            near.polygons().iter().for_each(|p| passes.extend(scanned(p, settings)));
+        } else if is_narrow(piece, settings) {
+            passes.extend(medial::beads(piece, outermost, laid, settings));
+        } else {
+            // The zigzag keeps d2.
+            let inner = piece.offset(settings.hybrid.least_gap - settings.hybrid.skeleton_gap, Join::ROUND);
+            let scanned: Vec<Pass> = inner.polygons().iter().flat_map(|p| scanned(p, settings)).collect();
+            scanned.iter().for_each(|pass| laid.add_line(0, &pass.path()));
+            passes.extend(scanned);
+        }
+    }
+    passes
+}
+
+/// Distance of the fill from the contours.
+fn gap(settings: &FillSettings) -> f64 {
+    if settings.hybrid.literal { settings.hybrid.skeleton_gap } else { settings.hybrid.least_gap }
+}
+
+/// Where centre-lines of the fill may lie: what is free less the neighbourhood of what is laid.
+fn room(free: &Region, laid: &[Pass], settings: &FillSettings) -> Region {
+    let gap = gap(settings);
+    let (closed, open): (Vec<&Pass>, Vec<&Pass>) = laid.iter().partition(|pass| pass.closed);
+    let closed: Vec<Vec<DVec2>> = closed.into_iter().map(|pass| pass.points.clone()).collect();
+    let open: Vec<Vec<DVec2>> =
+        open.into_iter().map(|pass| shortened(&pass.points, settings.hybrid.end_overlap)).collect();
+    free.difference(&buffer(&closed, true, gap)).difference(&buffer(&open, false, gap))
+}
+
+/// A line less its ends: there the fill may come nearer.
+fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
+    if planar::polyline::length(points) < 4.0 * by {
+        return points.to_vec();
+    }
+    let mut line = points.to_vec();
+    for _ in 0..2 {
+        let mut left = by;
+        while let [.., a, b] = line[..] {
+            let step = a.distance(b);
+            let last = line.len() - 1;
+            if step > left {
+                line[last] = b.lerp(a, left / step);
+                break;
+            }
+            left -= step;
+            line.pop();
+        }
+        line.reverse();
+    }
+    line
+}
+
+/// Whether a piece is nowhere wider than the regions that get beads along their axis.
+fn is_narrow(piece: &Polygon, settings: &FillSettings) -> bool {
+    // Its contours lie the gap beyond its edge on both sides.
+    let inner = settings.hybrid.region_width / 2.0 - settings.hybrid.least_gap;
+    piece.offset(-inner.max(0.0), Join::ROUND).is_empty()
+}
+
+/// A zigzag along the smallest rectangle of a piece.
+fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Pass> {
+    let Some(rect) = min_area_rect(piece.outer.points()) else { return Vec::new() };
+    let x = rect.axis.to_angle();
+    let (short, long) = if rect.size.x < rect.size.y { (x, x + 0.25 * TURN) } else { (x + 0.25 * TURN, x) };
+    let at = |angle: f64| {
+        let turned = FillSettings { raster_angle: angle, ..*settings };
+        zigzag::zigzag(&piece.clone().into(), &turned)
+    };
+    match settings.hybrid.scan_along {
+        ScanAlong::Short => at(short),
+        ScanAlong::Long => at(long),
+        ScanAlong::Auto => {
+            let (a, b) = (at(short), at(long));
+            let cost = |passes: &[Pass]| (passes.len(), passes.iter().map(|p| p.points.len()).sum::<usize>());
+            if cost(&a) <= cost(&b) { a } else { b }
+        }
+    }
+}
+
+const TURN: f64 = std::f64::consts::TAU;

@@ -1,0 +1,88 @@
+//! Corner branches taken away.
+
+use super::{MedialAxis, Node, length};
+
+/// The slope of the radius is taken over at least this part of the radius: nodes that nearly coincide have no say.
+const WINDOW: f64 = 1e-3;
+
+impl MedialAxis {
+    /// Without the curves that only run into corners.
+    ///
+    /// From every free end the axis is cut back for as long as the radius grows by at least sin(`corner` / 2) per mm,
+    /// as it does on the way out of a corner of interior angle `corner` (rad, usually [`CORNER`](super::CORNER)) or
+    /// blunter. Then branches that are the only two at a junction become one, and so on until nothing changes.
+    /// Of a square, a triangle or a disc one junction without branches remains.
+    #[must_use]
+    pub fn pruned(mut self, corner: f64) -> Self {
+        let slope = (corner / 2.0).sin().max(1e-6);
+        while self.cut_back(|nodes| rising_steps(nodes, slope)) {
+            self = self.joined();
+        }
+        self
+    }
+
+    /// Without the free branches along which the radius grows, from end to end, as under an object angle below
+    /// `min_angle`: noise with a sharp tip.
+    pub(super) fn without_noise(mut self, min_angle: f64) -> Self {
+        let slope = (min_angle / 2.0).cos();
+        let all_or_nothing = |nodes: &[Node]| {
+            let rise = nodes[nodes.len() - 1].radius - nodes[0].radius;
+            if rise >= slope * length(nodes) { nodes.len() - 1 } else { 0 }
+        };
+        while self.cut_back(all_or_nothing) {
+            self = self.joined();
+        }
+        self
+    }
+
+    /// One round: from every free end as many steps as `steps` says of the nodes from there on. Whether any were cut.
+    fn cut_back(&mut self, steps: impl Fn(&[Node]) -> usize) -> bool {
+        let degrees = self.degrees();
+        let mut gone = vec![false; self.junctions.len()];
+        let mut cut = false;
+        for branch in &mut self.branches {
+            for end in [branch.from, branch.to] {
+                if degrees[end] == 1 && branch.nodes.len() > 1 {
+                    let count = steps(&branch.nodes);
+                    branch.nodes.drain(..count);
+                    self.junctions[end] = branch.nodes[0];
+                    gone[end] = branch.nodes.len() == 1;
+                    cut |= count > 0;
+                }
+                branch.nodes.reverse();
+            }
+        }
+        self.branches.retain(|b| b.nodes.len() > 1);
+        self.drop_junctions(&gone);
+        cut
+    }
+
+    fn drop_junctions(&mut self, gone: &[bool]) {
+        let mut number = vec![0; gone.len()];
+        let mut kept = Vec::with_capacity(gone.len());
+        for (junction, _) in gone.iter().enumerate().filter(|&(_, &gone)| !gone) {
+            number[junction] = kept.len();
+            kept.push(self.junctions[junction]);
+        }
+        self.junctions = kept;
+        for branch in &mut self.branches {
+            (branch.from, branch.to) = (number[branch.from], number[branch.to]);
+        }
+    }
+}
+
+/// How many steps from the first node on the radius grows by at least `slope` per mm.
+fn rising_steps(nodes: &[Node], slope: f64) -> usize {
+    let rises = |from: &usize| {
+        let (first, mut last, mut along) = (nodes[*from], nodes[*from], 0.0);
+        for &node in &nodes[from + 1..] {
+            along += last.at.distance(node.at);
+            last = node;
+            if along > WINDOW * first.radius {
+                break;
+            }
+        }
+        last.radius - first.radius >= slope * along
+    };
+    (0..nodes.len() - 1).take_while(rises).count()
+}
