@@ -118,3 +118,18 @@ fn add_to_memory(bencher: Bencher) {
 fn propeller() -> (Mesh, Profile) {
     (example::find("propeller").unwrap().mesh(), Profile::built_in("cmt-al2319-kuka").unwrap())
 }
+
+/// One layer of the hybrid over the number of outline vertices: a wavy disc of 250 mm, every vertex of it off the line
+/// between its neighbours.
+#[divan::bench(args = [1250, 2500, 5000, 10_000, 20_000], sample_count = 10)]
+fn hybrid_layer(bencher: Bencher, vertices: usize) {
+    let place = |k: usize| {
+        let turn = k as f64 / vertices as f64 * std::f64::consts::TAU;
+        let noise = 0.005 * ((k * 7919) % 101) as f64 / 100.0;
+        glam::DVec2::from_angle(turn) * (115.0 + 10.0 * (9.0 * turn).sin() + noise)
+    };
+    let island = beadwright::planar::Polygon::simple(beadwright::planar::Ring::new((0..vertices).map(place).collect()));
+    let settings = Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0);
+    let hybrid = beadwright::fill::strategy("hybrid").unwrap();
+    bencher.bench(|| hybrid.fill(black_box(&island), &settings));
+}

@@ -32,6 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let done = (paper.run)(&task)?;
         let file = format!("reproduce-{}.html", paper.name);
         output.append(&file, &done.page.html())?;
+        done.files.iter().try_for_each(|(name, text)| output.append(name, text))?;
         said.push(format!("{}: {}", paper.name, paper.about));
         said.extend(done.lines.iter().map(|line| format!("  {line}")));
         said.push(format!("  tables and pictures in {}", arguments.output.join(&file).display()));

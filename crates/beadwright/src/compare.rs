@@ -235,19 +235,21 @@ pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
     entries.iter().map(|entry| COLUMNS.iter().map(|column| cell(entry, column)).collect()).collect()
 }
 
+/// Adds the table to a page.
+pub fn tabulate(page: &mut Sheet, entries: &[Entry]) {
+    let head: Vec<&str> = ["", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
+    let row = |(entry, cells): (&Entry, Vec<(String, bool)>)| {
+        let first = [entry.name.clone(), entry.layers.len().to_string()].map(|text| (text, false));
+        first.into_iter().chain(cells).collect()
+    };
+    let rows: Vec<_> = entries.iter().zip(table(entries)).map(row).collect();
+    page.table(&head, &rows);
+}
+
 /// The page with the table and the height fields side by side.
 pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
     let mut page = Sheet::new(title, lead);
-    let head: Vec<&str> = ["", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
-    let rows: Vec<_> = entries
-        .iter()
-        .zip(table(entries))
-        .map(|(entry, cells)| {
-            let first = [entry.name.clone(), entry.layers.len().to_string()].map(|text| (text, false));
-            first.into_iter().chain(cells).collect()
-        })
-        .collect();
-    page.table(&head, &rows);
+    tabulate(&mut page, entries);
     let longest = entries.iter().map(|e| &e.layers).max_by_key(|layers| layers.len());
     let labels: Vec<String> =
         longest.into_iter().flatten().map(|l| format!("layer {}, z {:.2} mm", l.index + 1, l.z)).collect();

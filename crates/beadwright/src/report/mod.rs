@@ -5,13 +5,14 @@
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`svg`] | one layer as a standalone picture |
-//! | [`sheet`], [`plot`] | other pages: height fields side by side, tables, curves |
+//! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 
 pub mod encode;
 pub mod plot;
 pub mod sheet;
+pub mod sketch;
 pub mod svg;
 mod tables;
 

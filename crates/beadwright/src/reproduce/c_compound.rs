@@ -55,7 +55,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          The paper's 0.591 w lies where pores have all but gone and humps are still low.",
     );
     page.svg(&plot(&sweep).svg());
-    Ok(Reproduced { page, lines: lines(&specimens, &sweep) })
+    Ok(Reproduced { page, lines: lines(&specimens, &sweep), files: Vec::new() })
 }
 
 fn judge(strategy: &str, gap: f64, task: &Task) -> Result<Entry, ReproduceError> {

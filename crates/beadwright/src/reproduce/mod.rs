@@ -1,5 +1,6 @@
 //! The papers' experiments made again: ours beside theirs. A paper is one file and one line in [`PAPERS`].
 
+pub mod a_skeleton_hybrid;
 pub mod c_compound;
 
 use crate::report::sheet::Sheet;
@@ -11,6 +12,8 @@ pub struct Reproduced {
     pub page: Sheet,
     /// The findings in a few lines, for the terminal.
     pub lines: Vec<String>,
+    /// Programs, as texts to be appended to named files.
+    pub files: Vec<(String, String)>,
 }
 
 /// A paper.
@@ -24,11 +27,18 @@ pub struct Paper {
 }
 
 /// The papers.
-pub const PAPERS: [Paper; 1] = [Paper {
-    name: "c-compound",
-    about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figure 7)",
-    run: c_compound::run,
-}];
+pub const PAPERS: [Paper; 2] = [
+    Paper {
+        name: "a-skeleton-hybrid",
+        about: "Zhao et al. 2023: contours whose pockets are filled as skeleton regions, on a propeller",
+        run: a_skeleton_hybrid::run,
+    },
+    Paper {
+        name: "c-compound",
+        about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figure 7)",
+        run: c_compound::run,
+    },
+];
 
 /// Why an experiment could not be made.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@ use super::pockets::Level;
 use crate::fill::FillSettings;
 use glam::DVec2;
 use planar::clip::Keep;
-use planar::{Join, Region, Ring};
+use planar::{Region, Ring};
 
 /// A part of a contour that a skeleton region left.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Contours {
 /// it makes the shape.
 pub fn cut(levels: &[Level], regions: &Region, settings: &FillSettings) -> Contours {
     // The sides of a pocket lie on the contour itself: a little more is cut.
-    let knife = regions.offset(4.0 * settings.hybrid.tolerance, Join::ROUND);
+    let knife = regions.offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     let mut contours = Contours::default();
     for (index, level) in levels.iter().enumerate() {
         let literal = settings.hybrid.literal;
@@ -84,16 +84,16 @@ const CAP: f64 = 0.9;
 /// tips of neighbouring contours. The room beyond gets a bead of its own.
 fn capped(region: &Region, settings: &FillSettings) -> Region {
     let r = CAP / 2.0 * settings.stepover;
-    let blunt = region.offset(-r, Join::ROUND).offset(r + settings.hybrid.tolerance, Join::ROUND);
+    let blunt = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
     let mut tips = region.difference(&blunt).into_polygons();
     // The tip of an angle θ stands r (1/sin(θ/2) − 1) above its cap: r at 60°.
-    let grown = blunt.offset(r, Join::ROUND);
+    let grown = blunt.offset(r, settings.hybrid.join());
     tips.retain(|tip| tip.outer.points().iter().any(|p| !grown.contains(*p)));
     if tips.is_empty() {
         return region.clone();
     }
     // A tip's sides lie on the contour itself: cut with a hair more, no needle of them is left.
-    let knife = Region::from_normalised(tips).offset(4.0 * settings.hybrid.tolerance, Join::ROUND);
+    let knife = Region::from_normalised(tips).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     region.difference(&knife)
 }
 
@@ -137,15 +137,19 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     let legs: Vec<f64> = (0..tips.len()).map(|k| (LEG * d).min(0.9 * room(k))).collect();
     let mut drawn: Vec<(f64, DVec2)> = Vec::with_capacity(n + 2 * tips.len());
     for (i, &p) in points.iter().enumerate() {
-        let near = |(k, &t): (usize, &usize)| t != i && apart(i, t).min(apart(t, i)) < legs[k];
-        if tips.contains(&i) {
-            let k = tips.iter().position(|&t| t == i).unwrap_or(0);
+        // The tips stand in order: only the one before and the one behind can be near.
+        let k = tips.partition_point(|&t| t < i);
+        if tips.get(k) == Some(&i) {
             let moved = tip(i).map_or(p, |(at, way, reach)| at + way * reach);
             let on = |by: f64| (stations[i] + by).rem_euclid(length);
             drawn.push((on(-legs[k]), along(points, &stations, length, on(-legs[k]))));
             drawn.push((stations[i], moved));
             drawn.push((on(legs[k]), along(points, &stations, length, on(legs[k]))));
-        } else if !tips.iter().enumerate().any(near) {
+            continue;
+        }
+        let beside = [(k + tips.len() - 1) % tips.len(), k % tips.len()];
+        let near = |k: usize| apart(i, tips[k]).min(apart(tips[k], i)) < legs[k];
+        if !beside.into_iter().any(near) {
             drawn.push((stations[i], p));
         }
     }

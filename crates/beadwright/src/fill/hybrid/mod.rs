@@ -26,7 +26,7 @@ pub mod skeleton;
 
 use super::{Fill, FillSettings, Pass, Strategy};
 use contours::Contours;
-use planar::{Polygon, Region};
+use planar::{Join, Polygon, Region};
 use pockets::Level;
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +86,13 @@ pub struct HybridSettings {
     pub tip_reach: f64,
     /// The narrowest and the widest bead of the process.
     pub width_limits: (f64, f64),
+}
+
+impl HybridSettings {
+    /// Round joins as true as pockets need them: chords within half the tolerance.
+    fn join(&self) -> Join {
+        Join::Round(self.tolerance / 2.0)
+    }
 }
 
 impl Strategy for Hybrid {

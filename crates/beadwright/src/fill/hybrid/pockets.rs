@@ -5,7 +5,7 @@
 
 use crate::fill::FillSettings;
 use glam::DVec2;
-use planar::{Bounds, Join, Polygon, Region};
+use planar::{Bounds, Polygon, Region};
 
 /// What a pocket is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,9 @@ pub fn levels(outermost: Region, settings: &FillSettings) -> Vec<Level> {
             level.pockets.iter_mut().for_each(|pocket| pocket.kept = false);
             level.contour = level.region.clone();
         }
-        region = level.contour.offset(-settings.stepover, Join::ROUND);
+        // Offsets multiply vertices; what lies within a quarter of the tolerance is none of them.
+        region = level.contour.offset(-settings.stepover, settings.hybrid.join());
+        region = region.simplified(settings.hybrid.tolerance / 4.0);
         levels.push(level);
     }
     levels
@@ -72,14 +74,14 @@ fn level(region: Region, settings: &FillSettings) -> Level {
     let hybrid = &settings.hybrid;
     let (mut contour, mut pockets) = (Vec::new(), Vec::new());
     for piece in region.polygons() {
-        let core = piece.offset(-hybrid.pocket_depth, Join::ROUND);
+        let core = piece.offset(-hybrid.pocket_depth, settings.hybrid.join());
         if core.is_empty() {
             let kept = piece.area() >= hybrid.min_pocket_area;
             pockets.push(Pocket { shape: piece.clone(), kind: PocketKind::Whole, length: 0.0, kept });
             continue;
         }
         let whole = Region::from(piece.clone());
-        let back = core.offset(hybrid.pocket_depth + hybrid.tolerance, Join::ROUND);
+        let back = core.offset(hybrid.pocket_depth + hybrid.tolerance, settings.hybrid.join());
         let found: Vec<Pocket> = whole
             .difference(&back)
             .into_polygons()
@@ -218,7 +220,7 @@ pub fn merge(levels: &[Level], outermost: &Region, settings: &FillSettings) -> R
         &kept.iter().flat_map(|p| p.rings().cloned()).collect::<Vec<_>>(),
         planar::FillRule::NonZero,
     )
-    .offset(settings.stepover, Join::ROUND);
-    let merged = grown.offset(-settings.stepover, Join::ROUND);
+    .offset(settings.stepover, settings.hybrid.join());
+    let merged = grown.offset(-settings.stepover, settings.hybrid.join());
     if settings.hybrid.literal { merged } else { merged.intersection(outermost) }
 }

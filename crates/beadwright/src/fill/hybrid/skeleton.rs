@@ -10,6 +10,8 @@ use crate::fill::{FillSettings, Pass, zigzag};
 use glam::DVec2;
 use planar::{Join, Polygon, Region, buffer, min_area_rect};
 
+/// The neighbourhood of contours is true within this part of a bead width.
+const BUFFER: f64 = 0.01;
 /// At forks and where the number of beads changes, a first filling leaves room for more.
 const ROUNDS: usize = 3;
 
@@ -71,7 +73,8 @@ fn room(free: &Region, laid: &[Pass], settings: &FillSettings) -> Region {
     let closed: Vec<Vec<DVec2>> = closed.into_iter().map(|pass| pass.points.clone()).collect();
     let open: Vec<Vec<DVec2>> =
         open.into_iter().map(|pass| shortened(&pass.points, settings.hybrid.end_overlap)).collect();
-    free.difference(&buffer(&closed, true, gap)).difference(&buffer(&open, false, gap))
+    let tolerance = BUFFER * settings.bead_width;
+    free.difference(&buffer(&closed, true, gap, tolerance)).difference(&buffer(&open, false, gap, tolerance))
 }
 
 /// A line less its ends: there the fill may come nearer.
