@@ -23,7 +23,7 @@ const END: &str = "#d92d3a";
 /// Text and lines scale with the picture: one unit is this part of its larger side.
 const UNITS: f64 = 100.0;
 /// Room for the legend, in units.
-const LEGEND_WIDTH: f64 = 74.0;
+const LEGEND_WIDTH: f64 = 91.0;
 
 /// The picture of a layer, y upwards.
 pub fn layer(layer: &Layer, title: &str) -> String {
@@ -74,7 +74,12 @@ impl Frame {
     fn legend(&self, svg: &mut String) {
         let (unit, y) = (self.unit, self.low.y + self.size.y - 4.0 * self.unit);
         let mut at = DVec2::new(self.low.x + 4.0 * unit, y);
-        let kinds = [("contour", CONTOUR, 11.0), ("infill", INFILL, 8.6), ("travel", TRAVEL, 8.8)];
+        let kinds = [
+            ("contour", CONTOUR, 11.0),
+            ("infill", INFILL, 8.6),
+            ("skeleton", SKELETON, 12.0),
+            ("travel", TRAVEL, 8.8),
+        ];
         for (name, colour, width) in kinds {
             let (thick, dash) = if name == "travel" { (0.35, "1.4 0.9") } else { (1.8, "none") };
             line(svg, at - DVec2::Y * 0.8 * unit, at + DVec2::new(3.0, -0.8) * unit, thick * unit);
@@ -126,10 +131,13 @@ fn beads(svg: &mut String, layer: &Layer, unit: f64) {
         let points = || pass.points.iter().map(|p| p.truncate());
         match pass.width {
             Along::Same(width) => stroke(svg, pass.kind, points(), pass.closed, width, WIDE),
+            // In a group, so that the pieces of one pass do not darken each other.
             Along::Each(_) => {
+                svg.push_str("<g opacity=\"0.45\">\n");
                 for s in pass.segments() {
-                    stroke(svg, pass.kind, [s.from.truncate(), s.to.truncate()].into_iter(), false, s.width, WIDE);
+                    stroke(svg, pass.kind, [s.from.truncate(), s.to.truncate()].into_iter(), false, s.width, "");
                 }
+                svg.push_str("</g>\n");
             }
         }
     }
