@@ -74,7 +74,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     bar.finish_and_clear();
     let part = arguments.model.part();
     let lead = format!("Profile {}, beads of {} mm; less is better in every column.", profile.name, profile.bead.width);
-    write_file(&arguments.output, compare::page(&part, &lead, &entries).html().as_bytes())?;
+    let mut page = compare::page(&part, &lead, &entries);
+    let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
+    if let (Some(layer), true) = (middle, names.iter().any(|name| name == "hybrid")) {
+        compare::add_steps(&mut page, &import.mesh, &profile, layer.index, &task)?;
+    }
+    write_file(&arguments.output, page.html().as_bytes())?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let value: Vec<_> = entries

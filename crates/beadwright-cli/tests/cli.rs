@@ -259,5 +259,9 @@ fn strategies_are_compared_and_papers_reproduced() {
     let said = ok(folder.path(), &["reproduce", "c-compound", "-o", "papers"]);
     assert!(said.contains("void at 0.738 w over"));
     assert!(folder.path().join("papers/reproduce-c-compound.html").is_file());
+    let said = ok(folder.path(), &["reproduce", "a-skeleton-hybrid", "-o", "papers"]);
+    assert!(said.contains("10.5 mm/s fits"), "{said}");
+    let written = files(&folder.path().join("papers"));
+    assert!(written.contains_key("PROPELLER.src") && written.contains_key("PROPELLER_L010.src"));
     assert!(refused(folder.path(), &["reproduce", "x"], 1).contains("c-compound"));
 }

@@ -9,6 +9,8 @@ use crate::profile::Profile;
 use crate::readback;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::Sheet;
+use crate::report::steps;
+use crate::slice::{BATCH, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use glam::DVec2;
 use planar::Bounds;
@@ -264,6 +266,22 @@ pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
         page.svg(&layer_plot("Overfill", entries, Figures::overfill_percent).svg());
     }
     page
+}
+
+/// Adds the steps of the hybrid on one layer, by index from 0, to a page.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn add_steps(page: &mut Sheet, mesh: &Mesh, profile: &Profile, layer: usize, task: &Task) -> Result<(), Cancelled> {
+    let slicer = Slicer::new(mesh, profile.slice_options(), task)?;
+    let layer = layer.min(slicer.layer_count() - 1);
+    let slices = slicer.batch(layer / BATCH, task)?;
+    let Some(slice) = slices.get(layer % BATCH) else { return Ok(()) };
+    page.heading(&format!("The steps of the hybrid on layer {}", layer + 1));
+    for sketch in steps::sketches(&slice.islands, &profile.fill_settings(layer)) {
+        page.svg(&sketch.svg());
+    }
+    Ok(())
 }
 
 fn layer_plot(title: &str, entries: &[Entry], value: fn(&Figures) -> f64) -> Plot {

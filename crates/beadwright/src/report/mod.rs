@@ -6,6 +6,7 @@
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
+//! | [`steps`] | the steps of the hybrid as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 
@@ -13,6 +14,7 @@ pub mod encode;
 pub mod plot;
 pub mod sheet;
 pub mod sketch;
+pub mod steps;
 pub mod svg;
 mod tables;
 

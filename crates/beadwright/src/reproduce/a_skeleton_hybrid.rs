@@ -4,29 +4,19 @@ use super::{ReproduceError, Reproduced};
 use crate::bead::MassBalance;
 use crate::compare::{self, Chosen, Entry};
 use crate::example;
-use crate::fill::hybrid::{Steps, pockets::Pocket};
 use crate::model::Mesh;
 use crate::plan;
 use crate::post;
 use crate::profile::Profile;
 use crate::program::Programmer;
 use crate::report::sheet::Sheet;
-use crate::report::sketch::Sketch;
-use crate::slice::Slicer;
 use crate::task::Task;
-use planar::{Bounds, Polygon, Region};
 use std::collections::BTreeSet;
 
 /// The speed that the abstract of the paper would need at 0.02 m/s, mm/s.
 const PRINTED_SPEED: f64 = 20.0;
 /// The layer that is drawn, from 0.
 const LAYER: usize = 4;
-
-const CONTOUR: &str = "#1f6fd6";
-const CUT: &str = "#e8862a";
-const KEPT: &str = "#7e57c2";
-const DROPPED: &str = "#c4c9d1";
-const SLICE: &str = "#eef0f3";
 
 /// Does the experiment.
 ///
@@ -45,9 +35,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          1.2 mm at 6 m/min.",
     );
     page.heading("The steps on layer 5");
-    stages(&mesh, &profile, task).map_err(|e| wrong(&e))?.iter().for_each(|sketch| {
-        page.svg(&sketch.svg());
-    });
+    compare::add_steps(&mut page, &mesh, &profile, LAYER, task).map_err(|e| wrong(&e))?;
     let entries = entries(&mesh, &profile, task)?;
     page.heading("What the deposit model says of layer 5");
     compare::tabulate(&mut page, &entries);
@@ -63,48 +51,6 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
     lines.push(format!("KRL of the default hybrid: {} files beside the page", names.len()));
     Ok(Reproduced { page, lines, files })
-}
-
-/// The four pictures of the paper's figure 4.
-fn stages(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Sketch>, crate::task::Cancelled> {
-    let layers = Slicer::new(mesh, profile.slice_options(), task)?.all(task)?;
-    let islands: &[Polygon] = layers.get(LAYER).map_or(&[], |layer| &layer.islands);
-    let slice = Region::from_normalised(islands.to_vec());
-    let bounds = slice.bounds().unwrap_or(Bounds { min: glam::DVec2::ZERO, max: glam::DVec2::ONE });
-    let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
-    let mut sketches = titles.map(|title| Sketch::new(bounds, title));
-    sketches.iter_mut().for_each(|sketch| {
-        sketch.region(&slice, SLICE);
-    });
-    let settings = profile.fill_settings(LAYER);
-    let thin = 0.004 * bounds.size().max_element();
-    for island in islands {
-        let steps = Steps::of(island, &settings);
-        let [pockets, regions, cut, passes] = &mut sketches;
-        for level in &steps.levels {
-            let of = |kept: bool| {
-                let chosen = level.pockets.iter().filter(|p: &&Pocket| p.kept == kept).map(|p| p.shape.clone());
-                Region::from_normalised(chosen.collect())
-            };
-            pockets.region(&of(false), DROPPED).region(&of(true), KEPT);
-            for ring in level.region.rings() {
-                pockets.line(ring.points(), true, CONTOUR, thin / 2.0);
-            }
-        }
-        regions.region(&steps.regions, KEPT);
-        for (_, ring) in &steps.contours.complete {
-            cut.line(ring.points(), true, CONTOUR, thin);
-        }
-        for piece in &steps.contours.incomplete {
-            cut.line(&piece.points, false, CUT, thin);
-        }
-        for (list, colour) in [(&steps.skeleton, KEPT), (&steps.chains, CONTOUR)] {
-            for pass in list {
-                passes.line(&pass.points, pass.closed, colour, thin);
-            }
-        }
-    }
-    Ok(sketches.into())
 }
 
 /// Layer 5 by every strategy, and by the paper to the letter.

@@ -1,0 +1,55 @@
+//! The steps of the hybrid on one layer as pictures (figure 4 of Zhao et al. 2023).
+
+use super::sketch::Sketch;
+use crate::fill::FillSettings;
+use crate::fill::hybrid::Steps;
+use glam::DVec2;
+use planar::{Bounds, Polygon, Region};
+
+const CONTOUR: &str = "#1f6fd6";
+const CUT: &str = "#e8862a";
+const KEPT: &str = "#7e57c2";
+const DROPPED: &str = "#c4c9d1";
+const SLICE: &str = "#eef0f3";
+
+/// Contours with their pockets (those that are kept in violet), skeleton regions, the contours left (those cut in
+/// orange), and the passes.
+pub fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+    let slice = Region::from_normalised(islands.to_vec());
+    let bounds = slice.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
+    let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
+    let mut sketches = titles.map(|title| Sketch::new(bounds, title));
+    for sketch in &mut sketches {
+        sketch.region(&slice, SLICE);
+    }
+    let thin = 0.004 * bounds.size().max_element();
+    for island in islands {
+        draw(&Steps::of(island, settings), &mut sketches, thin);
+    }
+    sketches
+}
+
+fn draw(steps: &Steps, sketches: &mut [Sketch; 4], thin: f64) {
+    let [pockets, regions, cut, passes] = sketches;
+    for level in &steps.levels {
+        for (kept, colour) in [(false, DROPPED), (true, KEPT)] {
+            let chosen = level.pockets.iter().filter(|p| p.kept == kept).map(|p| p.shape.clone());
+            pockets.region(&Region::from_normalised(chosen.collect()), colour);
+        }
+        for ring in level.region.rings() {
+            pockets.line(ring.points(), true, CONTOUR, thin / 2.0);
+        }
+    }
+    regions.region(&steps.regions, KEPT);
+    for (_, ring) in &steps.contours.complete {
+        cut.line(ring.points(), true, CONTOUR, thin);
+    }
+    for piece in &steps.contours.incomplete {
+        cut.line(&piece.points, false, CUT, thin);
+    }
+    for (list, colour) in [(&steps.skeleton, KEPT), (&steps.chains, CONTOUR)] {
+        for pass in list {
+            passes.line(&pass.points, pass.closed, colour, thin);
+        }
+    }
+}
