@@ -3,7 +3,7 @@
 //! small gaps close without a bead of their own.
 
 use super::near::Near;
-use crate::fill::{FillSettings, Pass};
+use crate::fill::{FillSettings, Pass, PassKind};
 use crate::pass::Along;
 use glam::DVec2;
 use planar::Polygon;
@@ -50,8 +50,10 @@ fn adapt(number: usize, pass: &mut Pass, near: &Near, settings: &FillSettings) {
             for normal in [way.perp(), -way.perp()] {
                 room += match near.sight(middle, normal, (number, k)) {
                     Some((OUTLINE, distance)) => {
-                        high = high.min(2.0 * (distance + settings.machining_allowance) + 1e-3);
-                        d / 2.0
+                        // A bead may reach up to the outline and its allowance; one in a thin wall does.
+                        let reach = distance + settings.machining_allowance;
+                        high = high.min(2.0 * reach + 1e-3);
+                        if pass.kind == PassKind::Skeleton { reach * d / settings.bead_width } else { d / 2.0 }
                     }
                     Some((_, distance)) => distance / 2.0,
                     None => d / 2.0,

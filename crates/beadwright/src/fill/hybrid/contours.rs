@@ -24,26 +24,22 @@ pub struct Contours {
     pub incomplete: Vec<Piece>,
 }
 
-/// Cuts the contours of all levels where they run inside a skeleton region. By default the outermost one is never cut:
-/// it makes the shape.
+/// Cuts the contours of all levels where they run inside a skeleton region. By default the outermost one makes the shape
+/// and is cut only where the part is as thin as one bead.
 pub fn cut(levels: &[Level], regions: &Region, settings: &FillSettings) -> Contours {
     // The sides of a pocket lie on the contour itself: a little more is cut.
     let knife = regions.offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     let mut contours = Contours::default();
     for (index, level) in levels.iter().enumerate() {
-        let literal = settings.hybrid.literal;
-        let whole = !literal && index == 0;
-        // By default a kept pocket takes its side from the contour, but its opening is no part of it.
-        let capped = (!literal && !whole).then(|| capped(&level.region, settings));
-        let laid = if literal { &level.contour } else { capped.as_ref().unwrap_or(&level.region) };
-        for ring in laid.rings() {
-            if whole {
-                contours.complete.push((index, ring.clone()));
-            } else if literal {
-                cut_ring(index, ring, &knife, settings, &mut contours);
-            } else {
-                cut_ring(index, &drawn_out(ring, settings), &knife, settings, &mut contours);
-            }
+        let mut take = |ring: &Ring, knife: &Region| cut_ring(index, ring, knife, settings, &mut contours);
+        if settings.hybrid.literal {
+            level.contour.rings().for_each(|ring| take(ring, &knife));
+        } else if index == 0 {
+            let thin = thin(&level.region, settings);
+            level.region.rings().for_each(|ring| take(ring, &thin));
+        } else {
+            let capped = capped(&level.region, settings);
+            capped.rings().for_each(|ring| take(&drawn_out(ring, settings), &knife));
         }
     }
     contours
@@ -75,6 +71,20 @@ fn join_at(first: DVec2, pieces: &mut Vec<Vec<DVec2>>) {
         pieces[ends].extend(tail);
         pieces.swap_remove(begins);
     }
+}
+
+/// Where the outermost contour would run beside itself nearer than this, in stepovers, one bead along the middle is laid.
+const THIN: f64 = 0.6;
+
+/// The places where both sides of a contour lie too near each other, long enough for a pass.
+fn thin(region: &Region, settings: &FillSettings) -> Region {
+    let r = THIN / 2.0 * settings.stepover;
+    let open = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
+    let mut thin = region.difference(&open).into_polygons();
+    // A piece of no width has twice its length as outline; the bead in it keeps away from both ends of the contour.
+    let shortest = settings.min_pass_length + 2.0 * settings.hybrid.least_gap;
+    thin.retain(|piece| piece.outer.length() >= 2.0 * shortest);
+    Region::from_normalised(thin).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join())
 }
 
 /// Tips are cut off where both legs of a contour are this far apart, in stepovers.

@@ -12,7 +12,7 @@
 //! | widths that follow the room (ours) | [`adapt`] | |
 //!
 //! Where the default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket
-//! is not kept stay sharp; the outermost contour is never cut; the fill keeps exactly d2 from the contours that are
+//! is not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from the contours that are
 //! left, since it fills what lies outside their neighbourhood; narrow regions get a few beads along their medial axis
 //! instead of short strokes across; ends of cut contours reach into the fill.
 

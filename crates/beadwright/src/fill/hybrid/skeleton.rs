@@ -41,7 +41,9 @@ fn fill_room(
 ) -> Vec<Pass> {
     let mut passes = Vec::new();
     for piece in free.polygons() {
-        if piece.area() < settings.hybrid.min_pocket_area {
+        // Thin walls leave long pieces of hardly any area.
+        let long = piece.outer.length() >= 2.0 * settings.min_pass_length;
+        if piece.area() < settings.hybrid.min_pocket_area && !long {
             continue;
         }
         if settings.hybrid.literal {
