@@ -8,6 +8,34 @@ pub fn length(points: &[DVec2]) -> f64 {
     points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
+/// The point that far (mm) along the open line through `points`; its last point behind the end.
+pub fn point_at(points: &[DVec2], distance: f64) -> Option<DVec2> {
+    let mut left = distance;
+    for pair in points.windows(2) {
+        let step = pair[0].distance(pair[1]);
+        if step >= left && step > 0.0 {
+            return Some(pair[0].lerp(pair[1], left / step));
+        }
+        left -= step;
+    }
+    points.last().copied()
+}
+
+/// The open line through `points` without its last `by` (mm).
+pub fn without_end(mut points: Vec<DVec2>, by: f64) -> Vec<DVec2> {
+    let mut left = by;
+    while let [.., a, b] = points[..] {
+        let (step, last) = (a.distance(b), points.len() - 1);
+        if step > left {
+            points[last] = b.lerp(a, left / step);
+            break;
+        }
+        left -= step;
+        points.pop();
+    }
+    points
+}
+
 /// Drops every point within `tolerance` (mm) of the line that remains (Douglas–Peucker); the ends stay.
 pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };

@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use planar::polyline::{distance_squared_to_segment, length, simplify, simplify_ring};
+use planar::polyline::{distance_squared_to_segment, length, point_at, simplify, simplify_ring, without_end};
 use planar::{DVec2, Ring};
 use proptest::prelude::*;
 use shapes::{config, star, v};
@@ -91,4 +91,18 @@ fn a_ring_thinner_than_the_tolerance_vanishes() {
 fn a_spike_that_turns_back_is_kept() {
     // All on one straight line: a distance to the infinite line would lose the tip.
     assert_eq!(simplify(&[v(0.0, 0.0), v(9.0, 0.0), v(1.0, 0.0)], 0.5).len(), 3);
+}
+
+#[test]
+fn points_along_a_line_and_lines_without_their_end() {
+    let line = vec![DVec2::ZERO, DVec2::new(3.0, 4.0), DVec2::new(3.0, 10.0)];
+    assert_eq!(point_at(&line, 2.5), Some(DVec2::new(1.5, 2.0)));
+    assert_eq!(point_at(&line, 8.0), Some(DVec2::new(3.0, 7.0)));
+    assert_eq!(point_at(&line, 99.0), Some(DVec2::new(3.0, 10.0)));
+    assert_eq!(point_at(&[], 1.0), None);
+    for by in [0.5, 6.0, 7.5, 10.9] {
+        let rest = without_end(line.clone(), by);
+        assert!((length(&rest) - (11.0 - by)).abs() < 1e-9, "{by}");
+        assert_eq!(rest[0], line[0]);
+    }
 }

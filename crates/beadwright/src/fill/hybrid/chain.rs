@@ -8,6 +8,7 @@ use super::contours::{Contours, Piece};
 use super::near::Near;
 use crate::fill::{FillSettings, Pass, PassKind};
 use glam::DVec2;
+use planar::polyline::{point_at, without_end};
 use planar::{Region, Ring};
 
 /// A link between rings may be this long, in stepovers: 45° across one stepover are 1.41, and corners take more.
@@ -167,15 +168,8 @@ fn next_piece(
 
 /// The place at a fraction of a ring's length.
 fn place_at(ring: &Ring, fraction: f64) -> DVec2 {
-    let mut left = ring.length() * fraction;
-    for (a, b) in ring.edges() {
-        let step = a.distance(b);
-        if step >= left && step > 0.0 {
-            return a.lerp(b, left / step);
-        }
-        left -= step;
-    }
-    ring.points().first().copied().unwrap_or_default()
+    let line: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
+    point_at(&line, ring.length() * fraction).unwrap_or_default()
 }
 
 /// The points of a ring from a place on it onwards; the place itself comes first.
@@ -191,34 +185,12 @@ fn turned_to(ring: &Ring, place: DVec2) -> Vec<DVec2> {
 
 /// The place a little further on along a ring.
 fn advanced(ring: &Ring, place: DVec2, by: f64) -> DVec2 {
-    let turn = turned_to(ring, place);
-    let mut left = by;
-    for pair in turn.windows(2) {
-        let step = pair[0].distance(pair[1]);
-        if step >= left && step > 0.0 {
-            return pair[0].lerp(pair[1], left / step);
-        }
-        left -= step;
-    }
-    place
+    point_at(&turned_to(ring, place), by).unwrap_or(place)
 }
 
 /// A ring as an open line from its first point almost back to it: its last `gap` (mm) is left out.
 fn shortened(turn: &[DVec2], gap: f64) -> Vec<DVec2> {
-    let mut line: Vec<DVec2> = turn.to_vec();
-    line.extend(turn.first().copied());
-    let mut left = gap;
-    while let [.., a, b] = line[..] {
-        let step = a.distance(b);
-        if step > left {
-            let last = line.len() - 1;
-            line[last] = b.lerp(a, left / step);
-            break;
-        }
-        left -= step;
-        line.pop();
-    }
-    line
+    without_end(turn.iter().chain(turn.first()).copied().collect(), gap)
 }
 
 fn nearest_on(ring: &Ring, p: DVec2) -> DVec2 {

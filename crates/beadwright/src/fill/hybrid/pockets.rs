@@ -5,6 +5,7 @@
 
 use crate::fill::FillSettings;
 use glam::DVec2;
+use planar::polyline::point_at;
 use planar::{Bounds, Polygon, Region};
 
 /// What a pocket is.
@@ -58,7 +59,7 @@ pub fn levels(outermost: Region, settings: &FillSettings) -> Vec<Level> {
     while !region.is_empty() && levels.len() < MOST_LEVELS {
         let mut level = level(region, settings);
         if !settings.hybrid.literal && levels.is_empty() {
-            // The outermost contour makes the shape and is never cut.
+            // The outermost contour makes the shape: no pocket cuts it.
             level.pockets.iter_mut().for_each(|pocket| pocket.kept = false);
             level.contour = level.region.clone();
         }
@@ -158,7 +159,7 @@ fn length(shape: &Polygon, openings: &[Vec<DVec2>], edge: &[(DVec2, DVec2)], set
     let near = 3.0 * settings.hybrid.tolerance;
     let Some(opening) = openings.iter().max_by(|a, b| span(a).total_cmp(&span(b))) else { return 0.0 };
     let (Some(&first), Some(&last)) = (opening.first(), opening.last()) else { return 0.0 };
-    let middle = halfway(opening);
+    let middle = point_at(opening, span(opening) / 2.0).unwrap_or(first);
     let along = (last - first).normalize_or_zero();
     let own = shape.outer.edges().flat_map(|(a, b)| densified(a, b, settings.bead_width));
     let own = own.filter(|p| distance_to(edge, *p) > near);
@@ -183,18 +184,6 @@ fn span(line: &[DVec2]) -> f64 {
 fn densified(a: DVec2, b: DVec2, step: f64) -> impl Iterator<Item = DVec2> {
     let count = (a.distance(b) / step).ceil().max(1.0) as usize;
     (0..count).map(move |k| a.lerp(b, k as f64 / count as f64))
-}
-
-fn halfway(line: &[DVec2]) -> DVec2 {
-    let mut left = span(line) / 2.0;
-    for pair in line.windows(2) {
-        let step = pair[0].distance(pair[1]);
-        if step >= left && step > 0.0 {
-            return pair[0].lerp(pair[1], left / step);
-        }
-        left -= step;
-    }
-    line.first().copied().unwrap_or_default()
 }
 
 /// The part of a region's boundary near a shape.

@@ -8,6 +8,7 @@ use super::near::Near;
 use super::{ScanAlong, medial};
 use crate::fill::{FillSettings, Pass, zigzag};
 use glam::DVec2;
+use planar::polyline::{length, without_end};
 use planar::{Join, Polygon, Region, buffer, min_area_rect};
 
 /// The neighbourhood of contours is true within this part of a bead width.
@@ -81,25 +82,12 @@ fn room(free: &Region, laid: &[Pass], settings: &FillSettings) -> Region {
 
 /// A line less its ends: there the fill may come nearer.
 fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
-    if planar::polyline::length(points) < 4.0 * by {
+    if length(points) < 4.0 * by {
         return points.to_vec();
     }
-    let mut line = points.to_vec();
-    for _ in 0..2 {
-        let mut left = by;
-        while let [.., a, b] = line[..] {
-            let step = a.distance(b);
-            let last = line.len() - 1;
-            if step > left {
-                line[last] = b.lerp(a, left / step);
-                break;
-            }
-            left -= step;
-            line.pop();
-        }
-        line.reverse();
-    }
-    line
+    let mut line = without_end(points.to_vec(), by);
+    line.reverse();
+    without_end(line, by)
 }
 
 /// Whether a piece is nowhere wider than the regions that get beads along their axis.
