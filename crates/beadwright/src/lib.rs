@@ -32,6 +32,7 @@
 
 pub mod bead;
 pub mod compare;
+pub mod curve;
 pub mod deposit;
 pub mod example;
 pub mod fill;

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 /// Modules from the top of the table to its bottom; those in one row do not know each other.
 const ROWS: &[&[&str]] = &[
     &["task", "number", "template", "warning"],
+    // Pure geometry; a file of curves is read by the model.
+    &["curve"],
     &["model"],
     &["slice"],
     &["bead"],

@@ -1,0 +1,84 @@
+//! The nearest point of a curve: starts from samples, then Newton's method inside the neighbouring samples.
+
+use super::Nurbs;
+use glam::DVec3;
+
+/// Samples in each knot span, per degree.
+const SAMPLES: usize = 8;
+
+/// So many of the nearest sampled minima are followed.
+const FOLLOWED: usize = 6;
+
+/// Distances that differ by this share of the coordinates are equal.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closest {
+    /// Its parameter.
+    pub parameter: f64,
+    /// The point, mm.
+    pub point: DVec3,
+    /// Distance from the point asked for, mm.
+    pub distance: f64,
+}
+
+impl Nurbs {
+    /// The point of the curve nearest to `target`, mm.
+    pub fn closest(&self, target: DVec3) -> Closest {
+        let samples = self.even_parameters();
+        let far: Vec<f64> = samples.iter().map(|&u| self.point(u).distance_squared(target)).collect();
+        let is_low = |i: &usize| {
+            let before = i.checked_sub(1).is_none_or(|j| far[j] >= far[*i]);
+            before && far.get(i + 1).is_none_or(|next| *next >= far[*i])
+        };
+        let mut low: Vec<usize> = (0..samples.len()).filter(is_low).collect();
+        low.sort_by(|&a, &b| far[a].total_cmp(&far[b]));
+        let around = |i: usize| (samples[i.saturating_sub(1)], samples[i], samples[(i + 1).min(samples.len() - 1)]);
+        let found = low.into_iter().take(FOLLOWED).map(|i| self.descend(target, around(i)));
+        let first = self.closest_at(target, samples[0]);
+        found.fold(first, |best, next| if next.distance < best.distance { next } else { best })
+    }
+
+    fn closest_at(&self, target: DVec3, parameter: f64) -> Closest {
+        let point = self.point(parameter);
+        Closest { parameter, point, distance: point.distance(target) }
+    }
+
+    fn even_parameters(&self) -> Vec<f64> {
+        let breaks = self.breaks();
+        let pieces = SAMPLES * self.degree;
+        let inside =
+            |w: &[f64]| (0..pieces).map(|i| w[0] + (w[1] - w[0]) * i as f64 / pieces as f64).collect::<Vec<_>>();
+        let last = self.domain().1;
+        breaks.windows(2).flat_map(inside).chain([last]).collect()
+    }
+
+    /// Follows the distance down from the middle one of three parameters, never past the outer two.
+    fn descend(&self, target: DVec3, (low, start, high): (f64, f64, f64)) -> Closest {
+        let (mut low, mut high, mut u) = (low, high, start);
+        let mut best = self.closest_at(target, start);
+        for _ in 0..60 {
+            let [point, velocity, acceleration] = self.derivatives(u);
+            let offset = point - target;
+            // Where the distance is flat, rounding hides that the later point is the better one.
+            if offset.length() <= best.distance + ROUNDING * (point.length() + target.length()) {
+                best = Closest { parameter: u, point, distance: offset.length() };
+            }
+            // The distance falls where this is negative.
+            let slope = offset.dot(velocity);
+            if slope > 0.0 {
+                high = u
+            } else {
+                low = u
+            }
+            let next = u - slope / (velocity.length_squared() + offset.dot(acceleration));
+            let next = if next >= low && next <= high { next } else { (low + high) / 2.0 };
+            if (next - u).abs() <= 1e-15 * (1.0 + u.abs()) {
+                break;
+            }
+            u = next;
+        }
+        best
+    }
+}
