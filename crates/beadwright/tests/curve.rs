@@ -96,6 +96,18 @@ fn a_cusp_does_not_spoil_the_length() {
 }
 
 #[test]
+fn tiny_curves_far_out_take_no_time() {
+    for far in [1e3, 1e6, 1e9] {
+        let curve = Nurbs::circle(DVec3::splat(far), DVec3::X * 1e-3, DVec3::Y * 1e-3).unwrap();
+        // Coordinates are rounded to 1e-16 of their size, and a length can be no better.
+        assert_near(curve.length(), TAU * 1e-3, 1e-14 * far + 1e-12);
+        assert!(curve.arc_length().parameter(3e-3).is_finite());
+        assert!(curve.parameters_by_chord(0.0).len() < 200_000);
+        assert!(curve.closest(DVec3::ZERO).distance > 0.0);
+    }
+}
+
+#[test]
 fn length_and_its_inverse_agree() {
     for curve in [cubic(), circle(20.0), circle(1e-3), circle(1e4)] {
         let table = curve.arc_length();

@@ -21,8 +21,11 @@ const GAUSS_16: [(f64, f64); 8] = [
 /// Halves agree with the whole within this share of the total length.
 const AGREEMENT: f64 = 1e-11;
 
-/// A span is halved at most this often; a cusp takes about forty.
+/// A span is halved at most this often, one part after the other; a cusp takes about forty.
 const MAX_DEPTH: u32 = 44;
+
+/// A span becomes at most so many pieces.
+const MAX_PIECES: usize = 4096;
 
 /// The arc length along a curve, tabulated.
 #[derive(Debug, Clone)]
@@ -43,10 +46,13 @@ impl Nurbs {
         let breaks = self.breaks();
         let spans: Vec<(f64, f64, f64)> =
             breaks.windows(2).map(|w| (w[0], w[1], self.quadrature(w[0], w[1]))).collect();
-        let tolerance = AGREEMENT * spans.iter().map(|s| s.2).sum::<f64>();
+        // Speeds are no better than the rounding of the coordinates they are differences of.
+        let rounding = 4.0 * f64::EPSILON * self.degree as f64 * self.reach();
+        let tolerance = (AGREEMENT * spans.iter().map(|s| s.2).sum::<f64>()).max(rounding);
         let mut table = ArcLength { curve: self, parameters: vec![breaks[0]], lengths: vec![0.0] };
         for (a, b, whole) in spans {
-            table.refine(a, b, whole, tolerance, MAX_DEPTH);
+            let limit = table.lengths.len() + MAX_PIECES;
+            table.refine(a, b, whole, (tolerance, limit), MAX_DEPTH);
         }
         table
     }
@@ -61,12 +67,13 @@ impl Nurbs {
 }
 
 impl ArcLength<'_> {
-    fn refine(&mut self, a: f64, b: f64, whole: f64, tolerance: f64, depth: u32) {
+    /// Adds the span from `a` to `b` in pieces that agree within a tolerance, until the table is as long as the limit.
+    fn refine(&mut self, a: f64, b: f64, whole: f64, (tolerance, limit): (f64, usize), depth: u32) {
         let middle = (a + b) / 2.0;
         let (left, right) = (self.curve.quadrature(a, middle), self.curve.quadrature(middle, b));
-        if (left + right - whole).abs() > tolerance && depth > 0 {
-            self.refine(a, middle, left, tolerance, depth - 1);
-            self.refine(middle, b, right, tolerance, depth - 1);
+        if (left + right - whole).abs() > tolerance && depth > 0 && self.lengths.len() < limit {
+            self.refine(a, middle, left, (tolerance, limit), depth - 1);
+            self.refine(middle, b, right, (tolerance, limit), depth - 1);
         } else {
             self.push(middle, left);
             self.push(b, right);
@@ -110,7 +117,11 @@ impl ArcLength<'_> {
                 low = u
             }
             let next = u - excess / self.curve.derivative(u).length();
-            u = if next > low && next < high { next } else { (low + high) / 2.0 };
+            let next = if next > low && next < high { next } else { (low + high) / 2.0 };
+            if next == u {
+                break;
+            }
+            u = next;
         }
         u
     }

@@ -147,6 +147,12 @@ impl Nurbs {
         self.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
     }
 
+    /// Largest coordinate of the control points, mm.
+    pub(super) fn reach(&self) -> f64 {
+        let (low, high) = self.bounds();
+        low.abs().max(high.abs()).max_element()
+    }
+
     /// The same curve run backwards, over the same domain when its knots are clamped.
     pub fn reversed(&self) -> Self {
         let sum = self.knots[0] + self.knots[self.knots.len() - 1];

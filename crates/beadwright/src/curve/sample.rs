@@ -20,9 +20,9 @@ impl Nurbs {
     /// Parameters between which the curve leaves its chords by at most `error`, mm; knots and ends are among them.
     ///
     /// Every chord is compared with the curve at five places, after each knot span was cut into as many pieces as
-    /// the degree; an `error` below 1e-9 of the curve's extent is taken as that.
+    /// the degree; an `error` below 1e-9 of the curve's extent, or below the rounding of its coordinates, is taken as that.
     pub fn parameters_by_chord(&self, error: f64) -> Vec<f64> {
-        let error = SAFETY * error.max(1e-9 * self.extent());
+        let error = SAFETY * error.max(1e-9 * self.extent()).max(1e-14 * self.reach());
         let breaks = self.breaks();
         let mut parameters = vec![breaks[0]];
         for span in breaks.windows(2) {

@@ -6,9 +6,11 @@
 //! | `weld` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
+//! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | [`units`] | millimetres or inches? |
 
 pub(crate) mod adjacency;
+pub mod iges;
 pub mod repair;
 pub mod stl;
 pub mod units;
