@@ -239,6 +239,8 @@ fn a_corner_is_met_in_the_end() {
     let points: Vec<DVec3> = (0..=40).map(|i| dvec3(f64::from(i.min(20)), f64::from((i - 20).max(0)), 0.0)).collect();
     let fit = Nurbs::fitted(&points, false, 1e-3).unwrap();
     assert!(fit.error <= 1e-3 && points.iter().all(|p| fit.curve.closest(*p).distance <= 1e-3));
+    // With some tolerance the knots gather at the corner.
+    assert!(Nurbs::fitted(&points, false, 0.1).unwrap().curve.control_points().len() <= 20);
 }
 
 #[test]

@@ -1,13 +1,14 @@
-//! The nearest point of a curve: starts from samples, then Newton's method inside the neighbouring samples.
+//! The nearest point of a curve: starts on the nearest chords between samples, then Newton's method beside them.
 
 use super::Nurbs;
+use super::sample::nearest_on_segment;
 use glam::DVec3;
 
 /// Samples in each knot span, per degree.
 const SAMPLES: usize = 8;
 
-/// So many of the nearest sampled minima are followed.
-const FOLLOWED: usize = 6;
+/// So many of the nearest chords are followed, of those nearer than their neighbours.
+const FOLLOWED: usize = 8;
 
 /// Distances that differ by this share of the coordinates are equal.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -27,14 +28,18 @@ impl Nurbs {
     /// The point of the curve nearest to `target`, mm.
     pub fn closest(&self, target: DVec3) -> Closest {
         let samples = self.even_parameters();
-        let far: Vec<f64> = samples.iter().map(|&u| self.point(u).distance_squared(target)).collect();
+        let points: Vec<DVec3> = samples.iter().map(|&u| self.point(u)).collect();
+        let chords: Vec<(f64, f64)> = points.windows(2).map(|w| nearest_on_segment(target, w[0], w[1])).collect();
         let is_low = |i: &usize| {
-            let before = i.checked_sub(1).is_none_or(|j| far[j] >= far[*i]);
-            before && far.get(i + 1).is_none_or(|next| *next >= far[*i])
+            let before = i.checked_sub(1).is_none_or(|j| chords[j].1 >= chords[*i].1);
+            before && chords.get(i + 1).is_none_or(|next| next.1 >= chords[*i].1)
         };
-        let mut low: Vec<usize> = (0..samples.len()).filter(is_low).collect();
-        low.sort_by(|&a, &b| far[a].total_cmp(&far[b]));
-        let around = |i: usize| (samples[i.saturating_sub(1)], samples[i], samples[(i + 1).min(samples.len() - 1)]);
+        let mut low: Vec<usize> = (0..chords.len()).filter(is_low).collect();
+        low.sort_by(|&a, &b| chords[a].1.total_cmp(&chords[b].1));
+        let around = |i: usize| {
+            let start = samples[i] + (samples[i + 1] - samples[i]) * chords[i].0;
+            (samples[i.saturating_sub(1)], start, samples[(i + 2).min(samples.len() - 1)])
+        };
         let found = low.into_iter().take(FOLLOWED).map(|i| self.descend(target, around(i)));
         let first = self.closest_at(target, samples[0]);
         found.fold(first, |best, next| if next.distance < best.distance { next } else { best })

@@ -161,7 +161,7 @@ impl Data {
             let within = |u: f64| self.parameters[..self.points.len()].partition_point(|&t| t < u);
             let (low, high) = (within(span[0]), within(span[1]));
             let middle = (low + high) / 2;
-            if high >= low + 4 && misses[low..high].iter().any(|&miss| miss > error) {
+            if high >= low + 2 && misses[low..high].iter().any(|&miss| miss > error) {
                 added.push((self.parameters[middle - 1] + self.parameters[middle]) / 2.0);
             }
         }

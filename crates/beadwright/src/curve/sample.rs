@@ -38,7 +38,7 @@ impl Nurbs {
     fn halve(&self, a: (f64, DVec3), b: (f64, DVec3), error: f64, depth: u32, out: &mut Vec<f64>) {
         let leaves = |share: f64| {
             let p = self.point(a.0 + (b.0 - a.0) * share);
-            distance_to_segment(p, a.1, b.1) > error
+            nearest_on_segment(p, a.1, b.1).1 > error
         };
         if self.degree > 1 && depth > 0 && PROBES.into_iter().any(leaves) {
             let u = (a.0 + b.0) / 2.0;
@@ -63,9 +63,10 @@ impl Nurbs {
     }
 }
 
-fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+/// The nearest point of the segment from `a` to `b`: its share of the way, and its distance, mm.
+pub(super) fn nearest_on_segment(p: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let along = b - a;
     let square = along.length_squared();
     let share = if square > 0.0 { ((p - a).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-    p.distance(a + along * share)
+    (share, p.distance(a + along * share))
 }
