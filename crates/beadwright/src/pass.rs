@@ -46,6 +46,15 @@ impl Along {
         }
     }
 
+    /// The values with a new point on the piece behind the point of that index.
+    pub fn split(&mut self, index: usize) {
+        if let Self::Each(values) = self
+            && let Some(&value) = values.get(index)
+        {
+            values.insert(index + 1, value);
+        }
+    }
+
     /// The values with the point of that index first.
     pub fn rotate_left(&mut self, index: usize) {
         if let Self::Each(values) = self {

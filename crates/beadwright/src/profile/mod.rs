@@ -11,6 +11,7 @@ pub use read::ProfileError;
 use crate::bead::{Bead, MassBalance, Overlap};
 use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
+use crate::order::Method;
 use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,9 @@ pub struct Profile {
     /// Thresholds of the strategy `hybrid`; optional.
     #[serde(default)]
     pub hybrid: Hybrid,
+    /// Order of passes; optional.
+    #[serde(default)]
+    pub order: Order,
     /// Tolerances of slicing; optional.
     #[serde(default)]
     pub slice: Slice,
@@ -218,6 +222,16 @@ impl Default for Hybrid {
             max_width: 1.4,
         }
     }
+}
+
+/// Order of passes.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Order {
+    /// How order and start points are found: `nearest`, `improved-nearest`, `ant-colony`, `local-search` or `exact`;
+    /// default local-search.
+    pub method: Method,
 }
 
 /// Tolerances of slicing.

@@ -1,0 +1,133 @@
+//! Order: in which sequence the passes of a layer are laid, and where each begins.
+//!
+//! Islands are finished one after another, the stages of an island in their order. Within a stage, and among the
+//! islands, the order and the start points are chosen together so that the torch travels little: a travelling
+//! salesman who may enter every town at any of its gates. An open pass has two gates; a closed one may begin at any
+//! point, also in the middle of an edge.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | [`tour`] | the problem: stops with their gates, and a tour through them |
+//! | [`nearest`] | nearest next; and the improved nearest neighbour of Han et al. 2018 (2.1) |
+//! | [`ant_colony`] | the ant colony of Han et al. 2018 (2.2) |
+//! | [`local_search`] | 2-opt, Or-opt and start points together; the default |
+//! | [`exact`] | the optimum by dynamic programming, for few stops |
+
+pub mod ant_colony;
+pub mod exact;
+pub mod local_search;
+pub mod nearest;
+mod random;
+pub mod tour;
+
+use crate::fill::{Fill, Pass};
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use tour::{Ends, Stop, Visit};
+
+/// How the order is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Method {
+    /// Always the nearest pass next.
+    Nearest,
+    /// The best nearest-neighbour tour over all vertices as seeds (Han et al. 2018, 2.1).
+    ImprovedNearest,
+    /// The ant colony over the start points of `improved-nearest` (Han et al. 2018, 2.2).
+    AntColony,
+    /// Local search over order, start points and directions together.
+    #[default]
+    LocalSearch,
+    /// The optimum over vertices and ends for up to nine passes; local search for more.
+    Exact,
+}
+
+impl Method {
+    /// A tour through all stops.
+    pub fn tour(self, stops: &[Stop], ends: Ends) -> Vec<Visit> {
+        match self {
+            Self::Nearest => nearest::tour(stops, ends),
+            Self::ImprovedNearest => nearest::improved(stops, ends),
+            Self::AntColony => ant_colony::tour(stops, ends, &ant_colony::Colony::default()),
+            Self::Exact if stops.len() <= exact::MAX_STOPS => exact::tour(stops, ends),
+            Self::LocalSearch | Self::Exact => local_search::tour(stops, ends),
+        }
+    }
+}
+
+/// Puts the passes of a layer in order. `torch` is where the torch stands before and after; without one it counts as
+/// standing in the origin.
+pub fn order(islands: Vec<Fill>, method: Method, torch: &mut Option<DVec2>) -> Vec<Pass> {
+    let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
+    for fill in islands_in_order(islands, method, torch.unwrap_or_default()) {
+        for stage in fill.stages {
+            let stage = if fill.fixed_order { stage } else { stage_in_order(stage, method, torch.unwrap_or_default()) };
+            *torch = stage.last().and_then(last_point).or(*torch);
+            ordered.extend(stage);
+        }
+    }
+    ordered
+}
+
+/// Islands are visited like closed passes: wherever a pass of their first stage may begin.
+fn islands_in_order(mut islands: Vec<Fill>, method: Method, from: DVec2) -> Vec<Fill> {
+    for fill in &mut islands {
+        fill.stages.retain(|stage| !stage.is_empty());
+    }
+    islands.retain(|fill| !fill.stages.is_empty());
+    let first = |fill: &Fill| if fill.fixed_order { 1 } else { usize::MAX };
+    let starts = |fill: &Fill| {
+        let passes = fill.stages.iter().take(1).flatten().take(first(fill));
+        Stop::anywhere(passes.flat_map(|pass| Stop::of(pass).gates().map(|gate| gate.enter).collect::<Vec<_>>()))
+    };
+    let stops: Vec<Stop> = islands.iter().map(starts).collect();
+    let tour = method.tour(&stops, Ends::From(from));
+    let mut islands: Vec<Option<Fill>> = islands.into_iter().map(Some).collect();
+    tour.iter().filter_map(|visit| islands.get_mut(visit.stop)?.take()).collect()
+}
+
+fn stage_in_order(stage: Vec<Pass>, method: Method, from: DVec2) -> Vec<Pass> {
+    let stops: Vec<Stop> = stage.iter().map(Stop::of).collect();
+    let tour = method.tour(&stops, Ends::From(from));
+    let mut stage: Vec<Option<Pass>> = stage.into_iter().map(Some).collect();
+    tour.iter().filter_map(|visit| Some(begin_at(stage.get_mut(visit.stop)?.take()?, visit.enter))).collect()
+}
+
+/// The pass, begun at that point of it.
+pub fn begin_at(mut pass: Pass, start: DVec2) -> Pass {
+    if pass.closed {
+        let index = vertex_at(&mut pass, start);
+        pass.points.rotate_left(index);
+        pass.width.rotate_left(index);
+    } else if pass.points.last() == Some(&start) && pass.points.first() != Some(&start) {
+        pass.points.reverse();
+        pass.width.reverse();
+    }
+    pass
+}
+
+/// Index of the vertex of a closed pass at a point of its path; a new one where there is none yet.
+fn vertex_at(pass: &mut Pass, point: DVec2) -> usize {
+    let path = pass.path();
+    let distance = |(a, b): (DVec2, DVec2)| tour::nearest_on(a, b, point).distance_squared(point);
+    let edges = path.windows(2).map(|w| (w[0], w[1]));
+    let (edge, _) = edges.map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+    let next = (edge + 1) % pass.points.len().max(1);
+    for end in [edge, next] {
+        if pass.points.get(end).is_some_and(|p| p.distance(point) < SAME_POINT_MM) {
+            return end;
+        }
+    }
+    pass.points.insert(edge + 1, point);
+    pass.width.split(edge);
+    edge + 1
+}
+
+/// A start nearer to a vertex than this is that vertex, mm.
+const SAME_POINT_MM: f64 = 1e-3;
+
+/// Where the torch stands after a pass.
+fn last_point(pass: &Pass) -> Option<DVec2> {
+    if pass.closed { pass.points.first().copied() } else { pass.points.last().copied() }
+}
