@@ -1,4 +1,10 @@
 //! The bead: its parabolic cross-section, the distance between neighbours, and the balance of wire and bead.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | [`wall`] | how high walls of one bead a layer grow |
+
+pub mod wall;
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
