@@ -3,7 +3,9 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`wall`] | how high walls of one bead a layer grow |
+//! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
 
+pub mod library;
 pub mod wall;
 
 use serde::{Deserialize, Serialize};
