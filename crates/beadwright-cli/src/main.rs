@@ -2,6 +2,7 @@
 //!
 //! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage.
 
+mod bead;
 mod compare;
 mod example;
 mod inspect;
@@ -33,6 +34,9 @@ enum Command {
     Compare(compare::Arguments),
     /// Judge a plan or anyone's program by what it would build.
     Simulate(simulate::Arguments),
+    /// Width and height of measured beads, and the parameters of a wanted one.
+    #[command(subcommand)]
+    Bead(bead::Command),
     /// Make the papers' experiments again: ours beside theirs.
     Reproduce(reproduce::Arguments),
     /// Tell what a model holds and what is wrong with it.
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Bead(command) => bead::run(&command),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),

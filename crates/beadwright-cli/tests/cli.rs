@@ -265,3 +265,37 @@ fn strategies_are_compared_and_papers_reproduced() {
     assert!(written.contains_key("PROPELLER.src") && written.contains_key("PROPELLER_L010.src"));
     assert!(refused(folder.path(), &["reproduce", "x"], 1).contains("c-compound"));
 }
+
+#[test]
+fn beads_are_fitted_foretold_and_found() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    assert!(ok(path, &["bead", "example"]).contains("SYNTHETIC"));
+    let said = ok(path, &["bead", "fit", "bead-example.csv", "-o", "lib.toml", "--plot", "window.svg"]);
+    assert!(said.starts_with("SYNTHETIC") && said.contains("leave-one-out") && said.contains("60 to 250 A"), "{said}");
+    assert!(fs::read_to_string(path.join("window.svg")).unwrap().contains("SYNTHETIC"));
+    let json = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(&ok(path, arguments)).unwrap() };
+    let recipe = json(&["bead", "solve", "lib.toml", "--width", "4.5", "--layer-height", "1.4", "--json"]);
+    assert!((recipe["layer_height_mm"].as_f64().unwrap() - 1.4).abs() < 1e-6 && recipe["synthetic"] == true);
+    let value = |name: &str| format!("{name}={}", recipe["parameters"][name]["value"]);
+    let again = json(&["bead", "predict", "lib.toml", &value("current"), &value("deposition_speed"), "--json"]);
+    assert!((again["width_mm"]["value"].as_f64().unwrap() - 4.5).abs() < 1e-6);
+    for (arguments, part) in [
+        (&["predict", "lib.toml", "current=300", "deposition_speed=8"][..], "above the measured range of 60 to 250 A"),
+        (&["predict", "lib.toml", "current=100"], "a value for deposition_speed is missing"),
+        (&["predict", "bead-example.csv", "current=100"], "bead-example.csv: this is no bead library"),
+        (
+            &["solve", "lib.toml", "--width", "30", "--layer-height", "5"],
+            "out of reach: current would have to be above",
+        ),
+        (&["solve", "lib.toml", "--width", "5", "--layer-height", "1", "--overlap", "much"], "tangent"),
+        (&["fit", "missing.csv"], "missing.csv cannot be read"),
+    ] {
+        let said = refused(path, &[&["bead"], arguments].concat(), 1);
+        assert!(said.starts_with("error: ") && said.contains(part) && said.lines().count() == 1, "{said}");
+    }
+    fs::write(path.join("bad.csv"), "current_a,width_mm,height_mm\n100,5,2\n1o0,5,2\n").unwrap();
+    assert!(refused(path, &["bead", "fit", "bad.csv", "-o", "bad.toml"], 1).contains("bad.csv: line 3, column"));
+    assert!(!path.join("bad.toml").exists());
+    refused(path, &["bead", "predict", "lib.toml", "current"], 2);
+}

@@ -287,5 +287,5 @@ pub fn add_steps(page: &mut Sheet, mesh: &Mesh, profile: &Profile, layer: usize,
 fn layer_plot(title: &str, entries: &[Entry], value: fn(&Figures) -> f64) -> Plot {
     let points = |e: &Entry| e.layers.iter().map(|l| DVec2::new(l.index as f64 + 1.0, value(&l.figures))).collect();
     let curves = entries.iter().map(|e| Curve { name: e.name.clone(), points: points(e) }).collect();
-    Plot { title: title.to_owned(), x: "layer".to_owned(), y: "% of the area".to_owned(), curves, marks: Vec::new() }
+    Plot { title: title.to_owned(), x: "layer".to_owned(), y: "% of the area".to_owned(), curves, ..Plot::default() }
 }

@@ -6,10 +6,12 @@
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
+//! | [`bead_window`] | width/height of a bead library over its first input |
 //! | [`steps`] | the steps of the hybrid as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 
+pub mod bead_window;
 pub mod encode;
 pub mod plot;
 pub mod sheet;

@@ -1,4 +1,4 @@
-//! A line plot as SVG.
+//! A line plot as SVG, with shaded bands and single points where wanted.
 
 use super::escape;
 use crate::number::fixed;
@@ -26,6 +26,12 @@ pub struct Plot {
     pub curves: Vec<Curve>,
     /// Values of x with a vertical line and a word.
     pub marks: Vec<(f64, String)>,
+    /// Ranges of y that are shaded, with a word.
+    pub bands: Vec<(f64, f64, String)>,
+    /// Single points, in the colours of the curves with the same numbers.
+    pub dots: Vec<Vec<DVec2>>,
+    /// The y axis begins near the data instead of at 0.
+    pub floating: bool,
 }
 
 const SIZE: DVec2 = DVec2::new(720.0, 400.0);
@@ -39,9 +45,15 @@ impl Plot {
     /// The picture.
     pub fn svg(&self) -> String {
         let all = || self.curves.iter().flat_map(|c| c.points.iter().copied());
-        let marks = self.marks.iter().map(|(x, _)| DVec2::new(*x, 0.0));
-        let Some(bounds) = planar::Bounds::of(all().chain(marks)) else { return String::new() };
-        let (x, y) = (Axis::new(bounds.min.x, bounds.max.x), Axis::new(bounds.min.y.min(0.0), bounds.max.y));
+        let Some(first) = all().next() else { return String::new() };
+        let marks = self.marks.iter().map(|(x, _)| DVec2::new(*x, first.y));
+        let bands = self.bands.iter().flat_map(|(low, high, _)| [*low, *high]).map(|y| DVec2::new(first.x, y));
+        let dots = self.dots.iter().flatten().copied();
+        let Some(bounds) = planar::Bounds::of(all().chain(marks).chain(bands).chain(dots)) else {
+            return String::new();
+        };
+        let low = if self.floating { bounds.min.y } else { bounds.min.y.min(0.0) };
+        let (x, y) = (Axis::new(bounds.min.x, bounds.max.x), Axis::new(low, bounds.max.y));
         let place = |p: DVec2| {
             let inner = SIZE - DVec2::new(LEFT + RIGHT, TOP + BOTTOM);
             DVec2::new(LEFT + x.part(p.x) * inner.x, TOP + (1.0 - y.part(p.y)) * inner.y)
@@ -51,6 +63,11 @@ impl Plot {
             SIZE.x, SIZE.y
         );
         text(&mut svg, DVec2::new(LEFT, 20.0), "start", &self.title, "font-weight=\"600\"");
+        for (low, high, word) in &self.bands {
+            let (a, b) = (place(DVec2::new(x.low, *high)), place(DVec2::new(x.high, *low)));
+            band(&mut svg, a, b);
+            text(&mut svg, DVec2::new(b.x - 6.0, b.y - 6.0), "end", word, "fill=\"#15803d\"");
+        }
         for at in x.ticks() {
             let (a, b) = (place(DVec2::new(at, y.low)), place(DVec2::new(at, y.high)));
             line(&mut svg, a, b, "#e5e7eb", 1.0);
@@ -72,6 +89,9 @@ impl Plot {
                 "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\" stroke-linejoin=\"round\" points=\"{}\"/>\n",
                 points.join(" ")
             );
+        }
+        for (points, colour) in self.dots.iter().zip(COLOURS.iter().cycle()) {
+            points.iter().for_each(|p| dot(&mut svg, place(*p), colour));
         }
         let middle = LEFT + (SIZE.x - LEFT - RIGHT) / 2.0;
         text(&mut svg, DVec2::new(middle, SIZE.y - 14.0), "middle", &self.x, "");
@@ -134,6 +154,24 @@ fn line(svg: &mut String, a: DVec2, b: DVec2, colour: &str, width: f64) {
         fixed(a.y, 1),
         fixed(b.x, 1),
         fixed(b.y, 1)
+    );
+}
+
+fn band(svg: &mut String, a: DVec2, b: DVec2) {
+    *svg += &format!(
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#dcfce7\"/>\n",
+        fixed(a.x, 1),
+        fixed(a.y, 1),
+        fixed(b.x - a.x, 1),
+        fixed(b.y - a.y, 1)
+    );
+}
+
+fn dot(svg: &mut String, at: DVec2, colour: &str) {
+    *svg += &format!(
+        "<circle cx=\"{}\" cy=\"{}\" r=\"3.2\" fill=\"#fff\" stroke=\"{colour}\" stroke-width=\"1.6\"/>\n",
+        fixed(at.x, 1),
+        fixed(at.y, 1)
     );
 }
 

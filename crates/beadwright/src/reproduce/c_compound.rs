@@ -92,6 +92,7 @@ fn plot(sweep: &[(f64, Entry)]) -> Plot {
         y: "% of the area".to_owned(),
         curves: vec![curve("void", |e| e.figures.void_percent()), curve("overfill", |e| e.figures.overfill_percent())],
         marks: vec![(PAPER, "0.591 w".to_owned()), (TANGENT, "0.738 w".to_owned())],
+        ..Plot::default()
     }
 }
 

@@ -1,4 +1,12 @@
 //! The bead: its parabolic cross-section, the distance between neighbours, and the balance of wire and bead.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | [`wall`] | how high walls of one bead a layer grow |
+//! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
+
+pub mod library;
+pub mod wall;
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;

@@ -1,0 +1,268 @@
+//! `beadwright bead`: a library of measured beads, and the parameters of a wanted one.
+
+use crate::output::write_file;
+use anyhow::Context;
+use beadwright::bead::Overlap;
+use beadwright::bead::library::demonstration_csv;
+use beadwright::bead::library::{BeadLibrary, Columns, Layering, Limit, Measured, Prediction, Response, Wish};
+use beadwright::report::bead_window;
+use serde_json::{Map, Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Subcommand)]
+pub(crate) enum Command {
+    /// Fit width and height of measured single beads; writes the library.
+    Fit(Fit),
+    /// Foretell the bead of given parameters.
+    Predict(Predict),
+    /// Find the parameters of a wanted bead inside the measured range.
+    Solve(Solve),
+    /// Write invented measurements as CSV, to try the others with.
+    Example {
+        /// File to write.
+        #[arg(short, long, default_value = "bead-example.csv", value_name = "FILE")]
+        output: PathBuf,
+    },
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Fit {
+    /// CSV with one bead a line; the first line names the columns with their units, such as current_a, width_mm.
+    data: PathBuf,
+    /// Columns that are process parameters; all but width and height when left out.
+    #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
+    inputs: Option<Vec<String>>,
+    /// Column with the bead width.
+    #[arg(long, default_value = "width", value_name = "COLUMN")]
+    width: String,
+    /// Column with the bead height.
+    #[arg(long, default_value = "height", value_name = "COLUMN")]
+    height: String,
+    /// Library to write.
+    #[arg(short, long, default_value = "bead-library.toml", value_name = "FILE")]
+    output: PathBuf,
+    /// Picture of width/height over the first input, a curve for every value of the second.
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Predict {
+    /// Library written by `bead fit`.
+    library: PathBuf,
+    /// Parameters, such as current=120 deposition_speed=8.
+    #[arg(required = true, value_parser = parse_value, value_name = "NAME=VALUE")]
+    values: Vec<(String, f64)>,
+    #[command(flatten)]
+    layering: LayeringArguments,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Solve {
+    /// Library written by `bead fit`.
+    library: PathBuf,
+    /// Wanted width of the bead, mm.
+    #[arg(long, value_name = "MM")]
+    width: f64,
+    /// Wanted height of a layer, mm.
+    #[arg(long, value_name = "MM")]
+    layer_height: f64,
+    /// A narrower range of a parameter, such as current=100..150, or one value; may be given several times.
+    #[arg(long, value_parser = parse_limit, value_name = "NAME=MIN..MAX")]
+    limit: Vec<Limit>,
+    /// Deviation of width and layer height up to which the wish counts as met, %.
+    #[arg(long, default_value_t = 0.5, value_name = "PERCENT")]
+    tolerance: f64,
+    #[command(flatten)]
+    layering: LayeringArguments,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+struct LayeringArguments {
+    /// Closed layers of neighbouring beads: `tangent`, `inclined-flat-top`, or the stepover in mm. Without it a layer is
+    /// one bead of a wall.
+    #[arg(long, value_name = "OVERLAP|MM")]
+    overlap: Option<String>,
+}
+
+impl LayeringArguments {
+    /// What a layer height means for beads of `width` mm.
+    fn layering(&self, width: f64) -> anyhow::Result<Layering> {
+        let ratio = |overlap: Overlap| overlap.ratio().unwrap_or(1.0) * width;
+        let stepover = match self.overlap.as_deref() {
+            None => return Ok(Layering::SinglePass),
+            Some("tangent") => ratio(Overlap::Tangent),
+            Some("inclined-flat-top") => ratio(Overlap::InclinedFlatTop),
+            Some(text) => {
+                let stepover: Option<f64> = text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
+                stepover.with_context(|| {
+                    format!("--overlap {text}: expected is tangent, inclined-flat-top, or a stepover above 0 mm.")
+                })?
+            }
+        };
+        Ok(Layering::Overlapping { stepover })
+    }
+}
+
+pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
+    match command {
+        Command::Fit(arguments) => fit(arguments),
+        Command::Predict(arguments) => predict(arguments),
+        Command::Solve(arguments) => solve(arguments),
+        Command::Example { output } => {
+            write_file(output, demonstration_csv().as_bytes())?;
+            writeln!(
+                std::io::stdout().lock(),
+                "{}: SYNTHETIC single beads over current and deposition speed, for demonstration",
+                output.display()
+            )?;
+            Ok(())
+        }
+    }
+}
+
+fn fit(arguments: &Fit) -> anyhow::Result<()> {
+    let text = read(&arguments.data)?;
+    let columns = Columns {
+        inputs: arguments.inputs.clone(),
+        width: Some(arguments.width.clone()),
+        height: Some(arguments.height.clone()),
+    };
+    let measured = Measured::read(&text, &columns).with_context(|| arguments.data.display().to_string())?;
+    let library = BeadLibrary::fit(&measured).with_context(|| arguments.data.display().to_string())?;
+    write_file(&arguments.output, library.to_toml().as_bytes())?;
+    if let Some(path) = &arguments.plot {
+        write_file(path, bead_window::plot(&library).svg().as_bytes())?;
+    }
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value = json!({ "synthetic": library.synthetic, "beads": library.measured.len(), "terms": library.terms, "inputs": library.inputs, "width": library.width, "height": library.height, "notes": library.notes });
+        writeln!(out, "{value:#}")?;
+        return Ok(());
+    }
+    warn(&mut out, &library)?;
+    writeln!(out, "{} beads, {} terms\n", library.measured.len(), library.terms.len())?;
+    for input in &library.inputs {
+        writeln!(out, "  {:<20} {} to {} {}", input.name, input.min, input.max, input.unit)?;
+    }
+    writeln!(
+        out,
+        "\n  {:<8} {:>8} {:>12} {:>14} {:>18}",
+        "", "R²", "adjusted R²", "residual, mm", "leave-one-out, mm"
+    )?;
+    for (name, r) in [("width", &library.width), ("height", &library.height)] {
+        writeln!(out, "{}", goodness(name, r))?;
+    }
+    library.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    let plot = arguments.plot.as_ref().map_or(String::new(), |p| format!(", plot in {}", p.display()));
+    writeln!(out, "\nlibrary in {}{plot}", arguments.output.display())?;
+    Ok(())
+}
+
+fn goodness(name: &str, r: &Response) -> String {
+    let left_out = r.leave_one_out.map_or("not possible".to_owned(), |v| format!("{v:.3}"));
+    format!("  {name:<8} {:>8.4} {:>12.4} {:>14.3} {left_out:>18}", r.r_squared, r.adjusted_r_squared, r.residual)
+}
+
+fn predict(arguments: &Predict) -> anyhow::Result<()> {
+    let library = load(&arguments.library)?;
+    let values = library.arrange(&arguments.values)?;
+    let found = library.predict(&values)?;
+    let layer_height = arguments.layering.layering(found.width.value)?.height(&found);
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{:#}", as_json(&library, &values, &found, layer_height, &[]))?;
+        return Ok(());
+    }
+    warn(&mut out, &library)?;
+    print_bead(&mut out, &found, layer_height)?;
+    Ok(())
+}
+
+fn solve(arguments: &Solve) -> anyhow::Result<()> {
+    let library = load(&arguments.library)?;
+    let wish = Wish {
+        layering: arguments.layering.layering(arguments.width)?,
+        limits: arguments.limit.clone(),
+        tolerance: arguments.tolerance / 100.0,
+        ..Wish::new(arguments.width, arguments.layer_height)
+    };
+    let recipe = library.solve(&wish)?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value = as_json(&library, &recipe.values, &recipe.prediction, recipe.layer_height, &recipe.notes);
+        writeln!(out, "{value:#}")?;
+        return Ok(());
+    }
+    warn(&mut out, &library)?;
+    for (input, value) in library.inputs.iter().zip(&recipe.values) {
+        writeln!(out, "  {:<20} {value:.2} {}", input.name, input.unit)?;
+    }
+    print_bead(&mut out, &recipe.prediction, recipe.layer_height)?;
+    recipe.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    Ok(())
+}
+
+fn print_bead(out: &mut impl Write, found: &Prediction, layer_height: f64) -> std::io::Result<()> {
+    let estimate = |e: &beadwright::bead::library::Estimate| format!("{:.2} ± {:.2} mm", e.value, e.plus_minus);
+    writeln!(out, "  {:<20} {}", "bead width", estimate(&found.width))?;
+    writeln!(out, "  {:<20} {}", "bead height", estimate(&found.height))?;
+    writeln!(out, "  {:<20} {:.2}", "width/height", found.ratio())?;
+    writeln!(out, "  {:<20} {layer_height:.2} mm", "layer height")
+}
+
+fn as_json(library: &BeadLibrary, values: &[f64], found: &Prediction, layer_height: f64, notes: &[String]) -> Value {
+    let parameter = |(input, value): (&beadwright::bead::library::Input, &f64)| {
+        (input.name.clone(), json!({ "value": value, "unit": input.unit }))
+    };
+    let parameters: Map<String, Value> = library.inputs.iter().zip(values).map(parameter).collect();
+    json!({
+        "synthetic": library.synthetic, "parameters": parameters, "width_mm": found.width, "height_mm": found.height,
+        "width_over_height": found.ratio(), "leverage": found.leverage, "layer_height_mm": layer_height, "notes": notes,
+    })
+}
+
+/// Invented data is called so wherever it shows.
+fn warn(out: &mut impl Write, library: &BeadLibrary) -> std::io::Result<()> {
+    if library.synthetic {
+        writeln!(out, "SYNTHETIC data for demonstration: no bead was measured.\n")?;
+    }
+    Ok(())
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    let bytes = std::fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    String::from_utf8(bytes)
+        .ok()
+        .with_context(|| format!("{} is not UTF-8 text: save it as CSV in UTF-8", path.display()))
+}
+
+fn load(path: &Path) -> anyhow::Result<BeadLibrary> {
+    BeadLibrary::parse(&read(path)?).with_context(|| path.display().to_string())
+}
+
+fn parse_value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected is NAME=VALUE, such as current=120")?;
+    Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn parse_limit(text: &str) -> Result<Limit, String> {
+    let (name, range) = text.split_once('=').ok_or("expected is NAME=MIN..MAX, such as current=100..150")?;
+    let (min, max) = range.split_once("..").unwrap_or((range, range));
+    Ok(Limit { input: name.trim().to_owned(), min: number(min)?, max: number(max)? })
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let value = text.trim().parse().ok().filter(|v: &f64| v.is_finite());
+    value.ok_or_else(|| format!("\"{}\" is not a number", text.trim()))
+}

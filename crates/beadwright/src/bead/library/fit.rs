@@ -1,0 +1,157 @@
+//! Measured beads to a response surface: full second order where the measurements allow it, fewer terms elsewhere.
+
+use super::least_squares::{self, Factored, dot};
+use super::{BeadLibrary, Input, LibraryError, Measured, Response, Sample};
+
+/// Most inputs; the full second order of six has 28 terms.
+const MOST_INPUTS: usize = 6;
+/// Part of a column's range within which two values count as one level.
+const SAME_LEVEL: f64 = 1e-9;
+
+impl BeadLibrary {
+    /// Fits width and height.
+    ///
+    /// # Errors
+    /// Too few beads; inputs that do not vary, or follow from each other.
+    pub fn fit(measured: &Measured) -> Result<Self, LibraryError> {
+        let (measured, mut notes) = varying(measured)?;
+        let inputs = &measured.inputs;
+        let coded: Vec<Vec<f64>> =
+            measured.rows.iter().map(|r| inputs.iter().zip(r).map(|(i, v)| i.coded(*v)).collect()).collect();
+        let wanted = terms(&measured, &mut notes)?;
+        let column = |term: &Vec<usize>| coded.iter().map(|r| term.iter().map(|&i| r[i]).product()).collect();
+        let factored = Factored::new(&wanted.iter().map(column).collect::<Vec<Vec<f64>>>());
+        let terms = kept(inputs, &wanted, &factored, &mut notes)?;
+        let row = |r: &Vec<f64>| terms.iter().map(|t| t.iter().map(|&i| r[i]).product()).collect();
+        let rows: Vec<Vec<f64>> = coded.iter().map(row).collect();
+        let leverages: Vec<f64> = rows.iter().map(|r| least_squares::leverage(&factored.triangle, r)).collect();
+        let sample = |((r, w), h): ((&Vec<f64>, &f64), &f64)| Sample { inputs: r.clone(), width: *w, height: *h };
+        Ok(Self {
+            version: Self::VERSION,
+            synthetic: measured.remarks.iter().any(|r| r.to_lowercase().contains("synthetic")),
+            width: response(&factored, &rows, &leverages, &measured.widths),
+            height: response(&factored, &rows, &leverages, &measured.heights),
+            largest_leverage: leverages.iter().copied().fold(0.0, f64::max),
+            measured: measured.rows.iter().zip(&measured.widths).zip(&measured.heights).map(sample).collect(),
+            inputs: measured.inputs,
+            remarks: measured.remarks,
+            triangle: factored.triangle,
+            terms,
+            notes,
+        })
+    }
+}
+
+/// The measurements without inputs that have one value throughout.
+fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError> {
+    let mut kept = measured.clone();
+    let mut notes = Vec::new();
+    for (k, input) in measured.inputs.iter().enumerate().rev() {
+        if levels(measured, k) > 1 {
+            continue;
+        }
+        notes.insert(
+            0,
+            format!(
+                "{} is {} {} for every bead and is left out: the library holds for this value only.",
+                input.name, input.min, input.unit
+            ),
+        );
+        kept.inputs.remove(k);
+        for row in &mut kept.rows {
+            row.remove(k);
+        }
+    }
+    let reason = match kept.inputs.len() {
+        0 => "no input varies: every bead was welded with the same parameters.".to_owned(),
+        n if n > MOST_INPUTS => {
+            format!("{n} inputs vary, at most {MOST_INPUTS} can be fitted. Name those that matter with --inputs.")
+        }
+        _ => return Ok((kept, notes)),
+    };
+    Err(LibraryError::Inputs { reason })
+}
+
+/// How many different values an input has, at most 3.
+fn levels(measured: &Measured, k: usize) -> usize {
+    let Input { min, max, .. } = measured.inputs[k];
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME_LEVEL * (max - min).max(SAME_LEVEL * max.abs());
+    let between = measured.rows.iter().any(|r| !near(r[k], min) && !near(r[k], max));
+    if near(min, max) { 1 } else { 2 + usize::from(between) }
+}
+
+/// The terms that the number of beads and of levels allows: constant, inputs, squares, products.
+fn terms(measured: &Measured, notes: &mut Vec<String>) -> Result<Vec<Vec<usize>>, LibraryError> {
+    let (rows, n) = (measured.rows.len(), measured.inputs.len());
+    let first: Vec<Vec<usize>> = std::iter::once(vec![]).chain((0..n).map(|i| vec![i])).collect();
+    let (bent, straight): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| levels(measured, i) > 2);
+    let squares: Vec<Vec<usize>> = bent.iter().map(|&i| vec![i, i]).collect();
+    let products: Vec<Vec<usize>> = (0..n).flat_map(|i| (i + 1..n).map(move |j| vec![i, j])).collect();
+    // One bead more than terms, so that something is left to tell the error.
+    let full = first.len() + squares.len() + products.len() + 1;
+    if rows <= first.len() {
+        return Err(LibraryError::TooFew { rows, inputs: n, needed: first.len() + 1, full });
+    }
+    for i in straight {
+        notes.push(format!("{} has two levels only, so its square is left out.", measured.inputs[i].name));
+    }
+    let mut terms = first;
+    if rows >= full {
+        terms.extend(squares.into_iter().chain(products));
+    } else if rows > terms.len() + squares.len() && !squares.is_empty() {
+        terms.extend(squares);
+        notes.push(format!(
+            "{rows} beads are too few for products of two inputs ({full} are needed): they are left out."
+        ));
+    } else {
+        notes.push(format!(
+            "{rows} beads are too few for the second order ({full} are needed): the fit is of first order."
+        ));
+    }
+    Ok(terms)
+}
+
+/// The terms that were kept; names those that follow from others, and refuses an input that does.
+fn kept(
+    inputs: &[Input],
+    wanted: &[Vec<usize>],
+    factored: &Factored,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Vec<usize>>, LibraryError> {
+    for (k, term) in wanted.iter().enumerate().filter(|(k, _)| !factored.kept.contains(k)) {
+        let names: Vec<&str> = term.iter().map(|&i| inputs[i].name.as_str()).collect();
+        if term.len() == 1 {
+            let others = wanted[1..k].iter().map(|t| inputs[t[0]].name.as_str()).collect::<Vec<_>>().join(", ");
+            let reason = format!(
+                "{} follows from {others} in every measured bead, so their effects cannot be told apart. Leave one of them out with --inputs.",
+                names[0]
+            );
+            return Err(LibraryError::Inputs { reason });
+        }
+        notes.push(format!(
+            "the measured beads do not tell the term {} from the others: it is left out.",
+            names.join(" × ")
+        ));
+    }
+    Ok(factored.kept.iter().map(|&k| wanted[k].clone()).collect())
+}
+
+/// Fit and goodness of one response. The leave-one-out errors are residual / (1 − leverage) (PRESS).
+fn response(factored: &Factored, rows: &[Vec<f64>], leverages: &[f64], y: &[f64]) -> Response {
+    let coefficients = factored.solve(y);
+    let residuals: Vec<f64> = rows.iter().zip(y).map(|(row, y)| y - dot(row, &coefficients)).collect();
+    let (n, p) = (y.len() as f64, coefficients.len() as f64);
+    let mean = y.iter().sum::<f64>() / n;
+    let total: f64 = y.iter().map(|y| (y - mean).powi(2)).sum();
+    let missed = dot(&residuals, &residuals);
+    let unexplained = if total > 0.0 { missed / total } else { 0.0 };
+    let alone = leverages.iter().any(|h| *h > 1.0 - 1e-9);
+    let press: f64 = residuals.iter().zip(leverages).map(|(r, h)| (r / (1.0 - h)).powi(2)).sum();
+    Response {
+        coefficients,
+        r_squared: 1.0 - unexplained,
+        adjusted_r_squared: 1.0 - unexplained * (n - 1.0) / (n - p),
+        residual: (missed / (n - p)).sqrt(),
+        leave_one_out: (!alone).then(|| (press / n).sqrt()),
+    }
+}

@@ -1,0 +1,88 @@
+//! Least squares by Householder reflections, with columns taken one after another.
+//!
+//! A column that follows from those before it is left out and named, so a design with too few measurements in some
+//! direction is fitted with fewer terms instead of with wild ones.
+
+/// What is left of a column, as a part of its length, from which it counts as following from those before it.
+const DEPENDENT: f64 = 1e-7;
+
+/// Q·R of a matrix given by columns.
+#[derive(Debug, Clone)]
+pub(super) struct Factored {
+    /// Numbers of the columns that were kept, ascending.
+    pub(super) kept: Vec<usize>,
+    /// Columns of the upper triangle R: column j has j + 1 entries.
+    pub(super) triangle: Vec<Vec<f64>>,
+    reflectors: Vec<Vec<f64>>,
+}
+
+impl Factored {
+    /// Factors `columns`, all of one length that is at least their number.
+    pub(super) fn new(columns: &[Vec<f64>]) -> Self {
+        let mut done = Self { kept: Vec::new(), triangle: Vec::new(), reflectors: Vec::new() };
+        for (number, column) in columns.iter().enumerate() {
+            done.take(number, column);
+        }
+        done
+    }
+
+    fn take(&mut self, number: usize, column: &[f64]) {
+        let mut rest = column.to_vec();
+        self.reflect(&mut rest);
+        let k = self.kept.len();
+        let length = norm(&rest[k..]);
+        if length <= DEPENDENT * norm(column) {
+            return;
+        }
+        let diagonal = if rest[k] > 0.0 { -length } else { length };
+        let mut reflector = rest[k..].to_vec();
+        reflector[0] -= diagonal;
+        let scale = norm(&reflector);
+        reflector.iter_mut().for_each(|v| *v /= scale);
+        rest.truncate(k);
+        rest.push(diagonal);
+        self.kept.push(number);
+        self.triangle.push(rest);
+        self.reflectors.push(reflector);
+    }
+
+    /// Qᵀ·y, in place.
+    fn reflect(&self, y: &mut [f64]) {
+        for (k, reflector) in self.reflectors.iter().enumerate() {
+            let along = 2.0 * dot(reflector, &y[k..]);
+            y[k..].iter_mut().zip(reflector).for_each(|(y, v)| *y -= along * v);
+        }
+    }
+
+    /// The coefficients of the kept columns that come nearest to `y`.
+    pub(super) fn solve(&self, y: &[f64]) -> Vec<f64> {
+        let mut x = y.to_vec();
+        self.reflect(&mut x);
+        x.truncate(self.kept.len());
+        for j in (0..x.len()).rev() {
+            let column = &self.triangle[j];
+            x[j] /= column[j];
+            let (above, here) = x.split_at_mut(j);
+            above.iter_mut().zip(column).for_each(|(x, r)| *x -= here[0] * r);
+        }
+        x
+    }
+}
+
+/// Leverage of a row of terms: rowᵀ (XᵀX)⁻¹ row, from the triangle R of X.
+pub(super) fn leverage(triangle: &[Vec<f64>], row: &[f64]) -> f64 {
+    let mut u: Vec<f64> = Vec::with_capacity(row.len());
+    for (column, value) in triangle.iter().zip(row) {
+        let rest = value - dot(&column[..u.len()], &u);
+        u.push(rest / column[u.len()]);
+    }
+    dot(&u, &u)
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}

@@ -1,0 +1,214 @@
+//! How high a wall grows whose layers are one bead each (Li et al., section 1.2).
+//!
+//! The first bead is a cap of width B₁ and height h₁, cut from a circle of radius R. Every further bead has the same
+//! area: a full circle of the same R less what it shares with the circle below. The distance of the two centres is
+//! the rise h_n of a layer.
+//!
+//! Every ratio λ = B₁/h₁ > 0 has exactly one h_n. Eq (7) prints θ₁ = asin(4h₁B₁/(4h₁² + B₁²)), which is the half angle
+//! of the cap only for λ ≥ 2; θ₁ = 2 atan(2h₁/B₁) is the same there, and right for higher beads too. For λ above
+//! 2.62 the second bead reaches below the foot of the first; the wall above it is not touched by that.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A bead on the substrate, and the wall of such beads on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallBead {
+    width: f64,
+    height: f64,
+    rise: f64,
+}
+
+/// Why a wall cannot be foretold.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum WallError {
+    /// Width or height is zero, negative or not a number.
+    #[error("a bead of width {width} mm and height {height} mm cannot be: both must be above 0 mm.")]
+    Size {
+        /// Width B₁, mm.
+        width: f64,
+        /// Height h₁, mm.
+        height: f64,
+    },
+    /// The ratio of width and height is that of no bead.
+    #[error(
+        "a bead of width {width} mm and height {height} mm has width/height {ratio:.3}; a wall can be foretold from \
+         {min} to {max}. Check the units: both are in mm.", min = WallBead::RATIOS.0, max = WallBead::RATIOS.1
+    )]
+    Ratio {
+        /// Width B₁, mm.
+        width: f64,
+        /// Height h₁, mm.
+        height: f64,
+        /// λ = B₁/h₁.
+        ratio: f64,
+    },
+    /// No bead of that width gives layers of that height.
+    #[error(
+        "beads of width {width} mm give layers of {least:.3} to {most:.1} mm, not of {rise} mm. Check the units: both \
+         are in mm."
+    )]
+    Rise {
+        /// Width B₁, mm.
+        width: f64,
+        /// Wanted h_n, mm.
+        rise: f64,
+        /// Least possible h_n, mm.
+        least: f64,
+        /// Greatest possible h_n, mm.
+        most: f64,
+    },
+    /// A layer leans so far that it would not rise.
+    #[error("layer {layer} of the wall leans {degrees:.1}° from the build direction; below 90° a layer rises.")]
+    Lean {
+        /// Number of the layer, from 1.
+        layer: usize,
+        /// Its lean, degrees.
+        degrees: f64,
+    },
+}
+
+impl WallBead {
+    /// Least and greatest λ = B₁/h₁ that is taken. The equations have one solution for every λ above 0; what lies
+    /// outside is no bead but a mistaken unit.
+    pub const RATIOS: (f64, f64) = (0.05, 50.0);
+
+    /// The wall that begins with a bead of `width` B₁ and `height` h₁ (mm).
+    ///
+    /// # Errors
+    /// [`WallError::Size`] and [`WallError::Ratio`].
+    pub fn new(width: f64, height: f64) -> Result<Self, WallError> {
+        let possible = |v: f64| v.is_finite() && v > 0.0;
+        if !possible(width) || !possible(height) {
+            return Err(WallError::Size { width, height });
+        }
+        let ratio = width / height;
+        if !(Self::RATIOS.0..=Self::RATIOS.1).contains(&ratio) {
+            return Err(WallError::Ratio { width, height, ratio });
+        }
+        Ok(Self::solved(width, height))
+    }
+
+    fn solved(width: f64, height: f64) -> Self {
+        let mut bead = Self { width, height, rise: 0.0 };
+        bead.rise = 2.0 * bead.radius() * bead.overlap_angle().cos();
+        bead
+    }
+
+    /// The wall of beads of `width` (mm) whose vertical layers rise by `rise` (mm).
+    ///
+    /// # Errors
+    /// [`WallError::Size`] for an impossible width, [`WallError::Rise`] where no λ that is taken gives that rise.
+    pub fn for_rise(width: f64, rise: f64) -> Result<Self, WallError> {
+        if !(width.is_finite() && width > 0.0) {
+            return Err(WallError::Size { width, height: rise });
+        }
+        // The rise grows with the height of the bead.
+        let (mut low, mut high) = (width / Self::RATIOS.1, width / Self::RATIOS.0);
+        let (least, most) = (Self::solved(width, low).rise, Self::solved(width, high).rise);
+        if !(least..=most).contains(&rise) {
+            return Err(WallError::Rise { width, rise, least, most });
+        }
+        while high - low > 2.0 * f64::EPSILON * high {
+            let middle = 0.5 * (low + high);
+            *(if Self::solved(width, middle).rise < rise { &mut low } else { &mut high }) = middle;
+        }
+        Ok(Self::solved(width, 0.5 * (low + high)))
+    }
+
+    /// Width B₁ of the first bead, mm.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// Height h₁ of the first bead, mm.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// λ = B₁/h₁.
+    pub fn ratio(&self) -> f64 {
+        self.width / self.height
+    }
+
+    /// Radius R of the circle, mm (eq 7). The wall above the first bead is 2R wide.
+    pub fn radius(&self) -> f64 {
+        (4.0 * self.height * self.height + self.width * self.width) / (8.0 * self.height)
+    }
+
+    /// Half angle θ₁ of the first bead's cap, radians (eq 7, for every λ).
+    pub fn cap_angle(&self) -> f64 {
+        2.0 * (2.0 * self.height).atan2(self.width)
+    }
+
+    /// Half angle θn of the lens that two circles share, radians (eq 6).
+    pub fn overlap_angle(&self) -> f64 {
+        FRAC_PI_2 - lens_complement(unit_cap(self.cap_angle()))
+    }
+
+    /// Area of the cross-section of every bead, mm².
+    pub fn area(&self) -> f64 {
+        self.radius().powi(2) * unit_cap(self.cap_angle())
+    }
+
+    /// h_n, mm: what every layer after the first adds to a vertical wall (eq 5).
+    pub fn rise(&self) -> f64 {
+        self.rise
+    }
+
+    /// What a layer adds in height, mm, where the wall leans by `lean` (radians) from the build direction: h_n cos φ.
+    /// The paper's eq (8) prints h_n sin α, which is this with α measured from the horizontal plane.
+    pub fn rise_leaning(&self, lean: f64) -> f64 {
+        self.rise * lean.cos()
+    }
+
+    /// Height of `layers` vertical layers, mm: h₁ + (n − 1) h_n.
+    pub fn total(&self, layers: usize) -> f64 {
+        if layers == 0 { 0.0 } else { self.height + (layers - 1) as f64 * self.rise }
+    }
+
+    /// The number of vertical layers, at least one, whose total comes nearest to `height` (mm).
+    pub fn layers_for(&self, height: f64) -> usize {
+        (1.0 + ((height - self.height) / self.rise).round()).max(1.0) as usize
+    }
+
+    /// Tops of the layers, mm: the first is h₁ high, each further one rises by h_n cos φ. `leans` holds the lean φ
+    /// (radians) of every layer after the first, so there is one layer more than leans.
+    ///
+    /// # Errors
+    /// [`WallError::Lean`] where a layer leans by 90° or more.
+    pub fn positions(&self, leans: &[f64]) -> Result<Vec<f64>, WallError> {
+        let mut tops = vec![self.height];
+        let mut top = self.height;
+        for (k, lean) in leans.iter().enumerate() {
+            if lean.is_nan() || lean.abs() >= FRAC_PI_2 {
+                return Err(WallError::Lean { layer: k + 2, degrees: lean.to_degrees() });
+            }
+            top += self.rise_leaning(*lean);
+            tops.push(top);
+        }
+        Ok(tops)
+    }
+}
+
+/// Area of the cap with half angle θ on the unit circle.
+fn unit_cap(theta: f64) -> f64 {
+    theta - theta.sin() * theta.cos()
+}
+
+/// δ = π/2 − θn from eq (6), which is 2δ + sin 2δ = `area`, for areas from 0 to π. Newton's steps kept in a bracket:
+/// the left side rises all the way, with slope 0 only at its end. Exact to about 1e-15 in the area.
+fn lens_complement(area: f64) -> f64 {
+    let (mut low, mut high) = (0.0, FRAC_PI_2);
+    let mut delta = (area / 4.0).min(high);
+    for _ in 0..100 {
+        let miss = 2.0 * delta + (2.0 * delta).sin() - area;
+        *(if miss > 0.0 { &mut high } else { &mut low }) = delta;
+        let step = delta - miss / (2.0 + 2.0 * (2.0 * delta).cos());
+        let next = if step > low && step < high { step } else { 0.5 * (low + high) };
+        if (next - delta).abs() <= f64::EPSILON * PI {
+            return next;
+        }
+        delta = next;
+    }
+    delta
+}
