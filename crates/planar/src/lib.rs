@@ -16,6 +16,7 @@
 //! | [`stroke`] | lines grown to areas |
 //! | [`medial`] | medial axis: centre-lines with local thickness |
 //! | [`triangulate`] | triangles that fill a polygon |
+//! | [`turns`] | number of ends of scan lines over their angle |
 //!
 //! # The grid underneath
 //!
@@ -37,6 +38,7 @@ mod rows;
 pub mod scan;
 pub mod stroke;
 pub mod triangulate;
+pub mod turns;
 
 pub use glam::DVec2;
 pub use grid::{GRID_MM, MAX_COORDINATE_MM};
