@@ -47,7 +47,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
 /// The profile of a built-in name or a file, with `key=value` settings laid over it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
     let path = Path::new(profile);
-    let is_file = path.extension().is_some() || path.components().count() > 1 || path.is_file();
+    let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
     let text = if is_file {
         std::fs::read_to_string(path)
             .map_err(|e| ProfileError::File { path: path.to_owned(), reason: e.to_string() })?

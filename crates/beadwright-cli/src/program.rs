@@ -72,7 +72,10 @@ impl Reading {
             simulate::outline(&mut layers, &part.mesh, profile.slice_options(), task)?;
         }
         let language = program.dialect.name();
-        let totals = Totals::of_program(&program.totals(), &layers, &settings.nominal);
+        let mut totals = Totals::of_program(&program.totals(), &layers, &settings.nominal);
+        if let Some(motion) = &profile.motion {
+            totals.total_time_s = program.seconds(motion);
+        }
         Ok(Loaded { name, language, layers, totals, settings, notes })
     }
 

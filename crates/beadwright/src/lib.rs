@@ -38,6 +38,7 @@ pub mod example;
 pub mod fill;
 pub mod metrics;
 pub mod model;
+pub mod motion;
 pub mod number;
 pub mod order;
 pub mod pass;

@@ -1,6 +1,7 @@
 //! The totals of a plan: passes, lengths, times, wire, heat.
 
 use crate::bead::wire_area;
+use crate::motion::Motion;
 use crate::plan::Layer;
 use crate::profile::Profile;
 use glam::DVec3;
@@ -19,9 +20,9 @@ pub struct Metrics {
     pub deposited_length_mm: f64,
     /// Length of all moves without arc, mm.
     pub travel_length_mm: f64,
-    /// Time with the arc on and the torch moving, s.
+    /// Time with the arc on and the torch moving, s; with acceleration where the profile gives it.
     pub arc_time_s: f64,
-    /// Whole time with travels, delays and gas, s; without acceleration.
+    /// Whole time with travels, delays and gas, s; with acceleration where the profile gives it.
     pub total_time_s: f64,
     /// Wire, m.
     pub wire_length_m: f64,
@@ -48,6 +49,7 @@ pub struct Metrics {
 struct Rates {
     /// Metal laid, mm³/s.
     metal: f64,
+    motion: Option<Motion>,
     travel_speed: f64,
     clearance: f64,
     delay: f64,
@@ -61,6 +63,7 @@ impl Metrics {
         let process = &profile.process;
         let rates = Rates {
             metal: profile.bead().area() * process.deposition_speed,
+            motion: profile.motion,
             travel_speed: profile.travel.speed,
             clearance: profile.travel.clearance,
             delay: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
@@ -95,16 +98,19 @@ impl Metrics {
         self.part_volume_mm3 += layer.slice_area * layer.height;
         for pass in &layer.passes {
             let (Some(start), Some(end)) = (pass.start(), pass.end()) else { continue };
-            let travel = self.torch.map_or(0.0, |from| travel_length(from, start, self.rates.clearance));
+            let legs = self.torch.map_or([start; 3], |from| travel_legs(from, start, self.rates.clearance));
+            let (travel, travel_time) = self.rates.travel(self.torch.unwrap_or(start), legs);
             let (length, seconds) = (pass.length(), pass.seconds());
+            let moving =
+                self.rates.motion.map_or(seconds, |m| m.seconds(start, pass.segments().map(|s| (s.to, s.speed))));
             let wire = self.rates.wire_feed_speed * seconds;
             self.passes += 1;
             self.arc_starts += 1;
             self.deposited_length_mm += length;
             self.deposited_volume_mm3 += seconds * self.rates.metal;
             self.travel_length_mm += travel;
-            self.arc_time_s += seconds;
-            self.total_time_s += seconds + travel / self.rates.travel_speed + self.rates.delay;
+            self.arc_time_s += moving;
+            self.total_time_s += moving + travel_time + self.rates.delay;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
             self.torch = Some(end);
@@ -117,8 +123,22 @@ impl Metrics {
     }
 }
 
-/// Length of a move without arc, mm: up to the clearance above the higher end, across, and down.
-pub fn travel_length(from: DVec3, to: DVec3, clearance: f64) -> f64 {
+impl Rates {
+    /// Length and time of a travel, mm and s; its legs begin and end at rest.
+    fn travel(&self, from: DVec3, legs: [DVec3; 3]) -> (f64, f64) {
+        let (mut at, mut length, mut time) = (from, 0.0, 0.0);
+        for to in legs {
+            let leg = at.distance(to);
+            length += leg;
+            time += self.motion.map_or(leg / self.travel_speed, |m| m.seconds(at, [(to, self.travel_speed)]));
+            at = to;
+        }
+        (length, time)
+    }
+}
+
+/// Where a move without arc goes: up to the clearance above the higher end, across, and down.
+fn travel_legs(from: DVec3, to: DVec3, clearance: f64) -> [DVec3; 3] {
     let top = from.z.max(to.z) + clearance;
-    (top - from.z) + (top - to.z) + from.truncate().distance(to.truncate())
+    [from.with_z(top), to.with_z(top), to]
 }

@@ -9,14 +9,15 @@ use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::order;
 pub use crate::pass::{Along, Pass, Segment};
-use crate::profile::Profile;
-use crate::slice::{Layer as Slice, Slicer};
+use crate::profile::{Profile, RasterTurn};
+use crate::slice::{BATCH, Layer as Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
 use glam::DVec2;
 use planar::{Join, Polygon, Region};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -190,12 +191,16 @@ pub fn plan_layers<S: Sink + Send>(
 
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let slices = slicer.batch(batch, task)?;
-        let fill = |slice: Slice| {
+        let angles = raster_angles(&slices, strategy, profile);
+        let solid = solid_regions(batch, &slices, &slicer, profile, task)?;
+        let fill = |(slice, (angle, solid)): (Slice, (Option<f64>, &Option<Region>))| {
             task.check()?;
-            let settings = profile.fill_settings(slice.index);
+            let mut settings = profile.fill_settings(slice.index);
+            settings.raster_angle = angle.unwrap_or(settings.raster_angle);
+            settings.solid = solid.as_ref();
             Ok(fill_layer(slice, strategy, &settings))
         };
-        slices.into_par_iter().map(fill).collect()
+        slices.into_par_iter().zip(angles.into_par_iter().zip(&solid)).map(fill).collect()
     };
     let mut emitter =
         Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
@@ -220,6 +225,54 @@ pub fn plan_layers<S: Sink + Send>(
         )));
     }
     Ok(Summary { metrics, warnings, notes: profile.notes() })
+}
+
+/// The best raster angle of each layer, where the profile asks for it.
+fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: &Profile) -> Vec<Option<f64>> {
+    // Batches are even, so pairs of layers do not straddle them.
+    const { assert!(BATCH.is_multiple_of(2)) };
+    if profile.fill.raster_turn != RasterTurn::Best {
+        return vec![None; slices.len()];
+    }
+    let pair = |pair: &[Slice]| {
+        let islands: Vec<&[Polygon]> = pair.iter().map(|s| &s.islands[..]).collect();
+        let angle = fill::angle::best(strategy, &islands, &profile.fill_settings(0));
+        (0..pair.len()).map(|i| angle.map(|a| a + FRAC_PI_2 * i as f64)).collect::<Vec<_>>()
+    };
+    slices.par_chunks(2).flat_map_iter(pair).collect()
+}
+
+/// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
+/// layers above or below does not cover the layer.
+fn solid_regions(
+    batch: usize,
+    slices: &[Slice],
+    slicer: &Slicer,
+    profile: &Profile,
+    task: &Task,
+) -> Result<Vec<Option<Region>>, Cancelled> {
+    let (count, reach) = (slicer.layer_count(), profile.fill.solid_layers as usize);
+    if profile.fill.infill_density >= 1.0 {
+        return Ok(vec![None; slices.len()]);
+    }
+    let neighbour = |other: Option<usize>| match other.filter(|b| *b < slicer.batch_count()) {
+        Some(other) => slicer.batch(other, task),
+        None => Ok(Vec::new()),
+    };
+    let (below, above) = (neighbour(batch.checked_sub(1))?, neighbour(Some(batch + 1))?);
+    let all: Vec<Region> =
+        below.iter().chain(slices).chain(&above).map(|slice| Region::from_normalised(slice.islands.clone())).collect();
+    let solid = |i: usize| {
+        let (layer, own) = (slices[i].index, below.len() + i);
+        if layer < reach || layer + reach >= count {
+            return None;
+        }
+        let near = (own - reach..=own + reach).filter(|&other| other != own);
+        let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
+        // Solid infill holds on to the sparse infill around it.
+        Some(bare.offset(2.0 * profile.bead.width, Join::ROUND))
+    };
+    Ok((0..slices.len()).into_par_iter().map(solid).collect())
 }
 
 fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {

@@ -12,10 +12,10 @@ const ROWS: &[&[&str]] = &[
     &["curve"],
     &["model"],
     &["slice"],
-    &["bead"],
+    &["bead", "motion"],
     &["fill", "pass"],
     &["order"],
-    // Reads text and needs nothing; the deposit model judges what it finds.
+    // Reads text; the deposit model judges what it finds.
     &["readback"],
     &["deposit"],
     // A profile holds the settings of all stages above; its limits know the names of posts.

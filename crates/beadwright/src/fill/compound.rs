@@ -1,12 +1,15 @@
 //! Zigzag inside, perimeters outside (Liu et al. 2022). The infill keeps a smaller distance to the innermost
 //! perimeter (0.591 w) than its lines keep among themselves, or pores remain where it turns.
+//!
+//! Inside the part the infill may be sparse; what is near a top or a bottom stays solid.
 
 use super::contour::rings;
-use super::zigzag::zigzag;
-use super::{Fill, FillSettings, Strategy};
-use planar::{Join, Polygon};
+use super::zigzag::{zigzag, zigzag_spaced};
+use super::{Fill, FillSettings, Pass, Strategy};
+use planar::scan::Spacing;
+use planar::{Join, Polygon, Region};
 
-/// Perimeters with a zigzag core; the core is laid first.
+/// Perimeters with a zigzag core.
 pub struct Compound;
 
 impl Strategy for Compound {
@@ -20,9 +23,28 @@ impl Strategy for Compound {
             return Fill::default();
         }
         let (perimeters, innermost) = rings(outermost, settings, settings.perimeters);
-        let core = innermost.offset(-settings.contour_gap, Join::ROUND);
-        let mut stages = vec![zigzag(&core, settings)];
-        stages.extend(settings.ordered(perimeters));
+        let mut stages = settings.ordered(perimeters);
+        let infill = infill(&core(&innermost, settings), settings);
+        stages.insert(if settings.perimeters_first { stages.len() } else { 0 }, infill);
         Fill { stages, fixed_order: false }
     }
+
+    fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
+        let (_, innermost) = rings(settings.outermost(island), settings, settings.perimeters);
+        core(&innermost, settings)
+    }
+}
+
+fn core(innermost: &Region, settings: &FillSettings) -> Region {
+    innermost.offset(-settings.contour_gap, Join::ROUND)
+}
+
+fn infill(core: &Region, settings: &FillSettings) -> Vec<Pass> {
+    let Some(near_surface) = settings.solid else { return zigzag(core, settings) };
+    let solid = core.intersection(near_surface);
+    // Both kinds keep a bead's distance, so they do not lie on each other.
+    let sparse = core.difference(&solid.offset(settings.stepover, Join::ROUND));
+    let mut passes = zigzag(&solid, settings);
+    passes.extend(zigzag_spaced(&sparse, settings, Spacing::AtMost(settings.stepover / settings.infill_density)));
+    passes
 }

@@ -22,7 +22,7 @@ pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (
     let mut stages = Vec::new();
     let mut region = outermost;
     for done in 1.. {
-        stages.push(region.rings().map(|ring| Pass::ring(ring.clone(), settings.bead_width)).collect());
+        stages.push(region.rings().map(|ring| Pass::contour(ring.clone(), settings.bead_width)).collect());
         if done == count {
             break;
         }

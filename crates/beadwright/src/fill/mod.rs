@@ -11,6 +11,7 @@
 //! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
 //! | [`hybrid`] | contours, and their pockets filled along their medial axis (Zhao et al. 2023) |
 
+pub mod angle;
 pub mod compound;
 pub mod contour;
 pub mod hybrid;
@@ -39,6 +40,11 @@ pub trait Strategy: Sync {
 
     /// Lays passes into one island.
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill;
+
+    /// The region of an island that is filled with scan lines; empty where none are laid.
+    fn infill(&self, _island: &Polygon, _settings: &FillSettings) -> Region {
+        Region::default()
+    }
 }
 
 /// What a pass is for.
@@ -80,7 +86,8 @@ pub struct Pass {
 }
 
 impl Pass {
-    fn ring(ring: Ring, width: f64) -> Self {
+    /// A closed pass along a ring, as wide as a bead, mm.
+    pub fn contour(ring: Ring, width: f64) -> Self {
         let (kind, width) = (PassKind::Contour, Along::Same(width));
         Self { kind, closed: true, points: ring.into_points(), width, reversible: true }
     }
@@ -134,7 +141,7 @@ pub enum RasterSpacing {
 
 /// What a strategy needs to know; lengths in mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FillSettings {
+pub struct FillSettings<'a> {
     /// Index of the layer, from 0: seams move from layer to layer.
     pub layer: usize,
     /// Bead width, mm.
@@ -147,6 +154,12 @@ pub struct FillSettings {
     pub perimeters: u32,
     /// Order of contours.
     pub contour_order: ContourOrder,
+    /// Whether the perimeters of `compound` are laid before its infill.
+    pub perimeters_first: bool,
+    /// Part of the infill of `compound` that is filled where it may be sparse, 0 to 1.
+    pub infill_density: f64,
+    /// Where the infill is solid nevertheless: near tops and bottoms. `None` where all of it is solid.
+    pub solid: Option<&'a Region>,
     /// How far beads may reach outside the island, mm.
     pub machining_allowance: f64,
     /// Angle of the scan lines, radians from x.
@@ -159,7 +172,7 @@ pub struct FillSettings {
     pub hybrid: hybrid::HybridSettings,
 }
 
-impl FillSettings {
+impl FillSettings<'_> {
     /// The outermost centre-line: half a bead inside the island, less the machining allowance.
     pub fn outermost(&self, island: &Polygon) -> Region {
         island.offset(self.machining_allowance - self.bead_width / 2.0, Join::ROUND)

@@ -1,8 +1,8 @@
 //! Parallel scan lines, each a pass of its own, all in one direction.
 
 use super::{Fill, FillSettings, Pass, PassKind, Strategy};
-use planar::Polygon;
 use planar::scan::{End, Scan};
+use planar::{Polygon, Region};
 
 /// One-way scan lines.
 pub struct Raster;
@@ -13,11 +13,15 @@ impl Strategy for Raster {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let scan = Scan::new(&settings.outermost(island), settings.raster_angle, settings.spacing());
+        let scan = Scan::new(&self.infill(island, settings), settings.raster_angle, settings.spacing());
         let line = |span| {
             let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
             Pass { reversible: false, ..Pass::line(PassKind::Infill, points.to_vec(), settings.bead_width) }
         };
         Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
+    }
+
+    fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
+        settings.outermost(island)
     }
 }

@@ -57,6 +57,8 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("fill.machining_allowance", fill.machining_allowance, 0.0, 50.0, "mm"),
         ("fill.raster_angle", fill.raster_angle, -360.0, 360.0, "°"),
         ("fill.raster_increment", fill.raster_increment, -360.0, 360.0, "°"),
+        ("fill.infill_density", fill.infill_density, 0.01, 1.0, "of full"),
+        ("fill.solid_layers", fill.solid_layers.into(), 0.0, 32.0, "layers"),
         ("fill.min_pass_length", fill.min_pass_length, 0.0, 1000.0, "mm"),
         ("hybrid.pocket_depth", p.hybrid.pocket_depth, 0.5, 3.0, "stepovers"),
         ("hybrid.tolerance", p.hybrid.tolerance, 0.001, 0.2, "stepovers"),
@@ -86,6 +88,15 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
     }
+    if let Some(motion) = &p.motion {
+        ranges.push(("motion.acceleration", motion.acceleration, 1.0, 1e6, "mm/s²"));
+        ranges.push(("motion.corner_speed", motion.corner_speed, 0.01, 1000.0, "mm/s"));
+    }
+    if let Some(marlin) = &p.marlin {
+        ranges.push(("marlin.retract_length", marlin.retract_length, 0.0, 50.0, "mm of filament"));
+        ranges.push(("marlin.retract_speed", marlin.retract_speed, 0.1, 500.0, "mm/s"));
+        ranges.push(("marlin.retract_from", marlin.retract_from, 0.0, 1000.0, "mm"));
+    }
     // Written so that NaN is out of range too.
     let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
     broken.map(|(key, value, low, high, unit)| Broken {
@@ -114,9 +125,12 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         let names = crate::post::NAMES.join(", ");
         return broken("posts", format!("\"{post}\""), format!("the posts are {names}."));
     }
-    let extension = p.gcode.as_ref().map_or("nc", |g| &g.extension);
-    if extension.is_empty() || !extension.bytes().all(|b| b.is_ascii_alphanumeric()) {
-        return broken("gcode.extension", format!("\"{extension}\""), "letters and digits only.".to_owned());
+    let gcode = p.gcode.as_ref().map(|g| ("gcode.extension", &g.extension));
+    let marlin = p.marlin.as_ref().map(|m| ("marlin.extension", &m.extension));
+    for (key, extension) in gcode.into_iter().chain(marlin) {
+        if extension.is_empty() || !extension.bytes().all(|b| b.is_ascii_alphanumeric()) {
+            return broken(key, format!("\"{extension}\""), "letters and digits only.".to_owned());
+        }
     }
     let home = p.krl.as_ref().map_or("A1 0", |k| &k.home);
     if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
@@ -145,7 +159,10 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("gcode.footer", &g.footer),
         ]
     });
-    for (key, lines) in krl.chain(gcode) {
+    let marlin = p.marlin.iter().flat_map(|m| {
+        [("marlin.header", &m.header), ("marlin.layer_start", &m.layer_start), ("marlin.footer", &m.footer)]
+    });
+    for (key, lines) in krl.chain(gcode).chain(marlin) {
         for line in lines {
             let reason = match template::unknown_placeholder(line, &PLACEHOLDERS) {
                 Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", PLACEHOLDERS.join(", ")),

@@ -11,13 +11,15 @@ pub use read::ProfileError;
 use crate::bead::{Bead, MassBalance, Overlap};
 use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
+use crate::motion::Motion;
 use crate::order::Method;
 use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 2] = [
+pub const BUILT_IN: [(&str, &str); 3] = [
     ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
+    ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
     ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
 ];
 
@@ -53,10 +55,14 @@ pub struct Profile {
     pub slice: Slice,
     /// Moves without arc.
     pub travel: Travel,
+    /// Acceleration, for machines whose time depends on it; optional.
+    pub motion: Option<Motion>,
     /// KUKA KRL; needed for the post `krl`.
     pub krl: Option<Krl>,
     /// CNC G-code; needed for the post `gcode`.
     pub gcode: Option<Gcode>,
+    /// Printers' G-code; needed for the post `marlin`.
+    pub marlin: Option<Marlin>,
 }
 
 /// The wire.
@@ -134,6 +140,8 @@ pub enum RasterTurn {
     Alternate,
     /// Turned by `raster_increment` from layer to layer.
     Increment,
+    /// The angle with the fewest turns, chosen for every two layers, the second turned by 90° (Han et al. 2018, 3.1).
+    Best,
 }
 
 /// How layers are filled.
@@ -157,7 +165,8 @@ pub struct Fill {
     pub machining_allowance: f64,
     /// Angle of the scan lines on the first layer, ° from x.
     pub raster_angle: f64,
-    /// Change of the angle from layer to layer: `fixed`, `alternate` or `increment`.
+    /// Change of the angle from layer to layer: `fixed`, `alternate`, `increment`, or `best` for the angle with the fewest
+    /// turns, chosen for every two layers.
     pub raster_turn: RasterTurn,
     /// Turn per layer for `increment`, °.
     pub raster_increment: f64,
@@ -165,6 +174,23 @@ pub struct Fill {
     pub raster_spacing: RasterSpacing,
     /// Shorter passes are left out with a warning, mm.
     pub min_pass_length: f64,
+    /// Whether `compound` lays the perimeters before the infill; default false.
+    #[serde(default)]
+    pub perimeters_first: bool,
+    /// Part of the infill of `compound` that is filled inside the part, 0 to 1; default 1.
+    #[serde(default = "full")]
+    pub infill_density: f64,
+    /// Layers at every top and bottom that are filled solid when the infill is sparse; default 3.
+    #[serde(default = "three")]
+    pub solid_layers: u32,
+}
+
+fn full() -> f64 {
+    1.0
+}
+
+fn three() -> u32 {
+    3
 }
 
 /// Thresholds of the strategy `hybrid` (Zhao et al. 2023); every key has a default.
@@ -314,6 +340,29 @@ pub struct Gcode {
     pub footer: Vec<String>,
 }
 
+/// Printers' G-code (Marlin, Klipper). Templates are lines with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Marlin {
+    /// File name extension without the dot.
+    pub extension: String,
+    /// Whether E counts from move to move (M83), which keeps small moves exact; else from layer to layer (M82).
+    pub relative_extrusion: bool,
+    /// Filament drawn back before a travel, mm; 0 for none.
+    pub retract_length: f64,
+    /// Speed at which it is drawn back and pushed forward again, mm/s.
+    pub retract_speed: f64,
+    /// Shorter travels are made without drawing it back, mm.
+    pub retract_from: f64,
+    /// Lines at the beginning: temperatures, homing.
+    pub header: Vec<String>,
+    /// Lines at the beginning of every layer: fan, temperatures.
+    pub layer_start: Vec<String>,
+    /// Lines at the end.
+    pub footer: Vec<String>,
+}
+
 impl Profile {
     /// Reads and checks a profile from TOML text.
     ///
@@ -377,10 +426,11 @@ impl Profile {
     }
 
     /// How a layer is filled.
-    pub fn fill_settings(&self, layer: usize) -> FillSettings {
+    pub fn fill_settings(&self, layer: usize) -> FillSettings<'static> {
         let fill = &self.fill;
         let turned = match fill.raster_turn {
-            RasterTurn::Fixed => 0.0,
+            // The plan chooses the best angle, which depends on the layer.
+            RasterTurn::Fixed | RasterTurn::Best => 0.0,
             RasterTurn::Alternate => 90.0 * (layer % 2) as f64,
             RasterTurn::Increment => fill.raster_increment * layer as f64,
         };
@@ -390,6 +440,9 @@ impl Profile {
             contour_gap: fill.contour_gap * self.bead.width,
             perimeters: fill.perimeters,
             contour_order: fill.contour_order,
+            perimeters_first: fill.perimeters_first,
+            infill_density: fill.infill_density,
+            solid: None,
             machining_allowance: fill.machining_allowance,
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,

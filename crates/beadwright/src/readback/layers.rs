@@ -1,6 +1,7 @@
 //! A program's passes by layer, and its totals.
 
 use super::{Metal, Move, Program};
+use crate::motion::Motion;
 use glam::DVec3;
 
 /// Passes whose first points differ by no more in z belong to one layer, mm: programs round, and spirals begin a
@@ -91,6 +92,18 @@ impl Program {
             before = Some(step);
         }
         totals
+    }
+
+    /// Time of all moves with known speed on a machine that speeds up and slows down, and of all waits, s. Every
+    /// run of deposited moves and every run of other moves begins and ends at rest.
+    pub fn seconds(&self, motion: &Motion) -> f64 {
+        let Some(first) = self.moves.first() else { return self.dwell };
+        let (mut at, mut time) = (first.to, self.dwell);
+        for run in self.moves[1..].chunk_by(|a, b| a.metal.is_laid() == b.metal.is_laid()) {
+            time += motion.seconds(at, run.iter().map(|m| (m.to, m.speed)));
+            at = run.last().map_or(at, |m| m.to);
+        }
+        time
     }
 
     /// Runs of deposited moves in order.

@@ -109,8 +109,12 @@ fn strategy(name: &str, profile: &Profile) -> String {
         RasterTurn::Fixed => String::new(),
         RasterTurn::Alternate => ", turned by 90° on every second layer".to_owned(),
         RasterTurn::Increment => format!(", turned by {}° a layer", fill.raster_increment),
+        RasterTurn::Best => String::new(),
     };
-    let raster = format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle);
+    let raster = match fill.raster_turn {
+        RasterTurn::Best => format!("scan lines at the angle with the fewest turns, {spacing}"),
+        _ => format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle),
+    };
     match name {
         "contour" => format!("contour, {order}"),
         "compound" => {

@@ -1,6 +1,7 @@
 //! The papers' experiments made again: ours beside theirs. A paper is one file and one line in [`PAPERS`].
 
 pub mod a_skeleton_hybrid;
+pub mod b_fdm_order;
 pub mod c_compound;
 
 use crate::report::sheet::Sheet;
@@ -27,11 +28,16 @@ pub struct Paper {
 }
 
 /// The papers.
-pub const PAPERS: [Paper; 2] = [
+pub const PAPERS: [Paper; 3] = [
     Paper {
         name: "a-skeleton-hybrid",
         about: "Zhao et al. 2023: contours whose pockets are filled as skeleton regions, on a propeller",
         run: a_skeleton_hybrid::run,
+    },
+    Paper {
+        name: "b-fdm-order",
+        about: "Han et al. 2018: order of contours, raster angle and merged sub-regions, on three printed plates",
+        run: b_fdm_order::run,
     },
     Paper {
         name: "c-compound",

@@ -100,7 +100,7 @@ fn next_ring(
 fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettings) -> Pass {
     let turn = |(ring, seam): &(usize, DVec2)| turned_to(&rings[*ring].1, *seam);
     match chain {
-        [only] => Pass::ring(Ring::new(turn(only)), settings.bead_width),
+        [only] => Pass::contour(Ring::new(turn(only)), settings.bead_width),
         [outer @ .., last] => {
             let gap = LEFT_OPEN * settings.stepover;
             let mut points: Vec<DVec2> = outer.iter().flat_map(|ring| shortened(&turn(ring), gap)).collect();

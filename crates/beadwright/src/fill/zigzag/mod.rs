@@ -1,0 +1,43 @@
+//! Scan lines joined into paths where the boundary leads from the end of one to the same end of the next
+//! (Liu et al. 2022, eqs 11–13). Consecutive, directly joined lines are one sub-region; sub-regions are merged where
+//! the end of one meets a key point of another (Han et al. 2018, 3.2), so that few paths remain.
+//!
+//! The link follows the boundary itself, so it neither leaves the region nor crosses another line.
+
+pub mod regions;
+
+use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use planar::scan::{Scan, Spacing};
+use planar::{Polygon, Region};
+use regions::Weave;
+
+/// Zigzag.
+pub struct Zigzag;
+
+impl Strategy for Zigzag {
+    fn name(&self) -> &'static str {
+        "zigzag"
+    }
+
+    fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
+        Fill { stages: vec![zigzag(&self.infill(island, settings), settings)], fixed_order: false }
+    }
+
+    fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
+        settings.outermost(island)
+    }
+}
+
+/// Zigzag paths that fill a region.
+pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
+    zigzag_spaced(region, settings, settings.spacing())
+}
+
+/// Zigzag paths through a region, their lines that far apart.
+pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: Spacing) -> Vec<Pass> {
+    let scan = Scan::new(region, settings.raster_angle, spacing);
+    let (Spacing::AtMost(distance) | Spacing::Exact(distance)) = spacing;
+    let weave = Weave::new(&scan, distance);
+    let passes = weave.paths(&weave.merged()).into_iter();
+    passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead_width)).collect()
+}
