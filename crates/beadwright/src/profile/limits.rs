@@ -29,7 +29,7 @@ pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
 }
 
 /// Key, value, least and greatest possible value, unit.
-type Range = (&'static str, f64, f64, f64, &'static str);
+pub(super) type Range = (&'static str, f64, f64, f64, &'static str);
 
 fn out_of_range(p: &Profile) -> Option<Broken> {
     const TINY: f64 = 1e-3;
@@ -86,6 +86,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
     }
+    ranges.extend(p.rapid.iter().flat_map(|rapid| rapid.ranges()));
     // Written so that NaN is out of range too.
     let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
     broken.map(|(key, value, low, high, unit)| Broken {
@@ -122,7 +123,7 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
         return broken("krl.home", format!("\"{home}\""), "an axis position such as \"A1 0.0,A2 -90.0,…\".".to_owned());
     }
-    None
+    p.rapid.as_ref().and_then(|rapid| rapid.broken())
 }
 
 /// Templates may use known placeholders and printable ASCII only: controllers read nothing else.
@@ -145,7 +146,8 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("gcode.footer", &g.footer),
         ]
     });
-    for (key, lines) in krl.chain(gcode) {
+    let rapid = p.rapid.iter().flat_map(|r| r.templates());
+    for (key, lines) in krl.chain(gcode).chain(rapid) {
         for line in lines {
             let reason = match template::unknown_placeholder(line, &PLACEHOLDERS) {
                 Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", PLACEHOLDERS.join(", ")),

@@ -4,8 +4,10 @@
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
 mod limits;
+mod rapid;
 mod read;
 
+pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 
 use crate::bead::{Bead, MassBalance, Overlap};
@@ -16,9 +18,10 @@ use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 2] = [
+pub const BUILT_IN: [(&str, &str); 3] = [
     ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
     ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
+    ("cmt-steel-abb", include_str!("../../../../profiles/cmt-steel-abb.toml")),
 ];
 
 /// A process on a cell.
@@ -30,7 +33,7 @@ pub struct Profile {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// Dialects written when none is asked for: `krl`, `gcode`.
+    /// Dialects written when none is asked for: `krl`, `gcode`, `rapid`.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
@@ -57,6 +60,8 @@ pub struct Profile {
     pub krl: Option<Krl>,
     /// CNC G-code; needed for the post `gcode`.
     pub gcode: Option<Gcode>,
+    /// ABB RAPID; needed for the post `rapid`.
+    pub rapid: Option<Rapid>,
 }
 
 /// The wire.
