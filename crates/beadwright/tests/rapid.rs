@@ -190,3 +190,34 @@ fn data_of_the_controller_are_not_declared_again() {
     let main = &written("frame", &job(), 2, &profile)["frame.mod"];
     assert!(!main.contains("tooldata") && !main.contains("wobjdata") && main.contains("tTorch\\WObj:=wPart"));
 }
+
+#[test]
+fn the_test_reader_refuses_what_a_controller_would() {
+    let good = written("frame", &job(), 2, &profile());
+    let taken = |files: &Files| std::panic::catch_unwind(|| readers::rapid::run(files, "frame", "")).is_ok();
+    assert!(taken(&good));
+    for (file, old, new) in [
+        ("frame_L001.mod", "ArcLEnd", "ArcL"),
+        ("frame_L001.mod", "    ArcL ", "    MoveL "),
+        ("frame_L001.mod", "smBead,wd1,fine", "smBead,wd1,zBead"),
+        ("frame_L001.mod", "smBead,wd1,zBead", "smBead,wd9,zBead"),
+        ("frame_L001.mod", ",[0,0,0,0,0,0,0,0,0]];", ",[0,0,0,0,0,0,0,0]];"),
+        ("frame_L001.mod", "0.0000000,1.0000000", "0.0000000,0.9999000"),
+        ("frame_L001.mod", "  LOCAL PERS welddata wd2", "  LOCAL PERS welddata wd1"),
+        ("frame_L001.mod", "PROC Layer001", "PROC main"),
+        ("frame_L001.mod", "fine,tTorch\\WObj:=wPart;\r\n", "fine,tTorch\\WObj:=wPart\r\n"),
+        ("frame_L002.mod", "  ENDPROC\r\n", "  ENDPROC\r\n  CONST speeddata vX:=[1,1,1,1];\r\n"),
+        ("frame.mod", "TASK PERS seamdata", "TASK PERS welddata"),
+        ("frame.mod", "vTravel:=[100.000,500.000,5000,1000]", "vTravel:=[100.000,500.000,5000]"),
+        ("frame.mod", "[4.500,", "[0.000,"),
+        ("frame.mod", "zBead", "z5"),
+        ("frame.mod", "UnLoad \"HOME:/part/frame_L001.mod\";", "Load \\Dynamic,\"HOME:/part/frame_L001.mod\";"),
+        ("frame.mod", "  PROC main()\r\n", "  PROC main()\n"),
+    ] {
+        let mut bad = good.clone();
+        let text = bad.get_mut(file).unwrap();
+        *text = text.replacen(old, new, 1);
+        assert_ne!(*text, good[file], "{old:?} does not stand in {file}");
+        assert!(!taken(&bad), "{old:?} became {new:?} in {file}, and the reader took it");
+    }
+}
