@@ -83,9 +83,11 @@ impl Reading {
     fn codes(&self, profile: &Profile) -> ArcCodes {
         let krl = profile.krl.as_ref().map(|k| (&k.arc_on, &k.arc_off));
         let gcode = profile.gcode.as_ref().map(|g| (&g.arc_on, &g.arc_off));
-        let templates = || krl.into_iter().chain(gcode);
-        let plain =
-            |lines: &[String]| lines.iter().filter(|l| !template::has_placeholder(l)).cloned().collect::<Vec<_>>();
+        let rapid = profile.rapid.as_ref().map(|r| (&r.arc_on, &r.arc_off));
+        let templates = || krl.into_iter().chain(gcode).chain(rapid);
+        let plain = |lines: &[String]| {
+            lines.iter().filter(|l| !template::has_placeholder(l)).map(|l| statement(l)).collect::<Vec<_>>()
+        };
         // The last line that lights and the first that ends: gas and delays lie before and behind.
         let on = templates().filter_map(|(on, _)| plain(on).pop());
         let off = templates().filter_map(|(_, off)| plain(off).into_iter().next());
@@ -94,6 +96,11 @@ impl Reading {
             off: self.arc_off.iter().cloned().chain(off).collect(),
         }
     }
+}
+
+/// A line of a template without the sign that ends a statement in RAPID: readers have it cut off.
+fn statement(line: &str) -> String {
+    line.trim_end().trim_end_matches(';').to_owned()
 }
 
 fn load_plan(name: &str, text: &str, profile: &Profile) -> anyhow::Result<Loaded> {

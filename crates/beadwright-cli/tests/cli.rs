@@ -56,6 +56,26 @@ fn plan_writes_program_plan_metrics_and_report() {
 }
 
 #[test]
+fn a_rapid_program_is_written_and_simulated() {
+    let folder = folder_with("cross");
+    for (variant, setting) in
+        [("arc", "rapid.modules=load"), ("plain", "rapid.arc=plain"), ("call", "rapid.modules=call")]
+    {
+        let plan = ["plan", "cross.stl", "-p", "cmt-steel-abb", "--post", "rapid", "-o", variant, "--set", setting];
+        ok(folder.path(), &[&plan[..], &["--no-deposit"]].concat());
+        let written = files(&folder.path().join(variant));
+        assert!(["cross.mod", "cross.pgf", "cross_L014.mod"].iter().all(|name| written.contains_key(*name)));
+        let metrics: serde_json::Value = serde_json::from_slice(&written["metrics.json"]).unwrap();
+        let program = format!("{variant}/cross.mod");
+        let json = ok(folder.path(), &["simulate", &program, "-p", "cmt-steel-abb", "--grid", "1", "--json"]);
+        let totals = &serde_json::from_str::<serde_json::Value>(&json).unwrap()["totals"];
+        assert_eq!(totals["arc_starts"], metrics["arc_starts"], "{variant}");
+        let length = |value: &serde_json::Value| value["deposited_length_mm"].as_f64().unwrap();
+        assert!((length(totals) / length(&metrics) - 1.0).abs() < 1e-5, "{variant}");
+    }
+}
+
+#[test]
 fn one_and_two_threads_write_the_same_bytes() {
     let folder = folder_with("propeller");
     for threads in ["1", "2"] {
@@ -121,7 +141,8 @@ fn wrong_usage_and_wrong_values_are_told_apart() {
     for (arguments, part) in [
         (&["-p", "cmt-al2319-kuke"][..], "Did you mean \"cmt-al2319-kuka\"?"),
         (&["--strategy", "spiral"], "raster, zigzag, contour, compound"),
-        (&["--post", "rapid"], "there is no post \"rapid\""),
+        (&["--post", "fanuc"], "there is no post \"fanuc\". The posts are krl, gcode, rapid."),
+        (&["--post", "rapid"], "cmt-steel-abb"),
         (&["--post", "gcode"], "plasma-304-cnc"),
         (&["--set", "fill.raster_angel=4"], "Did you mean \"raster_angle\"?"),
         (&["--set", "bead.width=-1"], "bead.width = -1"),

@@ -9,7 +9,7 @@ use beadwright::model::Mesh;
 use beadwright::plan::{self, Layer, Plan};
 use beadwright::planar::DVec2;
 use beadwright::post;
-use beadwright::profile::Profile;
+use beadwright::profile::{Profile, RapidArc};
 use beadwright::program::Programmer;
 use beadwright::task::Task;
 use beadwright::{example, plan_file};
@@ -207,6 +207,22 @@ fn gcode_reads_back_as_planned() {
         profile.gcode = Profile::built_in("plasma-304-cnc").unwrap().gcode;
         let files = written(plan, &profile, "gcode");
         same_as_plan(case, &readers::gcode::run(&files["Test part-1.nc"], 3, 5), plan, &profile);
+    });
+}
+
+#[test]
+fn rapid_reads_back_as_planned() {
+    each_case(|case, plan, profile| {
+        let mut profile = profile.clone();
+        let mut rapid = Profile::built_in("cmt-steel-abb").unwrap().rapid.unwrap();
+        // Fine steps: the times are compared within 1 %, at down to 3 mm/s.
+        rapid.speed_step = 0.02;
+        let plain = profile.krl.is_none();
+        rapid.arc = if plain { RapidArc::Plain } else { RapidArc::Instructions };
+        profile.rapid = Some(rapid);
+        let files = written(plan, &profile, "rapid");
+        let output = if plain { "doArc" } else { "" };
+        same_as_plan(case, &readers::rapid::run(&files, "Test_part_1", output), plan, &profile);
     });
 }
 

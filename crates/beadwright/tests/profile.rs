@@ -8,6 +8,7 @@ use toml_edit::{Document, DocumentMut, Item, Value};
 
 const KUKA: &str = "cmt-al2319-kuka";
 const CNC: &str = "plasma-304-cnc";
+const ABB: &str = "cmt-steel-abb";
 
 fn text(name: &str) -> &'static str {
     Profile::built_in_text(name).unwrap()
@@ -50,7 +51,7 @@ fn built_in_profiles_have_no_notes() {
 fn a_misspelt_name_gets_the_nearest_or_all() {
     let error = |name: &str| Profile::built_in(name).unwrap_err().to_string();
     assert!(error("plasma-304").contains("Did you mean \"plasma-304-cnc\"?"));
-    assert!(error("zzz").contains(&format!("Known: {KUKA}, {CNC}.")), "{}", error("zzz"));
+    assert!(error("zzz").contains(&format!("Known: {KUKA}, {CNC}, {ABB}.")), "{}", error("zzz"));
 }
 
 #[test]
@@ -152,7 +153,14 @@ fn missing_keys_are_named_at_their_section() {
 
 #[test]
 fn only_optional_keys_may_be_missing() {
-    let optional = ["fill.stepover", "process.current", "process.voltage", "slice.close_gap", "slice.simplify"];
+    let optional = [
+        "process.current",
+        "process.voltage",
+        "slice.close_gap",
+        "slice.simplify",
+        "rapid.tool_frame",
+        "rapid.part_frame",
+    ];
     for (name, full) in BUILT_IN {
         let document: DocumentMut = full.parse().unwrap();
         for (section, item) in document.iter() {
@@ -248,6 +256,12 @@ fn impossible_numbers_are_refused_with_line_and_key() {
         (KUKA, "krl.ptp_speed", 0.5, 101.0),
         (KUKA, "krl.blend", -0.1, 51.0),
         (CNC, "bead.width", f64::NEG_INFINITY, 1e9),
+        (ABB, "rapid.home_speed", 0.0, 3001.0),
+        (ABB, "rapid.orientation_speed", 0.0, 1001.0),
+        (ABB, "rapid.zone", -0.1, 51.0),
+        (ABB, "rapid.speed_step", 0.0, 101.0),
+        (ABB, "rapid.voltage", -101.0, 101.0),
+        (ABB, "rapid.control", -101.0, 101.0),
     ]);
     for (profile, path, low, high) in both {
         for value in [low, high, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -267,6 +281,8 @@ fn impossible_counts_are_refused_with_line_and_key() {
         impossible(profile, path, low);
         impossible(profile, path, high);
     }
+    impossible(ABB, "rapid.schedule", 10_000);
+    impossible(ABB, "rapid.mode", 100);
     impossible(KUKA, "krl.orientation", [0.0, 400.0, 0.0].into_iter().collect::<Value>());
 }
 
@@ -275,11 +291,32 @@ fn impossible_words_are_refused_with_line_and_key() {
     impossible(KUKA, "fill.strategy", "spiral");
     check(KUKA, "\"compound\"", "\"spiral\"", &["the strategies are raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
-    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode"]);
+    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode, rapid"]);
     impossible(CNC, "gcode.extension", "../nc");
     impossible(CNC, "gcode.extension", "");
     impossible(KUKA, "krl.home", "X 0,Y 0");
     impossible(KUKA, "krl.home", "A1 0}; HALT");
+    for name in ["tool0", "1st", "a b", "smBead", "v100", "a_name_of_more_than_32_characters"] {
+        impossible(ABB, "rapid.tool", name);
+    }
+    impossible(ABB, "rapid.wobj", "fine");
+    impossible(ABB, "rapid.wobj", "TTORCH");
+    for folder in ["", "HOME:/part/", "HOME:/my part", "HOME:/a_folder_of_more_than_forty_characters"] {
+        impossible(ABB, "rapid.folder", folder);
+    }
+}
+
+#[test]
+fn frames_loads_and_seams_of_rapid_are_checked() {
+    check(ABB, "orientation = [0.0, 1.0", "orientation = [0.5, 1.0", &["rapid.orientation = 1.118", "quaternion"]);
+    check(ABB, "0.9238795, 0.0, 0.3826834", "0.9, 0.0, 0.3", &["rapid.tool_frame", "quaternion"]);
+    check(ABB, "part_frame = [900.0", "part_frame = [9e9", &["rapid.part_frame", "mm"]);
+    check(ABB, "tool_load = [4.5, 30.0, 0.0, 120.0]", "tool_load = [4.5, 0.0, 0.0, 0.0]", &["centre of gravity"]);
+    check(ABB, "tool_load = [4.5", "tool_load = [0.0", &["rapid.tool_load = 0", "kg"]);
+    check(ABB, "arc = \"instructions\"", "arc = \"plane\"", &["Did you mean \"plain\"?"]);
+    check(ABB, "wire_feed_unit = \"m/min\"", "wire_feed_unit = \"m/h\"", &["m/min", "mm/s"]);
+    check(ABB, "fill_time = 0.3", "fill_time = -1.0", &["rapid.seam.fill_time = -1", "between 0 and 60 s"]);
+    check(ABB, "heat_feed = 1.0", "heat_feed = 6.0", &["rapid.seam.heat_feed", "of the wire feed"]);
 }
 
 #[test]
@@ -329,6 +366,9 @@ fn templates_with_unknown_placeholders_are_refused() {
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
         let error = key(KUKA, &format!("krl.{part}"), "WAIT SEC {{gas_preflw}}");
         assert!(error.contains("{{gas_preflw}} is not a placeholder; known are program, layer"), "{error}");
+    }
+    for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
+        key(ABB, &format!("rapid.{part}"), "SetDO doGas,{{gas}};");
     }
     for part in ["header", "layer_start", "arc_on", "arc_off", "footer"] {
         let error = key(CNC, &format!("gcode.{part}"), "(Grüße)");

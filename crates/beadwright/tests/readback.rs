@@ -493,11 +493,15 @@ fn our_own_programs_read_back_as_planned() {
         for (profile, post, file, options) in [
             ("cmt-al2319-kuka", "krl", "PART.src", arc_codes("$OUT[2] = TRUE", "$OUT[2] = FALSE")),
             ("plasma-304-cnc", "gcode", "PART.nc", Options::default()),
+            ("cmt-steel-abb", "rapid", "PART.mod", Options::default()),
         ] {
             let profile = Profile::built_in(profile).unwrap();
             let plan = plan::plan(part, &example::find(part).unwrap().mesh(), &profile, &Task::new()).unwrap();
             let files = written(&plan, &profile, post);
-            let mut find = |name: &str| files.get(name).or_else(|| files.get(&format!("{name}.src"))).cloned();
+            let mut find = |name: &str| {
+                let names = [name.to_owned(), format!("{name}.src"), format!("{name}.mod")];
+                names.iter().find_map(|name| files.get(name)).cloned()
+            };
             let program = read(&files[file], &mut find, &options).unwrap();
             let (totals, planned) = (program.totals(), &plan.summary.metrics);
             assert_eq!(totals.arc_starts, planned.arc_starts, "{part} {post}");

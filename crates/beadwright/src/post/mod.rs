@@ -7,17 +7,19 @@
 //! | [`krl`] | KUKA KRL: a main program with its data, and one subprogram a layer |
 //! | [`gcode`] | CNC G-code: one file |
 //! | [`marlin`] | G-code for printers: one file |
+//! | [`rapid`] | ABB RAPID: a main module with its data, and one module a layer |
 
 pub mod gcode;
 pub mod krl;
 pub mod marlin;
+pub mod rapid;
 
 use crate::profile::{BUILT_IN, Profile, ProfileError};
 use crate::program::{Instruction, LayerProgram};
 use crate::template;
 
 /// The posts by name.
-pub const NAMES: [&str; 3] = ["krl", "gcode", "marlin"];
+pub const NAMES: [&str; 4] = ["krl", "gcode", "marlin", "rapid"];
 
 /// Text to be appended to a file of the program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -68,6 +70,10 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
         "marlin" => {
             let section = profile.marlin.clone().ok_or_else(|| no_section(profile, "marlin"))?;
             Ok(Box::new(marlin::MarlinGcode::new(part, profile, section)))
+        }
+        "rapid" => {
+            let section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
+            Ok(Box::new(rapid::AbbRapid::new(part, profile, section)))
         }
         _ => Err(PostError::Unknown(name.to_owned())),
     }

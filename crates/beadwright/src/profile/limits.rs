@@ -29,7 +29,7 @@ pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
 }
 
 /// Key, value, least and greatest possible value, unit.
-type Range = (&'static str, f64, f64, f64, &'static str);
+pub(super) type Range = (&'static str, f64, f64, f64, &'static str);
 
 fn out_of_range(p: &Profile) -> Option<Broken> {
     const TINY: f64 = 1e-3;
@@ -97,6 +97,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ranges.push(("marlin.retract_speed", marlin.retract_speed, 0.1, 500.0, "mm/s"));
         ranges.push(("marlin.retract_from", marlin.retract_from, 0.0, 1000.0, "mm"));
     }
+    ranges.extend(p.rapid.iter().flat_map(|rapid| rapid.ranges()));
     // Written so that NaN is out of range too.
     let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
     broken.map(|(key, value, low, high, unit)| Broken {
@@ -136,7 +137,7 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
         return broken("krl.home", format!("\"{home}\""), "an axis position such as \"A1 0.0,A2 -90.0,…\".".to_owned());
     }
-    None
+    p.rapid.as_ref().and_then(|rapid| rapid.broken())
 }
 
 /// Templates may use known placeholders and printable ASCII only: controllers read nothing else.
@@ -162,7 +163,8 @@ fn bad_template(p: &Profile) -> Option<Broken> {
     let marlin = p.marlin.iter().flat_map(|m| {
         [("marlin.header", &m.header), ("marlin.layer_start", &m.layer_start), ("marlin.footer", &m.footer)]
     });
-    for (key, lines) in krl.chain(gcode).chain(marlin) {
+    let rapid = p.rapid.iter().flat_map(|r| r.templates());
+    for (key, lines) in krl.chain(gcode).chain(marlin).chain(rapid) {
         for line in lines {
             let reason = match template::unknown_placeholder(line, &PLACEHOLDERS) {
                 Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", PLACEHOLDERS.join(", ")),

@@ -4,8 +4,10 @@
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
 mod limits;
+mod rapid;
 mod read;
 
+pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 
 use crate::bead::{Bead, MassBalance, Overlap};
@@ -17,10 +19,11 @@ use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 3] = [
+pub const BUILT_IN: [(&str, &str); 4] = [
     ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
     ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
     ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
+    ("cmt-steel-abb", include_str!("../../../../profiles/cmt-steel-abb.toml")),
 ];
 
 /// A process on a cell.
@@ -32,7 +35,7 @@ pub struct Profile {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// Dialects written when none is asked for: `krl`, `gcode`.
+    /// Dialects written when none is asked for: `krl`, `gcode`, `rapid`.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
@@ -63,6 +66,8 @@ pub struct Profile {
     pub gcode: Option<Gcode>,
     /// Printers' G-code; needed for the post `marlin`.
     pub marlin: Option<Marlin>,
+    /// ABB RAPID; needed for the post `rapid`.
+    pub rapid: Option<Rapid>,
 }
 
 /// The wire.

@@ -215,7 +215,10 @@ impl Reader<'_> {
         let (word, rest) = name(text);
         if let Some(late) = text.strip_prefix('%') {
             let called = late.trim_end_matches('%').trim_matches('"');
-            let called = called.rsplit(':').next().unwrap_or(called);
+            if let Some((of, called)) = called.rsplit_once(':') {
+                self.find_module(of, line)?;
+                return self.call(called, line, module, depth);
+            }
             return self.call(called, line, module, depth);
         }
         if HARMLESS.iter().any(|h| h.eq_ignore_ascii_case(word)) || word.is_empty() {
@@ -245,6 +248,18 @@ impl Reader<'_> {
         let missing = || ReadError::MissingModule { place: self.trace.place(line), name: file.to_owned() };
         let found = (self.module)(file).ok_or_else(missing)?;
         self.load(Some(file), &found).map(|_| ())
+    }
+
+    /// Takes in a module that a call names and that nothing has loaded, as a `.pgf` would.
+    fn find_module(&mut self, name: &str, line: usize) -> Result<(), ReadError> {
+        let known = |m: &Rc<Module>| m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(name));
+        if !self.modules.iter().any(known)
+            && let Some(text) = (self.module)(name)
+        {
+            self.trace.call(name, 0, line)?;
+            self.load(Some(name), &text)?;
+        }
+        Ok(())
     }
 
     /// The procedure in the module itself or in the last module loaded that has it.

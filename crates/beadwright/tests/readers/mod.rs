@@ -3,6 +3,7 @@
 
 pub mod gcode;
 pub mod krl;
+pub mod rapid;
 
 /// A point, mm.
 pub type Point = [f64; 3];

@@ -1,0 +1,242 @@
+//! ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on a layer
+//! each, and `NAME.pgf` lists the modules to be loaded.
+//!
+//! With RobotWare Arc a pass is `ArcLStart … fine`, `ArcL … zBead`, `ArcLEnd … fine`; without it plain `MoveL` between
+//! the lines that the profile gives. While welding the speed is that of the welddata: speeds are rounded to the nominal
+//! one plus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
+
+pub(crate) mod names;
+
+mod data;
+
+use super::{Chunk, Post, Values, ascii};
+use crate::number::fixed;
+use crate::profile::{Process, Profile, Rapid, RapidArc, RapidModules};
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+
+/// The RAPID post.
+pub struct AbbRapid {
+    name: String,
+    comment: String,
+    rapid: Rapid,
+    process: Process,
+    values: Values,
+    travel_speed: f64,
+    orientation: String,
+    digits: usize,
+}
+
+/// Speeds of a layer in order of appearance, thousandths of a mm/s: the place is the number of the data less one.
+type Speeds = Vec<u64>;
+
+impl AbbRapid {
+    /// A post for a part; its name becomes the module's name.
+    pub fn new(part: &str, profile: &Profile, rapid: Rapid) -> Self {
+        let name = names::module_name(part, 3, [&rapid.tool, &rapid.wobj]);
+        let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
+        let values = Values::new(&name, profile);
+        let orientation = data::quaternion(&rapid.orientation);
+        let (process, travel_speed) = (profile.process.clone(), profile.travel.speed);
+        Self { name, comment, rapid, process, values, travel_speed, orientation, digits: 3 }
+    }
+
+    fn numbered(&self, prefix: &str, index: usize) -> String {
+        format!("{prefix}{:0digits$}", index + 1, digits = self.digits)
+    }
+
+    fn with_arc(&self) -> bool {
+        self.rapid.arc == RapidArc::Instructions
+    }
+
+    fn main(&self, text: String) -> Chunk {
+        Chunk { file: format!("{}.mod", self.name), text }
+    }
+
+    fn pgf(&self, text: String) -> Option<Chunk> {
+        self.rapid.pgf.then(|| Chunk { file: format!("{}.pgf", self.name), text })
+    }
+
+    fn lines(&self, text: &mut String, template: &[String]) {
+        self.values.expand(template).for_each(|line| statement(text, &line));
+    }
+
+    /// The speed as it is written, thousandths of a mm/s: the nominal one plus whole steps.
+    fn rounded(&self, speed: f64) -> u64 {
+        let (nominal, step) = (self.process.deposition_speed, self.rapid.speed_step);
+        let near = nominal + ((speed - nominal) / step).round() * step;
+        let written = if near >= 1e-3 { near } else { speed };
+        (written * 1000.0).round().max(1.0) as u64
+    }
+
+    fn speeds(&self, program: &LayerProgram) -> Speeds {
+        let mut speeds = Speeds::new();
+        for instruction in &program.instructions {
+            let Instruction::Weld { speed, .. } = instruction else { continue };
+            let speed = self.rounded(*speed);
+            if !speeds.contains(&speed) {
+                speeds.push(speed);
+            }
+        }
+        speeds
+    }
+
+    fn declare(&self, text: &mut String, speeds: &Speeds) {
+        for (i, &speed) in speeds.iter().enumerate() {
+            let speed = speed as f64 / 1000.0;
+            let declaration = if self.with_arc() {
+                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, &self.process, &self.rapid))
+            } else {
+                format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
+            };
+            text.push_str(&format!("  {declaration}\r\n"));
+        }
+    }
+
+    /// Number of the data for a speed, from 1.
+    fn number(&self, speeds: &Speeds, speed: f64) -> usize {
+        let wanted = self.rounded(speed);
+        speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
+    }
+
+    /// `word target,between,zone,tool\WObj:=wobj;`
+    fn motion(&self, text: &mut String, word: &str, to: DVec3, between: &str, blend: bool) {
+        let zone = if blend && self.rapid.zone > 0.0 { "zBead" } else { "fine" };
+        text.push_str("    ");
+        text.push_str(word);
+        text.push(' ');
+        data::push_target(text, to, &self.orientation);
+        text.push_str(&format!(",{between},{zone},{}\\WObj:={};\r\n", self.rapid.tool, self.rapid.wobj));
+    }
+
+    /// The torch goes home.
+    fn home(&self, text: &mut String) {
+        statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
+    }
+
+    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds) {
+        for (i, &instruction) in all.iter().enumerate() {
+            match (instruction, all.get(i + 1)) {
+                // ArcLStart itself goes there.
+                (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
+                (Instruction::Travel { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
+                (Instruction::ArcOn { pass, kind }, next) => {
+                    self.values.set("pass", pass);
+                    statement(text, &format!("! pass {pass} {}", kind.name()));
+                    self.arc_on(text, i.checked_sub(1).and_then(|before| all.get(before)), next, speeds);
+                }
+                (Instruction::Weld { to, speed, last }, _) => self.weld(text, to, self.number(speeds, speed), last),
+                (Instruction::ArcOff { .. }, _) => self.arc_off(text),
+            }
+        }
+    }
+
+    /// Lights the arc where the travel before ended, with the data of the first piece.
+    fn arc_on(&self, text: &mut String, before: Option<&Instruction>, next: Option<&Instruction>, speeds: &Speeds) {
+        if !self.with_arc() {
+            self.switch(text, &self.rapid.arc_on);
+        } else if let (Some(&Instruction::Travel { to }), Some(&Instruction::Weld { speed, .. })) = (before, next) {
+            let between = format!("vTravel,smBead,wd{}", self.number(speeds, speed));
+            self.motion(text, "ArcLStart", to, &between, false);
+        }
+    }
+
+    fn weld(&self, text: &mut String, to: DVec3, number: usize, last: bool) {
+        if self.with_arc() {
+            let word = if last { "ArcLEnd" } else { "ArcL" };
+            self.motion(text, word, to, &format!("vTravel,smBead,wd{number}"), !last);
+        } else {
+            self.motion(text, "MoveL", to, &format!("vd{number}"), !last);
+        }
+    }
+
+    fn arc_off(&self, text: &mut String) {
+        if !self.with_arc() {
+            self.switch(text, &self.rapid.arc_off);
+        } else if self.process.arc_end_delay > 0.0 {
+            statement(text, &format!("WaitTime \\InPos,{};", fixed(self.process.arc_end_delay, 3)));
+        }
+    }
+
+    /// Lines that switch the arc, once the torch stands still: RAPID runs ahead of the robot.
+    fn switch(&self, text: &mut String, template: &[String]) {
+        statement(text, "WaitTime \\InPos,0;");
+        self.lines(text, template);
+    }
+
+    /// The lines of `main` that run a layer.
+    fn run(&self, module: &str, routine: &str) -> String {
+        let mut text = String::new();
+        let file = format!("{}/{module}.mod", self.rapid.folder);
+        let load = self.rapid.modules == RapidModules::Load;
+        if load {
+            statement(&mut text, &format!("Load \\Dynamic,\"{file}\";"));
+        }
+        statement(&mut text, &format!("%\"{module}:{routine}\"%;"));
+        if load {
+            statement(&mut text, &format!("UnLoad \"{file}\";"));
+        }
+        text
+    }
+}
+
+impl Post for AbbRapid {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // Room for "_L" and the number.
+        self.name.truncate(names::MAX_NAME - 2 - self.digits);
+        let mut text = format!("MODULE {}\r\n", self.name);
+        text.push_str(&format!("  ! {}\r\n", self.comment));
+        for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
+            text.push_str(&format!("  {line}\r\n"));
+        }
+        text.push_str("  PROC main()\r\n");
+        statement(&mut text, "ConfL \\Off;");
+        statement(&mut text, "SingArea \\Wrist;");
+        self.home(&mut text);
+        self.lines(&mut text, &self.rapid.start);
+        let head = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\" ?>\r\n<Program>\r\n";
+        let list = self.pgf(format!("{head}  <Module>{}.mod</Module>\r\n", self.name));
+        [self.main(text)].into_iter().chain(list).collect()
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let (module, routine) =
+            (self.numbered(&format!("{}_L", self.name), program.index), self.numbered("Layer", program.index));
+        self.values.set("layer", program.index + 1);
+        let speeds = self.speeds(program);
+        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
+        text.reserve(program.instructions.len() * 150);
+        let z = fixed(program.z, 3);
+        self.declare(&mut text, &speeds);
+        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
+        self.lines(&mut text, &self.rapid.layer_start);
+        self.instructions(&mut text, &program.instructions, &speeds);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        let listed = self.rapid.modules == RapidModules::Call;
+        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
+        let run = self.main(self.run(&module, &routine));
+        [run, Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        if let Some(Instruction::Travel { to }) = leave {
+            self.motion(&mut text, "MoveL", to, "vTravel", false);
+        }
+        self.lines(&mut text, &self.rapid.end);
+        self.home(&mut text);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
+    }
+}
+
+/// A statement of a routine on its own line.
+fn statement(text: &mut String, line: &str) {
+    text.push_str("    ");
+    text.push_str(line);
+    text.push_str("\r\n");
+}
