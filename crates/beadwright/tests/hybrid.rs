@@ -18,7 +18,7 @@ fn profile() -> Profile {
     Profile::built_in("cmt-al2319-kuka").unwrap()
 }
 
-fn settings() -> FillSettings {
+fn settings() -> FillSettings<'static> {
     profile().fill_settings(0)
 }
 

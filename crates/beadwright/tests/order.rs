@@ -82,7 +82,7 @@ fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Pass>, Vec<(usize, usiz
     (laid, from)
 }
 
-fn settings() -> FillSettings {
+fn settings() -> FillSettings<'static> {
     Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0)
 }
 

@@ -158,6 +158,9 @@ fn only_optional_keys_may_be_missing() {
         "process.voltage",
         "slice.close_gap",
         "slice.simplify",
+        "fill.perimeters_first",
+        "fill.infill_density",
+        "fill.solid_layers",
         "rapid.tool_frame",
         "rapid.part_frame",
     ];
@@ -291,7 +294,7 @@ fn impossible_words_are_refused_with_line_and_key() {
     impossible(KUKA, "fill.strategy", "spiral");
     check(KUKA, "\"compound\"", "\"spiral\"", &["the strategies are raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
-    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode, rapid"]);
+    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode, marlin, rapid"]);
     impossible(CNC, "gcode.extension", "../nc");
     impossible(CNC, "gcode.extension", "");
     impossible(KUKA, "krl.home", "X 0,Y 0");

@@ -6,11 +6,13 @@
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
+//! | [`angles`] | what depends on the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
 //! | [`steps`] | the steps of the hybrid as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 
+pub mod angles;
 pub mod bead_window;
 pub mod encode;
 pub mod plot;
@@ -26,6 +28,7 @@ use crate::plan::{Header, Layer, Pass, Summary};
 use crate::profile::Profile;
 use crate::template;
 use glam::DVec2;
+use planar::Polygon;
 use serde_json::json;
 
 /// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
@@ -35,16 +38,21 @@ pub struct Report {
     layers: Vec<String>,
     maps: Vec<String>,
     figures: Option<Figures>,
+    /// Index and islands of the layer in the middle, for plots over the raster angle.
+    middle: (usize, Vec<Polygon>),
 }
 
 impl Report {
     /// A report without layers yet.
     pub fn new(header: &Header) -> Self {
-        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None }
+        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None, middle: (0, Vec::new()) }
     }
 
     /// Takes the next layer, and what the deposit model says of it.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) {
+        if layer.index == self.header.layers / 2 {
+            self.middle = (layer.index, layer.islands.clone());
+        }
         self.layers.push(encode::layer(layer, judgement.map(|j| &j.figures)));
         if let Some(judgement) = judgement {
             self.figures.get_or_insert_default().add(&judgement.figures);
@@ -62,6 +70,7 @@ impl Report {
             ("state", tables::state(summary, repair)),
             ("totals", tables::totals(summary, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
+            ("angles", angles::section(&self.middle, profile)),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
             ("warnings", tables::warnings(summary, repair)),

@@ -4,7 +4,7 @@
 //! their first vertex, scan lines at 0°, sub-regions one by one in scan order. One layer is counted, as in the paper.
 
 use super::{ReproduceError, Reproduced};
-use crate::fill::angle::{self, Curves};
+use crate::fill::angle;
 use crate::fill::compound::Compound;
 use crate::fill::zigzag::regions::Weave;
 use crate::fill::{FillSettings, Strategy};
@@ -12,7 +12,7 @@ use crate::motion::Motion;
 use crate::order::tour::{Ends, Gate, Stop, Visit};
 use crate::order::{Method, begin_at};
 use crate::profile::Profile;
-use crate::report::plot::{Curve, Plot};
+use crate::report::angles;
 use crate::report::sheet::Sheet;
 use crate::report::sketch::Sketch;
 use crate::task::Task;
@@ -111,7 +111,8 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         for sketch in layer.sketches() {
             page.svg(&sketch.svg());
         }
-        for plot in plots(&angle::curves(&Compound, &[plate.polygon], &settings)) {
+        let best = layer.best_angle.to_degrees();
+        for plot in angles::plots(&angle::curves(&Compound, &[plate.polygon], &settings), Some(best)) {
             page.svg(&plot.svg());
         }
     }
@@ -311,23 +312,6 @@ fn in_file_order(stops: &[Stop]) -> Vec<Visit> {
 /// A ring as a path that begins and ends at a point of it.
 fn begin_at_point(ring: Ring, start: DVec2) -> Vec<DVec2> {
     begin_at(crate::fill::Pass::contour(ring, 0.0), start).path()
-}
-
-fn plots(curves: &Curves) -> [Plot; 2] {
-    let plot = |title: &str, y: &str, lines: Vec<(&str, &Vec<DVec2>)>| Plot {
-        title: title.to_owned(),
-        x: "raster angle, °".to_owned(),
-        y: y.to_owned(),
-        curves: lines
-            .into_iter()
-            .map(|(name, points)| Curve { name: name.to_owned(), points: points.clone() })
-            .collect(),
-        ..Plot::default()
-    };
-    [
-        plot("Turns over the raster angle", "turns", vec![("turns U(α)", &curves.turns)]),
-        plot("Area laid twice at the turns over the raster angle", "mm²", vec![("corner area S", &curves.corner_area)]),
-    ]
 }
 
 fn circle(x: f64, y: f64, radius: f64) -> Ring {

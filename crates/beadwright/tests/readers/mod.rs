@@ -3,6 +3,7 @@
 
 pub mod gcode;
 pub mod krl;
+pub mod marlin;
 pub mod rapid;
 
 /// A point, mm.

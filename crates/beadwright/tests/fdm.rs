@@ -1,0 +1,195 @@
+//! Printers: raster angle, merged sub-regions, sparse infill, flow, and the G-code read back.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod readers;
+mod solids;
+
+use beadwright::example;
+use beadwright::fill::compound::Compound;
+use beadwright::fill::zigzag::regions::Weave;
+use beadwright::fill::{PassKind, Strategy as _, angle};
+use beadwright::plan::{self, Plan};
+use beadwright::planar::scan::{Scan, Spacing};
+use beadwright::planar::turns::ends_at;
+use beadwright::planar::{DVec2, FillRule, Join, Polygon, Region, Ring};
+use beadwright::post;
+use beadwright::profile::Profile;
+use beadwright::program::Programmer;
+use beadwright::readback::{self, Options};
+use beadwright::task::Task;
+use proptest::prelude::*;
+use solids::runner;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+fn profile() -> Profile {
+    Profile::built_in("fdm-abs-0.4").unwrap()
+}
+
+/// A small part: a fifth of an example.
+fn plan_of(part: &str, profile: &Profile) -> Plan {
+    let mut mesh = example::find(part).unwrap().mesh();
+    mesh.place(0.2, glam::DVec3::ZERO);
+    plan::plan(part, &mesh, profile, &Task::new()).unwrap()
+}
+
+fn gcode(plan: &Plan, profile: &Profile) -> String {
+    let mut post = post::post("marlin", "part", profile).unwrap();
+    let mut programmer = Programmer::new(profile.travel.clearance);
+    let mut chunks = post.begin(plan.layers.len());
+    plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
+    chunks.extend(post.end(programmer.leave()));
+    chunks.into_iter().map(|c| c.text).collect()
+}
+
+#[test]
+fn filament_is_the_deposited_volume() {
+    for (part, relative) in [("plate", true), ("plate", false), ("gear", true), ("star", false)] {
+        let mut profile = profile();
+        profile.marlin.as_mut().unwrap().relative_extrusion = relative;
+        let plan = plan_of(part, &profile);
+        let print = readers::marlin::run(&gcode(&plan, &profile));
+        let volume = print.filament * PI * profile.wire.diameter * profile.wire.diameter / 4.0;
+        let metrics = &plan.summary.metrics;
+        assert!((volume / metrics.deposited_volume_mm3 - 1.0).abs() < 1e-3, "{part}: {volume} mm³");
+        // The strand is 0.4 × 0.2 mm along its whole length, and fills the part.
+        assert!((volume / (metrics.deposited_length_mm * 0.4 * 0.2) - 1.0).abs() < 1e-3, "{part}: {volume} mm³");
+        // A plate of 24 mm is much edge: larger parts come within 1 % (benches/fdm_peers.sh).
+        assert!((volume / metrics.part_volume_mm3 - 1.0).abs() < 0.025, "{part}: {volume} mm³");
+        assert_eq!(print.paths.len(), metrics.passes, "{part}");
+        assert!((print.travel / metrics.travel_length_mm - 1.0).abs() < 0.01, "{part}");
+        assert!(print.drawn_back > 0.0);
+    }
+}
+
+#[test]
+fn our_own_reader_reads_the_same() {
+    let profile = profile();
+    let plan = plan_of("plate", &profile);
+    let program = readback::read(&gcode(&plan, &profile), &mut |_| None, &Options::default()).unwrap();
+    let (totals, metrics) = (program.totals(), &plan.summary.metrics);
+    assert_eq!(totals.arc_starts, metrics.passes);
+    assert!((totals.deposited_length_mm - metrics.deposited_length_mm).abs() < 1e-3 * metrics.deposited_length_mm);
+    assert!((totals.volume_mm3.unwrap() / metrics.deposited_volume_mm3 - 1.0).abs() < 2e-3);
+    let time = program.seconds(&profile.motion.unwrap());
+    assert!((time / metrics.total_time_s - 1.0).abs() < 0.01, "{time} s for {} s", metrics.total_time_s);
+}
+
+#[test]
+fn contours_come_before_the_fill() {
+    let plan = plan_of("plate", &profile());
+    for layer in &plan.layers {
+        assert!(layer.passes.is_sorted_by_key(|p| p.kind == PassKind::Infill));
+        assert_eq!(layer.passes.iter().filter(|p| p.kind == PassKind::Contour).count(), 6, "outline and five holes");
+    }
+}
+
+#[test]
+fn sparse_infill_is_solid_at_tops_and_bottoms() {
+    let mut profile = profile();
+    profile.fill.infill_density = 0.2;
+    let plan = plan_of("plate", &profile);
+    let infill =
+        |l: &plan::Layer| l.passes.iter().filter(|p| p.kind == PassKind::Infill).map(plan::Pass::length).sum::<f64>();
+    let lengths: Vec<f64> = plan.layers.iter().map(infill).collect();
+    let (solid, count) = (profile.fill.solid_layers as usize, lengths.len());
+    for (i, length) in lengths.iter().enumerate() {
+        let share = length / lengths[0];
+        if i < solid || i + solid >= count {
+            assert!((share - 1.0).abs() < 0.02, "layer {i}: {share}");
+        } else {
+            // Links along the boundary come on top of the lines.
+            assert!((0.19..0.35).contains(&share), "layer {i}: {share}");
+        }
+    }
+}
+
+#[test]
+fn the_best_angle_has_no_more_turns_than_any_other() {
+    let settings = profile().fill_settings(0);
+    for part in ["plate", "gear", "star", "cross", "propeller"] {
+        let mut mesh = example::find(part).unwrap().mesh();
+        mesh.place(0.3, glam::DVec3::ZERO);
+        let plan = plan::plan(part, &mesh, &profile(), &Task::new()).unwrap();
+        let island = &plan.layers[5].islands[0];
+        let (core, spacing) = (Compound.infill(island, &settings), Spacing::AtMost(settings.stepover));
+        let alone = angle::best(&Compound, &[std::slice::from_ref(island)], &settings).unwrap();
+        let pair = angle::best(&Compound, &[std::slice::from_ref(island); 2], &settings).unwrap();
+        let turns = |a: f64| ends_at(&core, a, spacing);
+        for k in 0..720 {
+            let a = f64::from(k) * PI / 720.0;
+            assert!(turns(alone) <= turns(a), "{part}: {} at {alone}, {} at {a}", turns(alone), turns(a));
+            let both = |a: f64| turns(a) + turns(a + FRAC_PI_2);
+            assert!(both(pair) <= both(a), "{part}: {} at {pair}, {} at {a}", both(pair), both(a));
+        }
+    }
+}
+
+#[test]
+fn a_turned_part_has_a_turned_angle() {
+    let settings = profile().fill_settings(0);
+    let ring = |turn: f64| {
+        let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 15.0), (0.0, 15.0)].map(DVec2::from);
+        Polygon {
+            outer: Ring::new(corners.iter().map(|p| DVec2::from_angle(turn).rotate(*p)).collect()),
+            holes: vec![],
+        }
+    };
+    for turn in [0.0, 0.3, 1.1, 2.5] {
+        let best = angle::best(&Compound, &[&[ring(turn)]], &settings).unwrap();
+        assert!(((best - turn + 0.5 * PI).rem_euclid(PI) - 0.5 * PI).abs() < 1e-4, "{best} for {turn}");
+    }
+}
+
+/// A blob with some round holes.
+fn blob(seed: &[f64]) -> Region {
+    let ring = |middle: DVec2, n: usize, radius: &dyn Fn(f64) -> f64| {
+        let point = |k: usize| {
+            let angle = TAU * k as f64 / n as f64;
+            middle + DVec2::from_angle(angle) * radius(angle)
+        };
+        Ring::new((0..n).map(point).collect())
+    };
+    let outer = ring(DVec2::ZERO, 90, &|a| {
+        30.0 + 6.0 * (3.0 * a + 6.0 * seed[0]).sin() + 5.0 * (7.0 * a + 6.0 * seed[1]).cos()
+    });
+    let hole = |s: &f64| ring(DVec2::from_angle(40.0 * s) * (6.0 + 9.0 * s), 24, &|_| 2.0 + 3.0 * s).reversed();
+    Region::from_rings(&[outer].into_iter().chain(seed[2..].iter().map(hole)).collect::<Vec<_>>(), FillRule::NonZero)
+}
+
+#[test]
+fn merging_keeps_every_line_and_needs_no_more_paths() {
+    runner(60)
+        .run(&(prop::collection::vec(0.0..1.0, 3..9), 0.0..3.1, 0.5..3.0), |(seed, angle, stepover)| {
+            let region = blob(&seed);
+            let scan = Scan::new(&region, angle, Spacing::AtMost(stepover));
+            let weave = Weave::new(&scan, stepover);
+            let spans: Vec<usize> = weave.regions().iter().flat_map(|r| r.spans.iter().copied()).collect();
+            let mut once = spans.clone();
+            once.sort_unstable();
+            prop_assert!(once.into_iter().eq(0..scan.spans().len()), "every line in one sub-region");
+            let (apart, merged) = (weave.apart(), weave.merged());
+            prop_assert!(merged.len() <= apart.len());
+            let mut regions: Vec<usize> = merged.iter().flatten().map(|(r, _)| *r).collect();
+            regions.sort_unstable();
+            prop_assert!(regions.into_iter().eq(0..apart.len()), "every sub-region in one path");
+            // A path holds its lines and links that leave the region nowhere.
+            for path in weave.paths(&merged) {
+                for ends in path.windows(2) {
+                    prop_assert!(region.offset(0.01, Join::ROUND).contains((ends[0] + ends[1]) / 2.0));
+                }
+            }
+            Ok(())
+        })
+        .unwrap();
+}
+
+#[test]
+fn a_plate_with_a_hole_needs_two_paths() {
+    // Below, left, right and above the hole: two of the four sub-regions follow each other on either side (3.2).
+    let square = |s: f64| Ring::new([(-s, -s), (s, -s), (s, s), (-s, s)].map(DVec2::from).to_vec());
+    let region = Region::from_rings(&[square(20.0), square(6.0).reversed()], FillRule::NonZero);
+    let scan = Scan::new(&region, 0.0, Spacing::AtMost(0.9));
+    let weave = Weave::new(&scan, 0.9);
+    assert_eq!(weave.regions().len(), 4);
+    assert_eq!(weave.merged().len(), 2);
+}
