@@ -2,11 +2,13 @@
 
 use super::graph::{KINK, Line};
 use glam::DVec2;
-use planar::Polygon;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
+use planar::{Bounds, Polygon};
 
 /// Around a sharp turn the largest disc is larger than along the walls by at least this part: 1/(1 + sin(θ/2)) to 1/2.
 const BUMP: f64 = 0.015;
+/// Nodes are at least this part of the spacing apart.
+const CLOSEST: f64 = 0.5;
 /// How far around a turn one looks for the walls that meet there, in disc radii.
 const SIGHT: f64 = 1.5;
 
@@ -18,7 +20,24 @@ pub fn lines(island: &Polygon, spacing: f64) -> Vec<Line> {
     if axis.branches.is_empty() {
         return axis.junctions.first().map(dot).into_iter().collect();
     }
-    axis.branches.iter().flat_map(cut_at_corners).collect()
+    axis.branches.iter().map(|branch| thinned(branch, CLOSEST * spacing)).flat_map(|b| cut_at_corners(&b)).collect()
+}
+
+/// Without nodes that lie nearer to the one before than `least` (mm): there the axis may step back by as little.
+fn thinned(branch: &Branch, least: f64) -> Branch {
+    let mut nodes: Vec<Node> = Vec::with_capacity(branch.nodes.len());
+    for node in &branch.nodes {
+        if nodes.last().is_none_or(|last| last.at.distance(node.at) >= least) {
+            nodes.push(*node);
+        }
+    }
+    if let Some(&last) = branch.nodes.last() {
+        while nodes.len() > 1 && nodes[nodes.len() - 1].at.distance(last.at) < least {
+            nodes.pop();
+        }
+        nodes.push(last);
+    }
+    Branch { nodes, ..*branch }
 }
 
 /// A line just long enough to be welded, across a part that is as long as it is wide.
@@ -41,16 +60,17 @@ fn cut_at_corners(branch: &Branch) -> Vec<Line> {
     ends.windows(2).filter(|w| w[0] < w[1]).map(piece).collect()
 }
 
-/// The nodes of a loop begun at its rightmost one: so loops on top of each other begin at the same place.
+/// The nodes of a loop, begun where it lies farthest to the right of its middle: so loops on top of each other begin
+/// above each other.
 fn placed(nodes: &[Node], closed: bool) -> Vec<Node> {
     let mut nodes = nodes.to_vec();
     if closed && nodes.len() > 2 {
         nodes.pop();
-        let right = |a: &usize, b: &usize| {
-            let (a, b) = (nodes[*a].at, nodes[*b].at);
-            a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-        };
-        let first = (0..nodes.len()).max_by(right).unwrap_or(0);
+        let middle = Bounds::of(nodes.iter().map(|node| node.at)).map(|bounds| bounds.center()).unwrap_or_default();
+        let next = nodes.iter().cycle().skip(1);
+        let level = |(a, b): (&Node, &Node)| (a.at.y > middle.y) != (b.at.y > middle.y);
+        let crossings = nodes.iter().zip(next).enumerate().filter(|(_, pair)| level(*pair));
+        let first = crossings.max_by(|(_, a), (_, b)| a.0.at.x.total_cmp(&b.0.at.x)).map_or(0, |(i, _)| i);
         nodes.rotate_left(first);
     }
     nodes

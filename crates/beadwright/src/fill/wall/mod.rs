@@ -75,8 +75,8 @@ impl Strategy for Wall {
 pub fn smooth_graph(lines: &[Line], settings: &FillSettings) -> Graph {
     let mut graph = Graph::of(lines, settings.wall.tolerance);
     smooth::straighten(&mut graph);
-    // Half for the curve, half for its chords.
-    smooth::fit(&mut graph, settings.wall.chord_error / 2.0);
+    // A third for the curve, one for its chords, one for the points that are left out later.
+    smooth::fit(&mut graph, settings.wall.chord_error / 3.0);
     graph
 }
 

@@ -10,7 +10,9 @@ use glam::{DMat2, DVec2, DVec3};
 use planar::medial::Node;
 
 /// A radius that falls by less than this per mm is that of the wall.
-const LEVEL: f64 = 0.03;
+const LEVEL: f64 = 0.02;
+/// So much farther, in radii, the wall is taken as undisturbed: there the radius levels off slowly.
+const MARGIN: f64 = 0.4;
 /// The slope of the radius and the direction of a wall are judged over this part of the radius.
 const WINDOW: f64 = 0.5;
 /// So far from a node, in its radii, an edge may be made straight.
@@ -59,7 +61,10 @@ fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
         let far = ahead(i);
         nodes[i].radius - nodes[far].radius > LEVEL * (along[far] - along[i])
     };
-    let first = (0..nodes.len()).find(|&i| along[i] > limit || !falls(i))?;
+    let level = (0..nodes.len()).find(|&i| along[i] > limit || !falls(i))?;
+    // Where nothing falls nothing is disturbed.
+    let undisturbed = if level == 0 { 0.0 } else { (along[level] + MARGIN * nodes[level].radius).min(limit) };
+    let first = along.partition_point(|&s| s < undisturbed).min(nodes.len() - 1);
     let (wall, far) = (nodes[first], nodes[ahead(first)]);
     let way = (wall.at - far.at).try_normalize()?;
     nodes.drain(..first);

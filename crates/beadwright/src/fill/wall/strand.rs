@@ -11,7 +11,7 @@ use crate::fill::FillSettings;
 use glam::DVec2;
 use planar::medial::Node;
 
-/// Beads of a wall are not wider by more than rounding than it takes to change their number.
+/// No wall gets more beads side by side.
 const MOST_BEADS: usize = 1000;
 /// Widths are rounded to this part of a bead width, so that equal walls get equal beads.
 const GRAIN: f64 = 0.01;
@@ -91,7 +91,19 @@ fn beside(edge: &Edge, side: f64, count: usize, ring: bool, settings: &FillSetti
         let width = ((exact / grain).round() * grain).clamp(low, high);
         Point { at: node.at + way(&edge.nodes, i, ring).perp() * side * q * exact, width }
     };
-    edge.nodes.iter().enumerate().map(point).collect()
+    let points: Vec<Point> = edge.nodes.iter().enumerate().map(point).collect();
+    simplified(&points, settings.wall.chord_error / 3.0)
+}
+
+/// Without the points that stretches of one width do not need within `tolerance` (mm).
+fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
+    let mut kept = Vec::with_capacity(points.len());
+    for stretch in points.chunk_by(|a, b| a.width == b.width) {
+        let line: Vec<DVec2> = stretch.iter().map(|point| point.at).collect();
+        let width = stretch.first().map_or(0.0, |point| point.width);
+        kept.extend(planar::polyline::simplify(&line, tolerance).into_iter().map(|at| Point { at, width }));
+    }
+    kept
 }
 
 /// The direction of a line at a node: the mean of those before and behind.
