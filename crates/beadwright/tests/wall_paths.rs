@@ -287,11 +287,11 @@ fn a_graph_is_found_among_loose_lines() {
     }
     assert_eq!(degrees(&[across.clone(), line(&[(20.0, -30.0), (20.0, 30.0)], false)]), [1, 1, 1, 1, 4]);
     let halves = [line(&[(20.0, -30.0), (20.0, 0.0)], false), line(&[(20.6, 0.0), (20.6, 30.0)], false)];
-    assert_eq!(degrees(&[&[across.clone()], &halves[..]].concat()), [1, 1, 1, 1, 4]);
+    assert_eq!(degrees(&[std::slice::from_ref(&across), &halves[..]].concat()), [1, 1, 1, 1, 4]);
     // Pieces of one line are one; a ring has one node, a ring with a bar across it two.
     assert_eq!(degrees(&[across.clone(), line(&[(50.0, 0.2), (90.0, 5.0)], false)]), [1, 1]);
     let ring = line(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (0.0, 40.0)], true);
-    assert_eq!(degrees(&[ring.clone()]), [2]);
+    assert_eq!(degrees(std::slice::from_ref(&ring)), [2]);
     assert_eq!(degrees(&[ring, line(&[(0.0, 20.0), (40.0, 20.0)], false)]), [3, 3]);
     let eight = line(&[(0.0, 0.0), (40.0, 40.0), (0.0, 40.0), (40.0, 0.0)], true);
     assert_eq!(degrees(&[eight]), [4]);

@@ -23,7 +23,7 @@ const STEPS: u32 = 24;
 
 pub(super) fn build() -> Solid {
     let levels: Vec<f64> = (0..=STEPS).map(|k| HEIGHT * f64::from(k) / f64::from(STEPS)).collect();
-    Solid::loft(&foot(), &levels, |p, z| turned(p, z))
+    Solid::loft(&foot(), &levels, turned)
 }
 
 /// The mean line at height `z` (mm), from the leading edge to the trailing edge.
