@@ -294,8 +294,13 @@ struct Filled {
 fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings) -> Filled {
     let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
     for island in &slice.islands {
-        let reached = reach(island, settings, slice.index, &mut slice.warnings);
-        let mut fill = if reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
+        let thin = strategy.welds_thin_walls();
+        let known = slice.warnings.len();
+        let reached = reach(island, strategy.narrowest(settings), slice.index, &mut slice.warnings);
+        if thin {
+            slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
+        }
+        let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
         for stage in &mut fill.stages {
             drop_short(stage, settings.min_pass_length, slice.index, &mut slice.warnings);
         }
@@ -321,14 +326,14 @@ fn drop_short(stage: &mut Vec<Path>, shortest: f64, layer: usize, warnings: &mut
 /// A feature is reported from this area on, in squared bead widths.
 const THIN_FEATURE: f64 = 0.25;
 
-/// Area of an island that a bead can reach without leaving it, mm²; warns of what it cannot reach.
+/// Area of an island that a bead of that width can reach without leaving it, mm²; warns of what it cannot reach.
 ///
 /// That area is the opening of the island by a disc of the bead's width. With C the outermost centre-lines and r
 /// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is connected like the
 /// island; where C has come apart at a neck, its parts may reach the same points. So the shapes need to be computed
 /// only at necks, and where the number says that something is lost.
-fn reach(island: &Polygon, settings: &FillSettings, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
-    let r = settings.bead_width / 2.0;
+fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
+    let r = width / 2.0;
     let area = island.area();
     let centre = island.offset(-r, Join::ROUND);
     if centre.is_empty() {
@@ -336,7 +341,7 @@ fn reach(island: &Polygon, settings: &FillSettings, layer: usize, warnings: &mut
         warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
         return 0.0;
     }
-    let smallest = THIN_FEATURE * settings.bead_width * settings.bead_width;
+    let smallest = THIN_FEATURE * width * width;
     if let [part] = centre.polygons()
         && part.holes.len() == island.holes.len()
     {

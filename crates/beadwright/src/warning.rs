@@ -19,6 +19,8 @@ pub enum WarningKind {
     ThinFeature,
     /// A whole island is narrower than a bead and gets none; the size is its area, mm².
     IslandTooSmall,
+    /// Part of the slice is narrower than the narrowest bead and gets that, which reaches outside; the size is its area, mm².
+    ThinWall,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,
     /// A layer between the lowest and the highest holds nothing.
@@ -107,6 +109,11 @@ impl WarningSummary {
                 "{layers}: {} narrower than a bead left empty, {total:.1} mm² in all, the largest {size:.1} mm² \
                  {place}.",
                 times("feature", "features")
+            ),
+            WarningKind::ThinWall => format!(
+                "{layers}: {} thinner than the narrowest bead and welded with that, {total:.1} mm² in all, the largest \
+                 {size:.1} mm² {place}. Metal lies beside them.",
+                times("wall", "walls")
             ),
             WarningKind::IslandTooSmall => format!(
                 "{layers}: {} narrower than a bead left out, {total:.1} mm² in all, the largest {size:.1} mm² \

@@ -104,7 +104,7 @@ fn normals_have_length_one_and_point_outward() {
 fn prisms_have_the_volume_of_their_formula() {
     assert_close(volume("cross"), (2.0 * 100.0 * 36.0 - 36.0 * 36.0) * 20.0, 1e-6);
     assert_close(volume("star"), 5.0 * 80.0 * 34.0 * (PI / 5.0).sin() * 20.0, 1e-6);
-    assert_close(volume("tian"), (120.0 * 120.0 - 4.0 * 36.0 * 36.0) * 26.0, 1e-6);
+    assert_close(volume("tian"), (100.0 * 100.0 - 4.0 * 43.25 * 43.25) * 26.0, 1e-6);
 }
 
 #[test]

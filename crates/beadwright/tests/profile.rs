@@ -51,7 +51,7 @@ fn built_in_profiles_have_no_notes() {
 fn a_misspelt_name_gets_the_nearest_or_all() {
     let error = |name: &str| Profile::built_in(name).unwrap_err().to_string();
     assert!(error("plasma-304").contains("Did you mean \"plasma-304-cnc\"?"));
-    assert!(error("zzz").contains(&format!("Known: {KUKA}, {CNC}, {ABB}.")), "{}", error("zzz"));
+    assert!(error("zzz").contains(&format!("Known: {KUKA}, {ABB}, {CNC}, fdm-abs-0.4.")), "{}", error("zzz"));
 }
 
 #[test]

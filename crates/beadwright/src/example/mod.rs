@@ -2,14 +2,18 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `cross`, `gear`, `plate`, `propeller`, `star`, `tian`, `vase` | one part each |
+//! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one massive part each |
+//! | [`blade`], `gourd`, `pot`, `tian` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 //! | `solid` | outlines become closed triangle meshes |
 
+pub mod blade;
 mod cross;
 mod gear;
+mod gourd;
 mod outline;
 mod plate;
+mod pot;
 mod propeller;
 mod solid;
 mod star;
@@ -32,6 +36,11 @@ pub struct Example {
 
 /// Every example, by name.
 pub const ALL: &[Example] = &[
+    Example {
+        name: "blade",
+        about: "blade, an arched 3.5 mm wall that turns by 25° on its way up, 92.5 × 28.4 × 100 mm",
+        build: blade::build,
+    },
     Example { name: "cross", about: "cross with 36 mm wide arms, 100 × 100 × 20 mm", build: cross::build },
     Example {
         name: "gear",
@@ -39,9 +48,19 @@ pub const ALL: &[Example] = &[
         build: gear::build,
     },
     Example {
+        name: "gourd",
+        about: "bottle gourd with a 4 mm wall, open below and above, 120 × 120 × 200 mm",
+        build: gourd::build,
+    },
+    Example {
         name: "plate",
         about: "plate with rounded corners and five holes from 10 to 30 mm, 120 × 80 × 12 mm",
         build: plate::build,
+    },
+    Example {
+        name: "pot",
+        about: "pot with a 4 mm wall, square below and round above, 100 × 100 × 80 mm",
+        build: pot::build,
     },
     Example {
         name: "propeller",
@@ -51,7 +70,7 @@ pub const ALL: &[Example] = &[
     Example { name: "star", about: "five-pointed star of 80 mm radius, 152.2 × 144.7 × 20 mm", build: star::build },
     Example {
         name: "tian",
-        about: "frame like the character 田, four openings between 16 mm walls, 120 × 120 × 26 mm",
+        about: "frame like the character 田, four openings between 4.5 mm walls, 100 × 100 × 26 mm",
         build: tian::build,
     },
     Example {

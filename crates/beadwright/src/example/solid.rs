@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use planar::triangulate::triangulate;
 use planar::{Polygon, Ring};
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// A closed surface of triangles, mm.
@@ -54,6 +55,26 @@ impl Solid {
             }
         }
         solid
+    }
+
+    /// With one vertex in every place (to 1 nm), and without the triangles that have no area then.
+    pub(crate) fn welded(self) -> Self {
+        let mut numbers = HashMap::new();
+        let mut welded = Self::default();
+        let number: Vec<u32> = self
+            .vertices
+            .iter()
+            .map(|&vertex| {
+                let key = (vertex * 1e6).round().as_i64vec3();
+                *numbers.entry(key).or_insert_with(|| {
+                    welded.vertices.push(vertex);
+                    welded.vertices.len() as u32 - 1
+                })
+            })
+            .collect();
+        let triangles = self.triangles.iter().map(|t| t.map(|i| number[i as usize]));
+        welded.triangles = triangles.filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+        welded
     }
 
     /// The wall between a ring of `count` vertices that begins at `low` and the one above that begins at `high`.

@@ -4,8 +4,8 @@ use super::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 
-const SIZE: f64 = 120.0;
-const WALL: f64 = 16.0;
+const SIZE: f64 = 100.0;
+const WALL: f64 = 4.5;
 const HEIGHT: f64 = 26.0;
 
 pub(super) fn build() -> Solid {

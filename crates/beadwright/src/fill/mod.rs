@@ -10,12 +10,14 @@
 //! | [`contour`] | rings parallel to the boundary, until nothing is left |
 //! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
 //! | [`hybrid`] | contours, and their pockets filled along their medial axis (Zhao et al. 2023) |
+//! | [`wall`] | thin walls along their middle, in the fewest paths that do not cross (Li et al.) |
 
 pub mod angle;
 pub mod compound;
 pub mod contour;
 pub mod hybrid;
 pub mod raster;
+pub mod wall;
 pub mod zigzag;
 
 use crate::pass::Along;
@@ -25,8 +27,8 @@ use planar::{Join, Polygon, Region, Ring};
 use serde::{Deserialize, Serialize};
 
 /// The strategies by name.
-pub const STRATEGIES: [&dyn Strategy; 5] =
-    [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound, &hybrid::Hybrid];
+pub const STRATEGIES: [&dyn Strategy; 6] =
+    [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound, &hybrid::Hybrid, &wall::Wall];
 
 /// The strategy of that name.
 pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
@@ -45,6 +47,16 @@ pub trait Strategy: Sync {
     fn infill(&self, _island: &Polygon, _settings: &FillSettings) -> Region {
         Region::default()
     }
+
+    /// What is narrower than this gets no metal, mm.
+    fn narrowest(&self, settings: &FillSettings) -> f64 {
+        settings.bead_width
+    }
+
+    /// Whether what is narrower gets metal all the same, that then lies beside it too.
+    fn welds_thin_walls(&self) -> bool {
+        false
+    }
 }
 
 /// What a pass is for.
@@ -57,6 +69,8 @@ pub enum PassKind {
     Infill,
     /// Fill of pockets between contours.
     Skeleton,
+    /// Along the middle of a wall.
+    Wall,
 }
 
 impl PassKind {
@@ -66,6 +80,7 @@ impl PassKind {
             Self::Contour => "contour",
             Self::Infill => "infill",
             Self::Skeleton => "skeleton",
+            Self::Wall => "wall",
         }
     }
 }
@@ -170,6 +185,8 @@ pub struct FillSettings<'a> {
     pub min_pass_length: f64,
     /// Thresholds of the hybrid.
     pub hybrid: hybrid::HybridSettings,
+    /// How walls are laid.
+    pub wall: wall::WallSettings,
 }
 
 impl FillSettings<'_> {

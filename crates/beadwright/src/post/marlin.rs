@@ -155,7 +155,7 @@ impl MarlinGcode {
 /// The word that viewers know.
 fn type_name(kind: PassKind) -> &'static str {
     match kind {
-        PassKind::Contour => "External perimeter",
+        PassKind::Contour | PassKind::Wall => "External perimeter",
         PassKind::Infill => "Solid infill",
         PassKind::Skeleton => "Gap fill",
     }

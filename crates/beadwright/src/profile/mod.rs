@@ -12,6 +12,7 @@ pub use read::ProfileError;
 
 use crate::bead::{Bead, MassBalance, Overlap};
 use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};
+use crate::fill::wall::WallSettings;
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
 use crate::motion::Motion;
 use crate::order::Method;
@@ -22,8 +23,8 @@ use serde::{Deserialize, Serialize};
 pub const BUILT_IN: [(&str, &str); 4] = [
     ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
     ("cmt-steel-abb", include_str!("../../../../profiles/cmt-steel-abb.toml")),
-    ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
     ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
+    ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
 ];
 
 /// A process on a cell.
@@ -50,6 +51,9 @@ pub struct Profile {
     /// Thresholds of the strategy `hybrid`; optional.
     #[serde(default)]
     pub hybrid: Hybrid,
+    /// How the strategy `wall` lays; optional.
+    #[serde(default)]
+    pub wall: Wall,
     /// Order of passes; optional.
     #[serde(default)]
     pub order: Order,
@@ -154,7 +158,7 @@ pub enum RasterTurn {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fill {
-    /// Strategy: `raster`, `zigzag`, `contour`, `compound` or `hybrid`.
+    /// Strategy: `raster`, `zigzag`, `contour`, `compound`, `hybrid` or `wall`.
     pub strategy: String,
     /// Model of the overlap of neighbouring beads, which gives the stepover.
     pub overlap: Overlap,
@@ -249,6 +253,41 @@ impl Default for Hybrid {
             order: HybridOrder::SkeletonFirst,
             end_overlap: 0.5,
             tip_reach: 0.4,
+            min_width: 0.7,
+            max_width: 1.4,
+        }
+    }
+}
+
+/// How the strategy `wall` lays (Li et al.); every key has a default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Wall {
+    /// Ends and crossings of centre-lines nearer than this are one junction, in bead widths; default 0.5.
+    pub junction_tolerance: f64,
+    /// How far the path may leave the middle of the wall where it is smooth, mm; default 0.02.
+    pub chord_error: f64,
+    /// Radius of the path's corners, in bead widths; default 0.5.
+    pub corner_radius: f64,
+    /// How far paths that touch at a junction and turn away keep from its middle, in bead widths; default 0.4.
+    pub junction_gap: f64,
+    /// How far the end of a path at a junction stays away from the paths that pass there, in bead widths; default 0.4.
+    pub end_gap: f64,
+    /// The narrowest bead of the process, in bead widths: thinner walls are welded with it; default 0.7.
+    pub min_width: f64,
+    /// The widest bead of the process, in bead widths; default 1.4.
+    pub max_width: f64,
+}
+
+impl Default for Wall {
+    fn default() -> Self {
+        Self {
+            junction_tolerance: 0.5,
+            chord_error: 0.02,
+            corner_radius: 0.5,
+            junction_gap: 0.4,
+            end_gap: 0.4,
             min_width: 0.7,
             max_width: 1.4,
         }
@@ -454,6 +493,19 @@ impl Profile {
             min_pass_length: fill.min_pass_length,
             layer,
             hybrid: self.hybrid_settings(),
+            wall: self.wall_settings(),
+        }
+    }
+
+    fn wall_settings(&self) -> WallSettings {
+        let (wall, w) = (&self.wall, self.bead.width);
+        WallSettings {
+            tolerance: wall.junction_tolerance * w,
+            chord_error: wall.chord_error,
+            corner_radius: wall.corner_radius,
+            junction_gap: wall.junction_gap,
+            end_gap: wall.end_gap,
+            width_limits: (wall.min_width * w, wall.max_width * w),
         }
     }
 

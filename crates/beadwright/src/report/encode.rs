@@ -127,6 +127,7 @@ fn kind(kind: PassKind) -> u32 {
         PassKind::Contour => 0,
         PassKind::Infill => 1,
         PassKind::Skeleton => 2,
+        PassKind::Wall => 3,
     }
 }
 
@@ -161,6 +162,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::OpenContourDropped => format!("open contour of {size:.1} mm dropped"),
         WarningKind::ContoursUnited => format!("contours united, {size:.1} mm² changed"),
         WarningKind::ThinFeature => format!("{size:.1} mm² narrower than a bead left empty"),
+        WarningKind::ThinWall => format!("{size:.1} mm² of wall thinner than the narrowest bead"),
         WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
         WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),

@@ -13,6 +13,8 @@ const CONTOUR: &str = "#1f6fd6";
 const INFILL: &str = "#e8862a";
 /// Colour of what fills pockets.
 const SKELETON: &str = "#7e57c2";
+/// Colour of walls.
+const WALL: &str = "#0f8b8d";
 /// Colour of moves without arc.
 const TRAVEL: &str = "#6b7280";
 /// Colour of arc starts.
@@ -32,7 +34,7 @@ pub fn layer(layer: &Layer, title: &str) -> String {
     islands(&mut svg, layer, frame.unit);
     beads(&mut svg, layer, frame.unit);
     marks(&mut svg, layer, frame.unit);
-    frame.legend(&mut svg);
+    frame.legend(&mut svg, layer.passes.iter().any(|pass| pass.kind == PassKind::Wall));
     svg.push_str("</svg>\n");
     svg
 }
@@ -70,17 +72,19 @@ impl Frame {
         svg
     }
 
-    /// Colours and a scale bar below the picture.
-    fn legend(&self, svg: &mut String) {
+    /// Colours and a scale bar below the picture; walls stand alone.
+    fn legend(&self, svg: &mut String, walls: bool) {
         let (unit, y) = (self.unit, self.low.y + self.size.y - 4.0 * self.unit);
         let mut at = DVec2::new(self.low.x + 4.0 * unit, y);
         let kinds = [
             ("contour", CONTOUR, 11.0),
             ("infill", INFILL, 8.6),
             ("skeleton", SKELETON, 12.0),
+            ("wall", WALL, 6.4),
             ("travel", TRAVEL, 8.8),
         ];
-        for (name, colour, width) in kinds {
+        let shown = |name: &str| name == "travel" || (name == "wall") == walls;
+        for (name, colour, width) in kinds.into_iter().filter(|(name, ..)| shown(name)) {
             let (thick, dash) = if name == "travel" { (0.35, "1.4 0.9") } else { (1.8, "none") };
             line(svg, at - DVec2::Y * 0.8 * unit, at + DVec2::new(3.0, -0.8) * unit, thick * unit);
             let dash = if dash == "none" { String::new() } else { dashes(unit) };
@@ -154,6 +158,7 @@ fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>,
         PassKind::Contour => CONTOUR,
         PassKind::Infill => INFILL,
         PassKind::Skeleton => SKELETON,
+        PassKind::Wall => WALL,
     };
     svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
     push_fixed(svg, width, 3);

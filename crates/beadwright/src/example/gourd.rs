@@ -1,0 +1,32 @@
+//! A bottle gourd: two bellies, a waist and a neck, open below and above. The wall is measured level, as every layer
+//! shows it.
+
+use super::solid::Solid;
+use glam::DVec2;
+use std::f64::consts::PI;
+
+const HEIGHT: f64 = 200.0;
+const WALL: f64 = 4.0;
+/// Heights and outer radii between which the outside swings: foot, belly, waist, upper belly, mouth.
+const SWINGS: [(f64, f64); 5] = [(0.0, 42.0), (60.0, 60.0), (120.0, 26.0), (155.0, 38.0), (HEIGHT, 15.0)];
+/// Height between two points of the outside; its chords stay within 0.013 mm.
+const STEP: f64 = 1.25;
+/// Chords around stay within 0.018 mm.
+const SEGMENTS: u32 = 128;
+
+pub(super) fn build() -> Solid {
+    let count = (HEIGHT / STEP) as u32;
+    let at = |k: u32, in_by: f64| {
+        let z = f64::from(k) * STEP;
+        DVec2::new(outside(z) - in_by, z)
+    };
+    let profile: Vec<DVec2> = (0..=count).map(|k| at(k, 0.0)).chain((0..=count).rev().map(|k| at(k, WALL))).collect();
+    Solid::revolve(&profile, SEGMENTS)
+}
+
+/// Outer radius at height `z`, mm: half a cosine from swing to swing.
+fn outside(z: f64) -> f64 {
+    let upper = SWINGS.partition_point(|swing| swing.0 < z).clamp(1, SWINGS.len() - 1);
+    let ((low, from), (high, to)) = (SWINGS[upper - 1], SWINGS[upper]);
+    from + (to - from) * (1.0 - (PI * (z - low) / (high - low)).cos()) / 2.0
+}

@@ -1,0 +1,43 @@
+//! A pot without a bottom, square below and round above. The wall is measured level, as every layer shows it.
+
+use super::outline;
+use super::solid::Solid;
+use glam::DVec2;
+use planar::{Polygon, Ring};
+use std::f64::consts::FRAC_PI_2;
+
+const HEIGHT: f64 = 80.0;
+const WALL: f64 = 4.0;
+/// Outer half width at the foot and at the rim.
+const HALF_WIDTH: (f64, f64) = (50.0, 30.0);
+/// Outer corner radius at the foot; at the rim it is the half width, a circle.
+const FOOT_RADIUS: f64 = 8.0;
+/// Corners have as many chords as keep within 0.03 mm at four times the radius of the rim: 0.0075 mm.
+const FINE: f64 = 4.0;
+
+pub(super) fn build() -> Solid {
+    let foot = Polygon { outer: ring(0.0), holes: vec![ring(WALL).reversed()] };
+    // Every point moves straight upwards and inwards, so two levels are exact.
+    Solid::loft(&foot, &[0.0, HEIGHT], raised).welded()
+}
+
+/// The outline at the foot, moved in by so much: straight sides and round corners.
+fn ring(in_by: f64) -> Ring {
+    let corners = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
+    let points = corners.iter().enumerate().flat_map(|(k, side)| {
+        let from = FRAC_PI_2 * k as f64;
+        let unit = outline::arc(DVec2::ZERO, FINE * HALF_WIDTH.1, from, from + FRAC_PI_2);
+        unit.into_iter().map(move |p| *side * (HALF_WIDTH.0 - FOOT_RADIUS) + p.normalize() * (FOOT_RADIUS - in_by))
+    });
+    Ring::new(points.collect())
+}
+
+/// Where a point of the foot has gone at height `z`, mm.
+fn raised(p: DVec2, z: f64) -> DVec2 {
+    let side = p.signum();
+    let arm = p - side * (HALF_WIDTH.0 - FOOT_RADIUS);
+    let share = z / HEIGHT;
+    let half_width = HALF_WIDTH.0 + share * (HALF_WIDTH.1 - HALF_WIDTH.0);
+    let radius = FOOT_RADIUS + share * (HALF_WIDTH.1 - FOOT_RADIUS);
+    side * (half_width - radius) + arm.normalize_or_zero() * (arm.length() + radius - FOOT_RADIUS)
+}

@@ -1,0 +1,153 @@
+//! Thin walls along their middle (Li et al., section 2.2): few continuous paths that never cross.
+//!
+//! | step | file |
+//! | --- | --- |
+//! | the medial axis without corner branches, cut at corners | [`centre`] |
+//! | a graph of nodes and edges | [`graph`] |
+//! | edges straight into their nodes, and fitted smooth | [`smooth`] |
+//! | one bead or more along every edge, by its thickness | [`strand`] |
+//! | the fewest trails that lay all strands and never cross | [`trails`] |
+//! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
+//!
+//! Every second layer runs all paths backwards, the last one first: it starts where the layer below ended.
+//!
+//! A graph of one bead everywhere gets max(1, odd/2) arc starts a layer, the least there can be. Where beads lie side by
+//! side, a path never turns from one to its neighbour to save an arc start, except at the end of a wall: it would lay two
+//! hairpins beside each other.
+
+pub mod centre;
+pub mod graph;
+pub mod rounding;
+pub mod smooth;
+pub mod strand;
+pub mod trails;
+
+use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use crate::pass::Along;
+use glam::DVec2;
+use graph::{Graph, Line};
+use planar::Polygon;
+use rounding::Path;
+
+/// Beads along the middle of walls.
+pub struct Wall;
+
+/// How walls are laid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WallSettings {
+    /// Ends and crossings nearer than this are one junction, mm.
+    pub tolerance: f64,
+    /// How far the centre-line may leave the medial axis, mm.
+    pub chord_error: f64,
+    /// Radius of corners, in bead widths.
+    pub corner_radius: f64,
+    /// How far paths that touch at a junction keep away from it, in bead widths.
+    pub junction_gap: f64,
+    /// How far an end at a junction stays away from the paths that pass, in bead widths.
+    pub end_gap: f64,
+    /// The narrowest and the widest bead of the process, mm.
+    pub width_limits: (f64, f64),
+}
+
+/// The medial axis is sampled so often across a bead width.
+const SAMPLES: f64 = 20.0;
+
+impl Strategy for Wall {
+    fn name(&self) -> &'static str {
+        "wall"
+    }
+
+    fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
+        let lines = centre::lines(island, settings.bead_width / SAMPLES);
+        along(&lines, settings)
+    }
+
+    fn narrowest(&self, settings: &FillSettings) -> f64 {
+        settings.wall.width_limits.0
+    }
+
+    fn welds_thin_walls(&self) -> bool {
+        true
+    }
+}
+
+/// The smooth graph of centre-lines.
+pub fn smooth_graph(lines: &[Line], settings: &FillSettings) -> Graph {
+    let mut graph = Graph::of(lines, settings.wall.tolerance);
+    smooth::straighten(&mut graph);
+    // A third for the curve, one for its chords, one for the points that are left out later.
+    smooth::fit(&mut graph, settings.wall.chord_error / 3.0);
+    graph
+}
+
+/// The passes along centre-lines.
+pub fn along(lines: &[Line], settings: &FillSettings) -> Fill {
+    let graph = smooth_graph(lines, settings);
+    let (strands, network) = strand::strands(&graph, settings);
+    let trails = trails::trails(&network);
+    let paths = rounding::paths(&strands, &network, &trails, &settings.wall);
+    let mut passes: Vec<Pass> = in_order(paths).into_iter().map(pass).collect();
+    if settings.layer % 2 == 1 {
+        passes.reverse();
+        passes.iter_mut().for_each(reverse);
+    }
+    Fill { stages: vec![passes], fixed_order: true }
+}
+
+/// Each path next to the end of the one before; closed ones run counter-clockwise.
+fn in_order(mut paths: Vec<Path>) -> Vec<Path> {
+    paths.retain(|path| path.points.len() >= 2);
+    let ring = |path: &Path| planar::Ring::new(path.points.iter().map(|p| p.at).collect()).area();
+    for path in paths.iter_mut().filter(|path| path.closed && ring(path) < 0.0) {
+        path.points[1..].reverse();
+    }
+    let mut ordered: Vec<Path> = Vec::with_capacity(paths.len());
+    while !paths.is_empty() {
+        let torch = ordered.last().and_then(|path| if path.closed { path.points.first() } else { path.points.last() });
+        let distance = |at: Option<&strand::Point>| match (torch, at) {
+            (Some(torch), Some(point)) => torch.at.distance_squared(point.at),
+            _ => 0.0,
+        };
+        let near = |path: &Path| {
+            let (start, end) = (distance(path.points.first()), distance(path.points.last()));
+            if path.closed || start <= end { (start, false) } else { (end, true) }
+        };
+        let nearest = (0..paths.len()).min_by(|&a, &b| near(&paths[a]).0.total_cmp(&near(&paths[b]).0)).unwrap_or(0);
+        let backwards = near(&paths[nearest]).1;
+        let mut path = paths.remove(nearest);
+        if backwards {
+            path.points.reverse();
+        }
+        ordered.push(path);
+    }
+    ordered
+}
+
+/// A path as a pass; on the way from a point to the next holds the mean of both widths.
+fn pass(path: Path) -> Pass {
+    let points: Vec<DVec2> = path.points.iter().map(|p| p.at).collect();
+    let mut widths: Vec<f64> = path.points.iter().map(|p| p.width).collect();
+    let first = widths.first().copied().unwrap_or_default();
+    let width = if widths.iter().all(|&width| width == first) {
+        Along::Same(first)
+    } else {
+        let next: Vec<f64> = widths.iter().copied().cycle().skip(1).take(widths.len()).collect();
+        let count = if path.closed { widths.len() } else { widths.len().saturating_sub(1) };
+        widths.iter_mut().zip(next).take(count).for_each(|(width, next)| *width = (*width + next) / 2.0);
+        Along::Each(widths)
+    };
+    Pass { kind: PassKind::Wall, closed: path.closed, points, width, reversible: false }
+}
+
+/// The pass run backwards, from the same point if it is closed.
+fn reverse(pass: &mut Pass) {
+    if !pass.closed {
+        pass.points.reverse();
+        pass.width.reverse();
+        return;
+    }
+    pass.points[1..].reverse();
+    if let Along::Each(widths) = &mut pass.width {
+        widths.reverse();
+    }
+}

@@ -1,0 +1,126 @@
+//! Edges made smooth: straight into their nodes, and fitted.
+//!
+//! Near a corner or a junction the medial axis leaves the middle of the walls, since the disc reaches into the room
+//! where they meet. There its radius falls on the way out; an edge keeps only what lies beyond, and goes on straight to the
+//! node, which is put where these lines come nearest to each other (least squares). The thickness there is that of the wall.
+
+use super::graph::Graph;
+use crate::curve::Nurbs;
+use glam::{DMat2, DVec2, DVec3};
+use planar::medial::Node;
+
+/// A radius that falls by less than this per mm is that of the wall.
+const LEVEL: f64 = 0.02;
+/// So much farther, in radii, the wall is taken as undisturbed: there the radius levels off slowly.
+const MARGIN: f64 = 0.4;
+/// The slope of the radius and the direction of a wall are judged over this part of the radius.
+const WINDOW: f64 = 0.5;
+/// So far from a node, in its radii, an edge may be made straight.
+const FARTHEST: f64 = 3.0;
+/// At most this part of an edge is made straight at either end.
+const MOST: f64 = 0.45;
+
+/// Straightens the ends of all edges at nodes where edges meet, and moves the nodes there.
+pub fn straighten(graph: &mut Graph) {
+    let degrees = graph.degrees();
+    let rings: Vec<bool> = graph.edges.iter().map(|edge| graph.is_ring(edge, &degrees)).collect();
+    let mut lines: Vec<Vec<(DVec2, DVec2)>> = vec![Vec::new(); graph.places.len()];
+    for (edge, is_ring) in graph.edges.iter_mut().zip(&rings) {
+        for node in [edge.from, edge.to] {
+            if degrees[node] > 1 && !is_ring {
+                lines[node].extend(shorten(&mut edge.nodes));
+            }
+            edge.nodes.reverse();
+        }
+    }
+    for (place, lines) in graph.places.iter_mut().zip(&lines) {
+        *place = nearest_to(lines, *place);
+    }
+    for (edge, _) in graph.edges.iter_mut().zip(&rings).filter(|(_, is_ring)| !*is_ring) {
+        for node in [edge.from, edge.to] {
+            lead_to(&mut edge.nodes, graph.places[node], degrees[node] > 1);
+            edge.nodes.reverse();
+        }
+    }
+}
+
+/// Takes the nodes near the first one away, as far as the radius falls; where the wall begins, and its direction from
+/// there to the node.
+fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
+    let radius = nodes.first()?.radius;
+    let mut along = vec![0.0];
+    for w in nodes.windows(2) {
+        along.push(along[along.len() - 1] + w[0].at.distance(w[1].at));
+    }
+    let limit = (FARTHEST * radius).min(MOST * along[along.len() - 1]);
+    let ahead = |i: usize| {
+        let far = along.partition_point(|&s| s < along[i] + WINDOW * nodes[i].radius);
+        far.min(nodes.len() - 1).max(i + 1).min(nodes.len() - 1)
+    };
+    let falls = |i: usize| {
+        let far = ahead(i);
+        nodes[i].radius - nodes[far].radius > LEVEL * (along[far] - along[i])
+    };
+    let level = (0..nodes.len()).find(|&i| along[i] > limit || !falls(i))?;
+    // Where nothing falls nothing is disturbed.
+    let undisturbed = if level == 0 { 0.0 } else { (along[level] + MARGIN * nodes[level].radius).min(limit) };
+    let first = along.partition_point(|&s| s < undisturbed).min(nodes.len() - 1);
+    let (wall, far) = (nodes[first], nodes[ahead(first)]);
+    let way = (wall.at - far.at).try_normalize()?;
+    nodes.drain(..first);
+    Some((wall.at, way))
+}
+
+/// The place with the least sum of squared distances from lines, each a point and a direction; `fallback` where they
+/// are parallel or meet far away.
+fn nearest_to(lines: &[(DVec2, DVec2)], fallback: DVec2) -> DVec2 {
+    let mut matrix = DMat2::ZERO;
+    let mut right = DVec2::ZERO;
+    for (point, way) in lines {
+        let normal = way.perp();
+        let outer = DMat2::from_cols(normal * normal.x, normal * normal.y);
+        matrix += outer;
+        right += outer * *point;
+    }
+    let reach = lines.iter().map(|(point, _)| point.distance(fallback)).fold(0.0, f64::max);
+    if lines.len() < 2 || matrix.determinant() < 0.05 {
+        return fallback;
+    }
+    let place = matrix.inverse() * right;
+    if place.distance(fallback) <= reach.max(1e-6) { place } else { fallback }
+}
+
+/// Leads an edge straight from a node to where its wall begins; the thickness is that of the wall.
+fn lead_to(nodes: &mut Vec<Node>, place: DVec2, straight: bool) {
+    let Some(&wall) = nodes.first() else { return };
+    if !straight {
+        nodes[0].at = place;
+        return;
+    }
+    let (length, step) = (wall.at.distance(place), 0.25 * wall.radius);
+    if length < 1e-9 {
+        return;
+    }
+    let count = (length / step.max(1e-6)).ceil().clamp(1.0, 50.0) as usize;
+    let lead = (0..count).map(|k| Node { at: place.lerp(wall.at, k as f64 / count as f64), radius: wall.radius });
+    nodes.splice(0..0, lead);
+}
+
+/// Fits a smooth curve to every edge, place and thickness together, within `error` (mm), and takes chords of it that leave
+/// it by no more than that. What cannot be fitted stays as it is.
+pub fn fit(graph: &mut Graph, error: f64) {
+    let degrees = graph.degrees();
+    let rings: Vec<bool> = graph.edges.iter().map(|edge| graph.is_ring(edge, &degrees)).collect();
+    for (edge, closed) in graph.edges.iter_mut().zip(rings) {
+        let mut points: Vec<DVec3> = edge.nodes.iter().map(|n| n.at.extend(2.0 * n.radius)).collect();
+        if closed {
+            points.pop();
+        }
+        let Ok(fit) = Nurbs::fitted(&points, closed, error) else { continue };
+        let node = |p: DVec3| Node { at: p.truncate(), radius: p.z / 2.0 };
+        edge.nodes = fit.curve.points_by_chord(error).into_iter().map(node).collect();
+        if let (true, Some(first)) = (closed, edge.nodes.first()) {
+            graph.places[edge.from] = first.at;
+        }
+    }
+}
