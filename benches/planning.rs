@@ -6,12 +6,16 @@
 use beadwright::deposit::Judge;
 use beadwright::example;
 use beadwright::model::{self, Mesh};
+use beadwright::order::Method;
+use beadwright::order::tour::{Ends, Stop};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::slice::{SliceOptions, Slicer};
 use beadwright::task::Task;
 use divan::{Bencher, black_box};
+use glam::DVec2;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 use std::io::Read;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -124,12 +128,41 @@ fn propeller() -> (Mesh, Profile) {
 #[divan::bench(args = [1250, 2500, 5000, 10_000, 20_000], sample_count = 10)]
 fn hybrid_layer(bencher: Bencher, vertices: usize) {
     let place = |k: usize| {
-        let turn = k as f64 / vertices as f64 * std::f64::consts::TAU;
+        let turn = k as f64 / vertices as f64 * TAU;
         let noise = 0.005 * ((k * 7919) % 101) as f64 / 100.0;
-        glam::DVec2::from_angle(turn) * (115.0 + 10.0 * (9.0 * turn).sin() + noise)
+        DVec2::from_angle(turn) * (115.0 + 10.0 * (9.0 * turn).sin() + noise)
     };
     let island = beadwright::planar::Polygon::simple(beadwright::planar::Ring::new((0..vertices).map(place).collect()));
     let settings = Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0);
     let hybrid = beadwright::fill::strategy("hybrid").unwrap();
     bencher.bench(|| hybrid.fill(black_box(&island), &settings));
+}
+
+/// Rings in a square of 100 mm, as contours of a layer.
+fn rings(count: usize) -> Vec<Stop> {
+    let mut seed = 1_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as f64 / (1_u64 << 31) as f64
+    };
+    let mut ring = || {
+        let (x, y, radius, corners) = (100.0 * next(), 100.0 * next(), 2.0 + 8.0 * next(), 3 + (6.0 * next()) as usize);
+        let corner = |k: usize| DVec2::new(x, y) + DVec2::from_angle(TAU * k as f64 / corners as f64) * radius;
+        Stop::ring((0..corners).map(corner).collect())
+    };
+    (0..count).map(|_| ring()).collect()
+}
+
+/// Order and start points by the default search.
+#[divan::bench(args = [9, 20, 50, 100, 200], sample_count = 10)]
+fn order_local_search(bencher: Bencher, count: usize) {
+    let stops = rings(count);
+    bencher.bench_local(|| Method::LocalSearch.tour(black_box(&stops), Ends::Closed));
+}
+
+/// The same by the ant colony of Han et al. 2018.
+#[divan::bench(args = [9, 20, 50, 100, 200], sample_count = 3)]
+fn order_ant_colony(bencher: Bencher, count: usize) {
+    let stops = rings(count);
+    bencher.bench_local(|| Method::AntColony.tour(black_box(&stops), Ends::Closed));
 }
