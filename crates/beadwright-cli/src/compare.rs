@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
-    let settings = deposit_settings(arguments.grid, &profile, &import);
+    let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds());
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();
     for name in &names {

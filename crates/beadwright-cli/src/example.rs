@@ -10,7 +10,8 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Name of the part.
     name: Option<String>,
-    /// File to write; NAME.stl when it is left out.
+    /// File to write; NAME.stl when it is left out. With a name that ends with .igs or .iges, the centre-lines of a thin
+    /// wall.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -27,7 +28,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let example = example::find(name)
         .with_context(|| format!("there is no example part \"{name}\". The parts are {}.", names()))?;
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.stl")));
-    write_file(&path, &example.stl())?;
+    let wants_curves = path.extension().is_some_and(|e| e == "igs" || e == "iges");
+    let bytes = match (wants_curves, example.iges()) {
+        (false, _) => example.stl(),
+        (true, Some(text)) => text.into_bytes(),
+        (true, None) => anyhow::bail!("{name} is no thin wall and has no centre-lines; write it as STL"),
+    };
+    write_file(&path, &bytes)?;
     writeln!(out, "{}: {}", path.display(), example.about)?;
     Ok(())
 }

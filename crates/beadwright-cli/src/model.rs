@@ -1,17 +1,20 @@
 //! Model files: mapped into memory, imported and placed.
 
 use anyhow::Context;
-use beadwright::model::{self, Import, Units, units};
+use beadwright::model::wall_curves::WallCurves;
+use beadwright::model::{self, Import, RepairReport, Units, iges, units};
+use beadwright::planar::Bounds;
 use beadwright::task::Task;
-use glam::DVec3;
+use glam::{DAffine3, DQuat, DVec2, DVec3};
 use memmap2::Mmap;
 use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Which model, and how it is placed.
 #[derive(clap::Args)]
 pub(crate) struct Model {
-    /// The model: binary or ASCII STL.
+    /// The model: binary or ASCII STL; for `plan`, also IGES with the centre-lines of walls.
     pub(crate) model: PathBuf,
     /// Unit of the model's coordinates; asked for when the part would be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]
@@ -61,7 +64,63 @@ pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
     import.with_context(context)
 }
 
+/// What is planned.
+pub(crate) enum Part {
+    /// A solid.
+    Mesh(Import),
+    /// The centre-lines of a wall, up to a height, mm, and what was wrong with the file.
+    Curves { curves: WallCurves, height: f64, warnings: Vec<String> },
+}
+
+impl Part {
+    /// Lowest and highest coordinates, mm.
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        match self {
+            Self::Mesh(import) => import.mesh.bounds(),
+            Self::Curves { curves, height, .. } => {
+                let sections = [0.0, *height].into_iter().flat_map(|z| curves.at(z, 1.0));
+                let points = sections.flat_map(|section| section.points);
+                let bounds = Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+                (bounds.min.extend(0.0), bounds.max.extend(*height))
+            }
+        }
+    }
+
+    /// What was mended; nothing for curves.
+    pub(crate) fn repair(&self) -> RepairReport {
+        match self {
+            Self::Mesh(import) => import.repair.clone(),
+            Self::Curves { .. } => RepairReport::default(),
+        }
+    }
+}
+
 impl Model {
+    /// The solid or the curves, placed. Curves of one height need one to end at, mm.
+    pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
+        let name = || format!("{}", self.model.display());
+        let mut head = Vec::new();
+        File::open(&self.model).with_context(name)?.take(80).read_to_end(&mut head).with_context(name)?;
+        if !model::is_iges(&head) {
+            anyhow::ensure!(height.is_none(), "--height belongs to walls given by curves (IGES), not to a solid");
+            return Ok(Part::Mesh(self.placed(bead_width, task)?));
+        }
+        let file = iges::read(&std::fs::read(&self.model).with_context(name)?).with_context(name)?;
+        let unit = self.units.map_or(1.0, |units| units.in_mm() / file.unit_mm);
+        let turn = self.turn * std::f64::consts::PI / 180.0;
+        let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
+        let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
+        let curves = WallCurves::of_iges(&file, &place).with_context(name)?;
+        let height = height.or(Some(curves.height()).filter(|height| *height > 0.0));
+        let height = height.with_context(|| {
+            format!("{}: the curves lie at one height; --height says how high the wall grows, mm", self.model.display())
+        })?;
+        let unread = file.entities.iter().filter(|e| e.unread > 0);
+        let unread = unread.map(|e| format!("{} of entity {} ({}) not read.", e.unread, e.entity, e.name));
+        let warnings = file.warnings.iter().cloned().chain(unread).collect();
+        Ok(Part::Curves { curves, height, warnings })
+    }
+
     /// The part's name: the file name without its extension.
     pub(crate) fn part(&self) -> String {
         self.model.file_stem().map_or("part".to_owned(), |stem| stem.to_string_lossy().into_owned())

@@ -1,5 +1,6 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
+use crate::model::Part;
 use crate::output::Output;
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
@@ -11,7 +12,8 @@ use beadwright::post::{self, Chunk, Post};
 use beadwright::profile::Profile;
 use beadwright::program::Programmer;
 use beadwright::report::{self, Report};
-use beadwright::{model::Import, plan_file};
+use beadwright::{model::RepairReport, plan_file};
+use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -22,7 +24,10 @@ pub(crate) struct Arguments {
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// Strategy instead of the profile's: raster, zigzag, contour, compound or hybrid.
+    /// Height of a wall that is given by its centre-lines (IGES), mm; else that of the highest of them.
+    #[arg(long, value_name = "MM", value_parser = parse_height)]
+    height: Option<f64>,
+    /// Strategy instead of the profile's: raster, zigzag, contour, compound, hybrid or wall.
     #[arg(long, short, value_name = "NAME")]
     strategy: Option<String>,
     /// Let the strategy hybrid follow the paper to the letter.
@@ -54,6 +59,15 @@ pub(crate) struct Arguments {
     threads: Option<usize>,
 }
 
+fn parse_height(text: &str) -> Result<f64, String> {
+    let height: f64 = text.parse().map_err(|_| "a height in mm is expected".to_owned())?;
+    if (0.1..=20_000.0).contains(&height) {
+        Ok(height)
+    } else {
+        Err("the height must lie between 0.1 and 20000 mm".to_owned())
+    }
+}
+
 pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
     let step: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
     if (1e-3..=100.0).contains(&step) { Ok(step) } else { Err("the grid must lie between 0.001 and 100 mm".to_owned()) }
@@ -72,14 +86,22 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let posts = names.iter().map(|name| post::post(name, &part, &profile)).collect::<Result<Vec<_>, _>>()?;
 
     let (task, bar) = progress::task()?;
-    let import = arguments.model.placed(profile.bead.width, &task)?;
+    let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
+    let profile = if let Part::Curves { .. } = model {
+        profile::load(&arguments.profile, &with_wall(settings))?
+    } else {
+        profile
+    };
     let output = Output::new(&arguments.output)?;
     let programmer = Programmer::new(profile.travel.clearance);
-    let settings = deposit_settings(arguments.grid, &profile, &import);
+    let settings = deposit_settings(arguments.grid, &profile, model.bounds());
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();
     let mut files = Files { output, posts, programmer, pictures, settings, judge, report: None, first: true };
-    let planned = plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files);
+    let planned = match &model {
+        Part::Mesh(import) => plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files),
+        Part::Curves { curves, height, .. } => plan::plan_curves(&part, curves, *height, &profile, &task, &mut files),
+    };
     bar.finish_and_clear();
     let summary = planned.map_err(|error| match error {
         PlanError::Sink(error) => error,
@@ -87,15 +109,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
     })?;
     let figures = files.judge.as_ref().map(|judge| *judge.total());
-    let names = files.finish(&summary, &profile, &import)?;
+    let names = files.finish(&summary, &profile, &model.repair())?;
 
     let mut out = std::io::stdout().lock();
     if arguments.json {
         writeln!(out, "{}", serde_json::to_string_pretty(&metrics_json(&summary, figures.as_ref()))?)?;
     } else {
-        print_summary(&mut out, arguments, &profile, &import, &summary, figures.as_ref(), &names)?;
+        print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &names)?;
     }
     Ok(())
+}
+
+/// Curves are welded by the strategy for walls.
+fn with_wall(mut settings: Vec<String>) -> Vec<String> {
+    settings.push("fill.strategy=\"wall\"".to_owned());
+    settings
 }
 
 /// Where the layers go.
@@ -121,7 +149,7 @@ impl Files {
     }
 
     /// Writes what comes last, and moves everything to its place.
-    fn finish(mut self, summary: &Summary, profile: &Profile, import: &Import) -> anyhow::Result<Vec<String>> {
+    fn finish(mut self, summary: &Summary, profile: &Profile, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
         let leave = self.programmer.leave();
         self.each_post(|post| post.end(leave))?;
         self.output.append("plan.json", plan_file::tail())?;
@@ -130,7 +158,7 @@ impl Files {
         let mut names = self.output.names();
         names.push("report.html".to_owned());
         if let Some(report) = self.report.take() {
-            self.output.append("report.html", &report.finish(summary, profile, &import.repair, &names))?;
+            self.output.append("report.html", &report.finish(summary, profile, repair, &names))?;
         }
         self.output.commit()?;
         Ok(names)
@@ -164,8 +192,7 @@ impl Sink for Files {
 }
 
 /// How the layers of a part are judged: the grid as asked for, or one that fits the part.
-pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, import: &Import) -> DepositSettings {
-    let (low, high) = import.mesh.bounds();
+pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, (low, high): (DVec3, DVec3)) -> DepositSettings {
     let bounds = Bounds { min: low.truncate(), max: high.truncate() };
     let settings = plan::deposit_settings(profile);
     match grid {
@@ -188,22 +215,27 @@ fn print_summary(
     out: &mut impl Write,
     arguments: &Arguments,
     profile: &Profile,
-    import: &Import,
+    model: &Part,
     summary: &Summary,
     figures: Option<&Figures>,
     files: &[String],
 ) -> std::io::Result<()> {
-    let (part, size, m) = (arguments.model.part(), import.mesh.size(), &summary.metrics);
-    writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {} triangles", size.x, size.y, size.z, import.repair.triangles)?;
+    let (part, (low, high), m) = (arguments.model.part(), model.bounds(), &summary.metrics);
+    let (size, repair) = (high - low, model.repair());
+    let (of, told) = match model {
+        Part::Mesh(_) => (format!("{} triangles", repair.triangles), &[][..]),
+        Part::Curves { curves, warnings, .. } => (format!("{} centre-lines", curves.count()), &warnings[..]),
+    };
+    writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
     writeln!(out)?;
     for (name, value) in totals(m).into_iter().chain(figures.map(deposit_rows).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;
     }
     writeln!(out)?;
-    let repairs = import.repair.sentences();
+    let repairs = repair.sentences().into_iter().chain(told.iter().cloned());
     let events = summary.warnings.summaries().map(|w| w.sentence());
-    for line in repairs.into_iter().chain(events).chain(summary.notes.iter().cloned()) {
+    for line in repairs.chain(events).chain(summary.notes.iter().cloned()) {
         writeln!(out, "warning: {line}")?;
     }
     writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))

@@ -1,6 +1,7 @@
 //! A turbine blade as a thin wall: an arched mean line that turns with height, the same metal to both sides of it.
 
 use super::solid::Solid;
+use crate::curve::Nurbs;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::PI;
@@ -29,6 +30,13 @@ pub(super) fn build() -> Solid {
 /// The mean line at height `z` (mm), from the leading edge to the trailing edge.
 pub fn mean_line(z: f64) -> Vec<DVec2> {
     (0..=PIECES).map(|k| turned(mean(share(k)).0, z)).collect()
+}
+
+/// The mean line at eleven heights.
+pub(super) fn curves() -> Vec<Nurbs> {
+    let heights = (0..=10).map(|k| HEIGHT * f64::from(k) / 10.0);
+    let curve = |z: f64| Nurbs::interpolated(&mean_line(z).iter().map(|p| p.extend(z)).collect::<Vec<_>>(), false).ok();
+    heights.filter_map(curve).collect()
 }
 
 fn turned(p: DVec2, z: f64) -> DVec2 {

@@ -2,7 +2,8 @@
 //! shows it.
 
 use super::solid::Solid;
-use glam::DVec2;
+use crate::curve::Nurbs;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 const HEIGHT: f64 = 200.0;
@@ -22,6 +23,16 @@ pub(super) fn build() -> Solid {
     };
     let profile: Vec<DVec2> = (0..=count).map(|k| at(k, 0.0)).chain((0..=count).rev().map(|k| at(k, WALL))).collect();
     Solid::revolve(&profile, SEGMENTS)
+}
+
+/// Circles in the middle of the wall, one every 4 mm.
+pub(super) fn curves() -> Vec<Nurbs> {
+    let heights = (0..=50).map(|k| HEIGHT * f64::from(k) / 50.0);
+    let circle = |z: f64| {
+        let radius = outside(z) - WALL / 2.0;
+        Nurbs::circle(DVec3::new(0.0, 0.0, z), DVec3::X * radius, DVec3::Y * radius).ok()
+    };
+    heights.filter_map(circle).collect()
 }
 
 /// Outer radius at height `z`, mm: half a cosine from swing to swing.

@@ -20,7 +20,9 @@ mod star;
 mod tian;
 mod vase;
 
+use crate::curve::Nurbs;
 use crate::model::Mesh;
+use crate::model::iges::{self, WriteOptions};
 use glam::DVec3;
 use solid::Solid;
 
@@ -32,6 +34,7 @@ pub struct Example {
     /// One line that ends with the extent along x, y and z, mm.
     pub about: &'static str,
     build: fn() -> Solid,
+    curves: Option<fn() -> Vec<Nurbs>>,
 }
 
 /// Every example, by name.
@@ -40,43 +43,61 @@ pub const ALL: &[Example] = &[
         name: "blade",
         about: "blade, an arched 3.5 mm wall that turns by 25° on its way up, 92.5 × 28.4 × 100 mm",
         build: blade::build,
+        curves: Some(blade::curves),
     },
-    Example { name: "cross", about: "cross with 36 mm wide arms, 100 × 100 × 20 mm", build: cross::build },
+    Example {
+        name: "cross",
+        about: "cross with 36 mm wide arms, 100 × 100 × 20 mm",
+        build: cross::build,
+        curves: None,
+    },
     Example {
         name: "gear",
         about: "gear with 12 trapezoidal teeth and a 40 mm bore, 140 × 140 × 20 mm",
         build: gear::build,
+        curves: None,
     },
     Example {
         name: "gourd",
         about: "bottle gourd with a 4 mm wall, open below and above, 120 × 120 × 200 mm",
         build: gourd::build,
+        curves: Some(gourd::curves),
     },
     Example {
         name: "plate",
         about: "plate with rounded corners and five holes from 10 to 30 mm, 120 × 80 × 12 mm",
         build: plate::build,
+        curves: None,
     },
     Example {
         name: "pot",
         about: "pot with a 4 mm wall, square below and round above, 100 × 100 × 80 mm",
         build: pot::build,
+        curves: Some(pot::curves),
     },
     Example {
         name: "propeller",
         about: "ship propeller, four twisted blades on an 80 mm hub with a 36 mm bore, 260 × 260 × 20 mm",
         build: propeller::build,
+        curves: None,
     },
-    Example { name: "star", about: "five-pointed star of 80 mm radius, 152.2 × 144.7 × 20 mm", build: star::build },
+    Example {
+        name: "star",
+        about: "five-pointed star of 80 mm radius, 152.2 × 144.7 × 20 mm",
+        build: star::build,
+        curves: None,
+    },
     Example {
         name: "tian",
         about: "frame like the character 田, four openings between 4.5 mm walls, 100 × 100 × 26 mm",
         build: tian::build,
+        curves: Some(tian::curves),
     },
     Example {
         name: "vase",
         about: "vase with a 14 mm wall and a closed 12 mm bottom, 104 × 104 × 120 mm",
         build: vase::build,
+        curves: None,
     },
 ];
 
@@ -100,6 +121,14 @@ impl Example {
             bytes.extend([0, 0]);
         }
         bytes
+    }
+
+    /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are no thin walls.
+    pub fn iges(&self) -> Option<String> {
+        let curves = (self.curves?)();
+        let named: Vec<(&str, &Nurbs)> = curves.iter().map(|curve| (self.name, curve)).collect();
+        let options = WriteOptions { file_name: format!("{}.igs", self.name), ..WriteOptions::default() };
+        Some(iges::write(&named, &options))
     }
 
     /// The part as a mesh, mm.

@@ -2,7 +2,8 @@
 
 use super::outline;
 use super::solid::Solid;
-use glam::DVec2;
+use crate::curve::Nurbs;
+use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,6 +20,17 @@ pub(super) fn build() -> Solid {
     let foot = Polygon { outer: ring(0.0), holes: vec![ring(WALL).reversed()] };
     // Every point moves straight upwards and inwards, so two levels are exact.
     Solid::loft(&foot, &[0.0, HEIGHT], raised).welded()
+}
+
+/// The middle of the wall at the foot and at the rim; between them it is lofted.
+pub(super) fn curves() -> Vec<Nurbs> {
+    let middle = ring(WALL / 2.0);
+    let curve = |z: f64| {
+        let mut points: Vec<DVec3> = middle.points().iter().map(|&p| raised(p, z).extend(z)).collect();
+        points.extend(points.first().copied());
+        Nurbs::polyline(points).ok()
+    };
+    [0.0, HEIGHT].into_iter().filter_map(curve).collect()
 }
 
 /// The outline at the foot, moved in by so much: straight sides and round corners.

@@ -8,12 +8,14 @@
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | [`units`] | millimetres or inches? |
+//! | [`wall_curves`] | walls given by their centre-lines |
 
 pub(crate) mod adjacency;
 pub mod iges;
 pub mod repair;
 pub mod stl;
 pub mod units;
+pub mod wall_curves;
 pub(crate) mod weld;
 
 pub use repair::RepairReport;
@@ -64,6 +66,12 @@ pub enum ImportError {
         /// What the content looks like.
         found: &'static str,
     },
+    /// Curves where a solid is needed.
+    #[error(
+        "this is an IGES file. `beadwright plan FILE --strategy wall` welds its curves as walls and `beadwright inspect` \
+         lists them; here a solid is needed: save it as STL (binary or ASCII)."
+    )]
+    Iges,
     /// Nothing known.
     #[error("this is not an STL file: {reason}. Save the model as STL (binary or ASCII) and try again.")]
     NotStl {
@@ -117,12 +125,23 @@ pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     if bytes.is_empty() {
         return Err(ImportError::Empty);
     }
+    if is_iges(bytes) {
+        return Err(ImportError::Iges);
+    }
     if stl::announced_size(bytes) != Some(bytes.len())
         && let Some(found) = other_format(bytes)
     {
         return Err(ImportError::OtherFormat { found });
     }
     stl::read(bytes, task)
+}
+
+/// Whether the bytes are those of an IGES file: the first card of the start section has S and its number in columns 73
+/// to 80.
+pub fn is_iges(bytes: &[u8]) -> bool {
+    let first = bytes.get(72..80);
+    first.is_some_and(|end| end[0] == b'S' && end[1..].iter().all(|b| b" 01".contains(b)))
+        && stl::announced_size(bytes) != Some(bytes.len())
 }
 
 /// Formats that people hand over by mistake.
@@ -137,9 +156,6 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
         Some("a STEP file")
     } else if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
         Some("a PLY file")
-    } else if head.get(72..80).is_some_and(|end| end[0] == b'S' && end[1..].iter().all(|b| b" 01".contains(b))) {
-        // The first card of the start section: S and its number in columns 73 to 80.
-        Some("an IGES file")
     } else if head.starts_with(b"v ") || has(b"\nv ") || has(b"\nmtllib ") {
         Some("an OBJ file")
     } else {

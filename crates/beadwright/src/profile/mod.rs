@@ -10,6 +10,7 @@ mod read;
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 
+use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance, Overlap};
 use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};
 use crate::fill::wall::WallSettings;
@@ -134,8 +135,26 @@ pub struct BeadShape {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Layers {
-    /// Thickness, mm.
+    /// Thickness, mm; of walls only where their height is not foretold.
     pub height: f64,
+    /// Whether the layers lie where the wall's beads will be (Li et al., eqs 5 to 8) instead of one thickness apart:
+    /// `auto` for the strategy `wall`, `always` or `never`; default auto.
+    #[serde(default)]
+    pub foretell: Foretell,
+}
+
+/// When the heights of layers are foretold from the bead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Foretell {
+    /// For the strategy `wall`.
+    #[default]
+    Auto,
+    /// For every strategy.
+    Always,
+    /// Layers are one thickness apart.
+    Never,
 }
 
 /// How the raster angle changes from layer to layer.
@@ -444,6 +463,19 @@ impl Profile {
         Bead { width: self.bead.width, height: self.bead.height }
     }
 
+    /// The wall whose heights tell where the layers lie; `None` where they are one thickness apart.
+    ///
+    /// # Errors
+    /// [`WallError`] for a bead of which no wall can be foretold.
+    pub fn wall_bead(&self) -> Result<Option<WallBead>, WallError> {
+        let foretold = match self.layers.foretell {
+            Foretell::Auto => self.fill.strategy == "wall",
+            Foretell::Always => true,
+            Foretell::Never => false,
+        };
+        foretold.then(|| WallBead::new(self.bead.width, self.bead.height)).transpose()
+    }
+
     /// Distance between neighbouring centre-lines, mm.
     pub fn stepover(&self) -> f64 {
         match self.fill.overlap.ratio() {
@@ -532,7 +564,8 @@ impl Profile {
     pub fn notes(&self) -> Vec<String> {
         let rise = self.bead().rise(self.stepover());
         let height = self.layers.height;
-        let rise_note = ((rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
+        let foretold = self.wall_bead().is_ok_and(|wall| wall.is_some());
+        let rise_note = (!foretold && (rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
             let fitting = Bead::for_rise(self.bead.width, self.stepover(), height);
             format!(
                 "Beads {:.2} mm high at a stepover of {:.2} mm rise {rise:.2} mm a layer, but layers are {height:.2} mm \

@@ -126,6 +126,9 @@ fn strategy(name: &str, profile: &Profile) -> String {
 
 /// What the model consists of.
 pub(super) fn model(repair: &RepairReport) -> String {
+    if repair.triangles_read == 0 {
+        return table(&[("Given by", "its centre-lines".to_owned())]);
+    }
     let closed = if repair.open_edges == 0 { "closed" } else { "with holes" };
     table(&[
         ("Triangles", repair.triangles.to_string()),

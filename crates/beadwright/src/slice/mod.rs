@@ -69,6 +69,14 @@ pub struct Slab {
     pub height: f64,
 }
 
+/// Layers of one height (mm) for a mesh that stands on z = 0. A last layer that would be less than half full is left
+/// out: its middle lies above the part.
+pub fn even_slabs(mesh: &Mesh, height: f64) -> Vec<Slab> {
+    let top = mesh.bounds().1.z.max(0.0);
+    let count = (top / height - 0.5).ceil().max(1.0) as usize;
+    (0..count).map(|k| Slab { z: (k + 1) as f64 * height, height }).collect()
+}
+
 /// A mesh prepared for cutting; layers can be cut in any order.
 pub struct Slicer<'a> {
     mesh: &'a Mesh,
@@ -90,11 +98,7 @@ impl<'a> Slicer<'a> {
     /// # Errors
     /// [`Cancelled`] when the task was.
     pub fn new(mesh: &'a Mesh, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
-        let height = options.layer_height;
-        let top = mesh.bounds().1.z.max(0.0);
-        // A last layer that would be less than half full is left out: its middle lies above the part.
-        let count = (top / height - 0.5).ceil().max(1.0) as usize;
-        let slabs = (0..count).map(|k| Slab { z: (k + 1) as f64 * height, height }).collect();
+        let slabs = even_slabs(mesh, options.layer_height);
         Self::of_slabs(mesh, slabs, options, task)
     }
 

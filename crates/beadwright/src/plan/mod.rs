@@ -1,23 +1,35 @@
 //! The front door: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
 //!
 //! [`plan_layers`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
-//! needs the memory of the mesh plus [`BATCH`](crate::slice::BATCH) layers. [`plan`] collects the layers.
+//! needs the memory of the mesh plus [`BATCH`](crate::slice::BATCH) layers. [`plan`] collects the layers. A wall may
+//! be given by its centre-lines instead ([`plan_curves`]).
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `levels` | where the layers of a wall lie |
+//! | `scan_lines` | best raster angles, and what of a sparse infill is solid |
 
+mod levels;
+mod scan_lines;
+
+use crate::bead::wall::{WallBead, WallError};
 use crate::deposit::{DepositSettings, Nominal, Subject};
+use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, FillSettings, Pass as Path, Strategy};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
+use crate::model::wall_curves::{Section, WallCurves};
 use crate::order;
 pub use crate::pass::{Along, Pass, Segment};
-use crate::profile::{Profile, RasterTurn};
-use crate::slice::{BATCH, Layer as Slice, Slicer};
+use crate::profile::Profile;
+use crate::slice::{self, BATCH, Layer as Slice, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
 use glam::DVec2;
+use planar::medial::Node;
 use planar::{Join, Polygon, Region};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::f64::consts::FRAC_PI_2;
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -110,6 +122,9 @@ pub enum PlanError<E> {
         /// Thickness of a layer, mm.
         layer_height: f64,
     },
+    /// The bead gives no wall.
+    #[error(transparent)]
+    Wall(#[from] WallError),
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]
     Empty(String),
@@ -184,15 +199,15 @@ pub fn plan_layers<S: Sink + Send>(
     let name = &profile.fill.strategy;
     let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
     check_layer_count(mesh, profile)?;
-    let slicer = Slicer::new(mesh, profile.slice_options(), task)?;
-    let (part, profile_name) = (part.to_owned(), profile.name.clone());
-    let header = Header { part, profile: profile_name, strategy: name.clone(), layers: slicer.layer_count() };
-    sink.begin(&header).map_err(PlanError::Sink)?;
-
+    let slabs = match profile.wall_bead()? {
+        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
+        None => slice::even_slabs(mesh, profile.layers.height),
+    };
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let slices = slicer.batch(batch, task)?;
-        let angles = raster_angles(&slices, strategy, profile);
-        let solid = solid_regions(batch, &slices, &slicer, profile, task)?;
+        let angles = scan_lines::raster_angles(&slices, strategy, profile);
+        let solid = scan_lines::solid_regions(batch, &slices, &slicer, profile, task)?;
         let fill = |(slice, (angle, solid)): (Slice, (Option<f64>, &Option<Region>))| {
             task.check()?;
             let mut settings = profile.fill_settings(slice.index);
@@ -202,21 +217,8 @@ pub fn plan_layers<S: Sink + Send>(
         };
         slices.into_par_iter().zip(angles.into_par_iter().zip(&solid)).map(fill).collect()
     };
-    let mut emitter =
-        Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
-    // While one batch is handed over, the next is filled.
-    let mut ready = fill_batch(0)?;
-    for next in 1..=slicer.batch_count() {
-        task.step(Stage::Plan, next as f64 / slicer.batch_count() as f64)?;
-        let (filled, emitted) = rayon::join(
-            || if next < slicer.batch_count() { fill_batch(next) } else { Ok(Vec::new()) },
-            || ready.into_iter().try_for_each(|layer| emitter.emit(layer)),
-        );
-        emitted.map_err(PlanError::Sink)?;
-        ready = filled?;
-    }
-    let Emitter { metrics, warnings, .. } = emitter;
-    if metrics.passes == 0 {
+    let summary = run(part, slicer.layer_count(), profile, task, sink, fill_batch)?;
+    if summary.metrics.passes == 0 {
         let largest = mesh.size();
         return Err(PlanError::Empty(format!(
             "no part of the slices is wide enough for a bead of {} mm (the part is {:.1} × {:.1} × {:.1} mm). \
@@ -224,56 +226,96 @@ pub fn plan_layers<S: Sink + Send>(
             profile.bead.width, largest.x, largest.y, largest.z
         )));
     }
+    Ok(summary)
+}
+
+/// Plans a wall given by its centre-lines, one bead thick, up to a height (mm), and hands every layer to `sink`.
+///
+/// # Errors
+/// [`PlanError`], with what the sink failed with among them.
+pub fn plan_curves<S: Sink + Send>(
+    part: &str,
+    curves: &WallCurves,
+    height: f64,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    let wall = WallBead::new(profile.bead.width, profile.bead.height)?;
+    let slabs = levels::of_curves(curves, height, &wall);
+    let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
+        let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
+        let fill = |index: usize| {
+            task.check()?;
+            Ok(weld_curves(curves, index, slabs[index], profile))
+        };
+        layers.into_par_iter().map(fill).collect()
+    };
+    let summary = run(part, slabs.len(), profile, task, sink, fill_batch)?;
+    if summary.metrics.passes == 0 {
+        return Err(PlanError::Empty("all curves are shorter than fill.min_pass_length.".to_owned()));
+    }
+    Ok(summary)
+}
+
+/// Fills batch after batch and hands their layers over in order.
+fn run<S: Sink + Send>(
+    part: &str,
+    layers: usize,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+    fill_batch: impl Fn(usize) -> Result<Vec<Filled>, Cancelled> + Sync,
+) -> Result<Summary, PlanError<S::Error>> {
+    let strategy = profile.fill.strategy.clone();
+    let header = Header { part: part.to_owned(), profile: profile.name.clone(), strategy, layers };
+    sink.begin(&header).map_err(PlanError::Sink)?;
+    let mut emitter =
+        Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    let batches = layers.div_ceil(BATCH);
+    // While one batch is handed over, the next is filled.
+    let mut ready = fill_batch(0)?;
+    for next in 1..=batches {
+        task.step(Stage::Plan, next as f64 / batches as f64)?;
+        let (filled, emitted) = rayon::join(
+            || if next < batches { fill_batch(next) } else { Ok(Vec::new()) },
+            || ready.into_iter().try_for_each(|layer| emitter.emit(layer)),
+        );
+        emitted.map_err(PlanError::Sink)?;
+        ready = filled?;
+    }
+    let Emitter { metrics, warnings, .. } = emitter;
     Ok(Summary { metrics, warnings, notes: profile.notes() })
 }
 
-/// The best raster angle of each layer, where the profile asks for it.
-fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: &Profile) -> Vec<Option<f64>> {
-    // Batches are even, so pairs of layers do not straddle them.
-    const { assert!(BATCH.is_multiple_of(2)) };
-    if profile.fill.raster_turn != RasterTurn::Best {
-        return vec![None; slices.len()];
-    }
-    let pair = |pair: &[Slice]| {
-        let islands: Vec<&[Polygon]> = pair.iter().map(|s| &s.islands[..]).collect();
-        let angle = fill::angle::best(strategy, &islands, &profile.fill_settings(0));
-        (0..pair.len()).map(|i| angle.map(|a| a + FRAC_PI_2 * i as f64)).collect::<Vec<_>>()
+/// The centre-lines of a layer as passes; what they cover stands for the slice.
+fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
+    let (settings, width) = (profile.fill_settings(index), profile.bead.width);
+    let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
+    let sections = curves.at(slab.z - slab.height / 2.0, settings.wall.chord_error);
+    let line = |section: &Section| Line {
+        nodes: section.points.iter().map(|&at| Node { at, radius: width / 2.0 }).collect(),
+        closed: section.closed,
     };
-    slices.par_chunks(2).flat_map_iter(pair).collect()
+    let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
+    for stage in &mut fill.stages {
+        drop_short(stage, settings.min_pass_length, index, &mut slice.warnings);
+    }
+    let covered = sections.iter().fold(Region::default(), |region, section| {
+        region.union(&planar::buffer(
+            std::slice::from_ref(&section.points),
+            section.closed,
+            width / 2.0,
+            COVER_TOLERANCE_MM,
+        ))
+    });
+    let planned_area = covered.area();
+    slice.islands = covered.into_polygons();
+    Filled { slice, fills: vec![fill], planned_area }
 }
 
-/// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
-/// layers above or below does not cover the layer.
-fn solid_regions(
-    batch: usize,
-    slices: &[Slice],
-    slicer: &Slicer,
-    profile: &Profile,
-    task: &Task,
-) -> Result<Vec<Option<Region>>, Cancelled> {
-    let (count, reach) = (slicer.layer_count(), profile.fill.solid_layers as usize);
-    if profile.fill.infill_density >= 1.0 {
-        return Ok(vec![None; slices.len()]);
-    }
-    let neighbour = |other: Option<usize>| match other.filter(|b| *b < slicer.batch_count()) {
-        Some(other) => slicer.batch(other, task),
-        None => Ok(Vec::new()),
-    };
-    let (below, above) = (neighbour(batch.checked_sub(1))?, neighbour(Some(batch + 1))?);
-    let all: Vec<Region> =
-        below.iter().chain(slices).chain(&above).map(|slice| Region::from_normalised(slice.islands.clone())).collect();
-    let solid = |i: usize| {
-        let (layer, own) = (slices[i].index, below.len() + i);
-        if layer < reach || layer + reach >= count {
-            return None;
-        }
-        let near = (own - reach..=own + reach).filter(|&other| other != own);
-        let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
-        // Solid infill holds on to the sparse infill around it.
-        Some(bare.offset(2.0 * profile.bead.width, Join::ROUND))
-    };
-    Ok((0..slices.len()).into_par_iter().map(solid).collect())
-}
+/// Round ends of what a curve covers are this exact, mm.
+const COVER_TOLERANCE_MM: f64 = 0.02;
 
 fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
     let (height, layer_height) = (mesh.size().z, profile.layers.height);
