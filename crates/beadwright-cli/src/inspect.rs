@@ -1,9 +1,8 @@
 //! `beadwright inspect`.
 
 use crate::{model, progress};
-use anyhow::Context;
-use beadwright::model::iges::{self, IgesCurve, IgesFile};
-use std::io::{Read, Write};
+use beadwright::model::iges::{IgesCurve, IgesFile};
+use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -16,15 +15,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let context = || format!("{}", arguments.file.display());
-    let mut head = Vec::new();
-    std::fs::File::open(&arguments.file)
-        .with_context(context)?
-        .take(80)
-        .read_to_end(&mut head)
-        .with_context(context)?;
-    if beadwright::model::is_iges(&head) {
-        let file = iges::read(&std::fs::read(&arguments.file).with_context(context)?).with_context(context)?;
+    if let Some(file) = model::read_iges(&arguments.file)? {
         return Ok(curves(&file, arguments)?);
     }
     let (task, bar) = progress::task()?;

@@ -1,8 +1,9 @@
 //! Model files: mapped into memory, imported and placed.
 
 use anyhow::Context;
+use beadwright::model::iges::{self, IgesFile};
 use beadwright::model::wall_curves::WallCurves;
-use beadwright::model::{self, Import, RepairReport, Units, iges, units};
+use beadwright::model::{self, Import, RepairReport, Units, units};
 use beadwright::planar::Bounds;
 use beadwright::task::Task;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
@@ -45,13 +46,32 @@ fn parse_turn(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A model read from a file.
-pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
+fn open(path: &Path) -> anyhow::Result<File> {
     let context = || format!("{}", path.display());
     let file = File::open(path).with_context(context)?;
     if file.metadata().with_context(context)?.is_dir() {
         anyhow::bail!("{}: this is a folder, not a model file", path.display());
     }
+    Ok(file)
+}
+
+/// An IGES file; `None` for any other.
+pub(crate) fn read_iges(path: &Path) -> anyhow::Result<Option<IgesFile>> {
+    const CARD: u64 = 80;
+    let context = || format!("{}", path.display());
+    let (mut file, mut bytes) = (open(path)?, Vec::new());
+    file.by_ref().take(CARD).read_to_end(&mut bytes).with_context(context)?;
+    if !model::is_iges(&bytes) {
+        return Ok(None);
+    }
+    file.read_to_end(&mut bytes).with_context(context)?;
+    iges::read(&bytes).map(Some).with_context(context)
+}
+
+/// A model read from a file.
+pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
+    let context = || format!("{}", path.display());
+    let file = open(path)?;
     let import = if file.metadata().with_context(context)?.len() == 0 {
         model::import(&[], task)
     } else {
@@ -98,19 +118,15 @@ impl Part {
 impl Model {
     /// The solid or the curves, placed. Curves of one height need one to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
-        let name = || format!("{}", self.model.display());
-        let mut head = Vec::new();
-        File::open(&self.model).with_context(name)?.take(80).read_to_end(&mut head).with_context(name)?;
-        if !model::is_iges(&head) {
+        let Some(file) = read_iges(&self.model)? else {
             anyhow::ensure!(height.is_none(), "--height belongs to walls given by curves (IGES), not to a solid");
             return Ok(Part::Mesh(self.placed(bead_width, task)?));
-        }
-        let file = iges::read(&std::fs::read(&self.model).with_context(name)?).with_context(name)?;
+        };
         let unit = self.units.map_or(1.0, |units| units.in_mm() / file.unit_mm);
         let turn = self.turn * std::f64::consts::PI / 180.0;
         let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
         let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
-        let curves = WallCurves::of_iges(&file, &place).with_context(name)?;
+        let curves = WallCurves::of_iges(&file, &place).with_context(|| format!("{}", self.model.display()))?;
         let height = height.or(Some(curves.height()).filter(|height| *height > 0.0));
         let height = height.with_context(|| {
             format!("{}: the curves lie at one height; --height says how high the wall grows, mm", self.model.display())

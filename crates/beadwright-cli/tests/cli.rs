@@ -320,3 +320,17 @@ fn beads_are_fitted_foretold_and_found() {
     assert!(!path.join("bad.toml").exists());
     refused(path, &["bead", "predict", "lib.toml", "current"], 2);
 }
+
+#[test]
+fn curves_are_inspected_and_welded_as_walls() {
+    let folder = TempDir::new().unwrap();
+    ok(folder.path(), &["example", "tian", "-o", "tian.igs"]);
+    assert!(ok(folder.path(), &["inspect", "tian.igs"]).contains("6 curves, 6 of them stand for themselves"));
+    let said = refused(folder.path(), &["plan", "tian.igs"], 1);
+    assert!(said.contains("--height says how high the wall grows"), "{said}");
+    let said = ok(folder.path(), &["plan", "tian.igs", "-p", "cmt-steel-abb", "--height", "26", "-o", "out"]);
+    assert!(said.contains("6 centre-lines") && said.contains("strategy wall"), "{said}");
+    assert!(files(&folder.path().join("out")).contains_key("tian.mod"));
+    assert!(refused(folder.path(), &["compare", "tian.igs"], 1).contains("here a solid is needed"));
+    assert!(refused(folder.path(), &["example", "cross", "-o", "cross.igs"], 1).contains("no thin wall"));
+}

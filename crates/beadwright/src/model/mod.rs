@@ -69,7 +69,7 @@ pub enum ImportError {
     /// Curves where a solid is needed.
     #[error(
         "this is an IGES file. `beadwright plan FILE --strategy wall` welds its curves as walls and `beadwright inspect` \
-         lists them; here a solid is needed: save it as STL (binary or ASCII)."
+         lists them; here a solid is needed. Save the model as STL (binary or ASCII)."
     )]
     Iges,
     /// Nothing known.

@@ -3,6 +3,7 @@
 pub mod a_skeleton_hybrid;
 pub mod b_fdm_order;
 pub mod c_compound;
+pub mod d_thin_wall;
 
 use crate::report::sheet::Sheet;
 use crate::task::Task;
@@ -28,7 +29,7 @@ pub struct Paper {
 }
 
 /// The papers.
-pub const PAPERS: [Paper; 3] = [
+pub const PAPERS: [Paper; 4] = [
     Paper {
         name: "a-skeleton-hybrid",
         about: "Zhao et al. 2023: contours whose pockets are filled as skeleton regions, on a propeller",
@@ -43,6 +44,11 @@ pub const PAPERS: [Paper; 3] = [
         name: "c-compound",
         about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figure 7)",
         run: c_compound::run,
+    },
+    Paper {
+        name: "d-thin-wall",
+        about: "Li et al.: heights of thin walls foretold, and paths that do not cross, on a frame, a blade, a gourd and a pot",
+        run: d_thin_wall::run,
     },
 ];
 

@@ -1,0 +1,134 @@
+//! Walls given by curves: read from IGES, lofted, leaning, and the same as those given by a solid.
+#![allow(clippy::unwrap_used)]
+
+use beadwright::bead::wall::WallBead;
+use beadwright::curve::Nurbs;
+use beadwright::example;
+use beadwright::model::iges::{self, IgesFile, WriteOptions};
+use beadwright::model::wall_curves::{WallCurves, WallCurvesError};
+use beadwright::plan::{self, Header, Layer, Pass, Sink};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
+use glam::{DAffine3, DVec3};
+use std::convert::Infallible;
+
+#[derive(Default)]
+struct Kept(Vec<Layer>);
+
+impl Sink for Kept {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: &Header) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.0.push(layer);
+        Ok(())
+    }
+}
+
+fn profile(width: f64, height: f64) -> Profile {
+    let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
+    profile.fill.strategy = "wall".to_owned();
+    (profile.bead.width, profile.bead.height) = (width, height);
+    profile.fill.stepover = Some(width);
+    profile
+}
+
+/// Curves through a file and back.
+fn curves(nurbs: &[Nurbs]) -> Result<WallCurves, WallCurvesError> {
+    let named: Vec<(&str, &Nurbs)> = nurbs.iter().map(|n| ("wall", n)).collect();
+    let file = iges::read(iges::write(&named, &WriteOptions::default()).as_bytes()).unwrap();
+    WallCurves::of_iges(&file, &DAffine3::IDENTITY)
+}
+
+fn of_example(name: &str) -> WallCurves {
+    let text = example::find(name).unwrap().iges().unwrap();
+    WallCurves::of_iges(&iges::read(text.as_bytes()).unwrap(), &DAffine3::IDENTITY).unwrap()
+}
+
+fn layers(curves: &WallCurves, height: f64, profile: &Profile) -> Vec<Layer> {
+    let mut kept = Kept::default();
+    plan::plan_curves("wall", curves, height, profile, &Task::new(), &mut kept).unwrap();
+    kept.0
+}
+
+fn circle(radius: f64, z: f64) -> Nurbs {
+    Nurbs::circle(DVec3::new(0.0, 0.0, z), DVec3::X * radius, DVec3::Y * radius).unwrap()
+}
+
+#[test]
+fn curves_and_solid_give_the_same_wall() {
+    for (name, width, height, top, count) in
+        [("tian", 4.5, 1.884, 26.0, 18), ("blade", 3.5, 1.6885, 100.0, 74), ("gourd", 4.0, 1.6072, 200.0, 187)]
+    {
+        let profile = profile(width, height);
+        let by_curves = layers(&of_example(name), top, &profile);
+        let by_mesh = plan::plan(name, &example::find(name).unwrap().mesh(), &profile, &Task::new()).unwrap().layers;
+        assert_eq!((by_curves.len(), by_mesh.len()), (count, count), "{name}");
+        for (a, b) in by_curves.iter().zip(&by_mesh) {
+            assert_eq!(a.passes.len(), b.passes.len(), "{name}");
+            assert!((a.z - b.z).abs() < 0.5, "{name}: {} {}", a.z, b.z);
+            let length = |l: &Layer| l.passes.iter().map(Pass::length).sum::<f64>();
+            // The mesh of the blade ends half a bead before its mean line does.
+            let least = length(b) / length(a);
+            assert!((0.95..1.01).contains(&least), "{name}: {least}");
+        }
+    }
+}
+
+#[test]
+fn a_leaning_wall_rises_by_the_cosine() {
+    let (angle, wall) = (30.0_f64.to_radians(), WallBead::new(4.0, 1.6072).unwrap());
+    let cone = curves(&[circle(30.0, 0.0), circle(30.0 + 100.0 * angle.tan(), 100.0)]).unwrap();
+    let laid = layers(&cone, 100.0, &profile(4.0, 1.6072));
+    assert_eq!(laid[0].height, 1.6072);
+    for layer in &laid[1..laid.len() - 1] {
+        assert!((layer.height - wall.rise() * angle.cos()).abs() < 1e-6, "{}", layer.height);
+        // The centre-line is that at the middle of the layer.
+        let radius = 30.0 + (layer.z - layer.height / 2.0) * angle.tan();
+        for point in &layer.passes[0].points {
+            assert!((point.truncate().length() - radius).abs() < 0.03, "{point} for {radius}");
+        }
+    }
+    assert!((laid.last().unwrap().z - 100.0).abs() <= wall.rise() / 2.0);
+}
+
+#[test]
+fn an_upright_wall_rises_by_h_n_and_its_layers_end_where_they_should() {
+    let ring = curves(&[circle(40.0, 7.0)]).unwrap();
+    let wall = WallBead::new(4.0, 1.6237).unwrap();
+    let laid = layers(&ring, 80.0, &profile(4.0, 1.6237));
+    assert_eq!(laid.len(), 66);
+    assert!((laid[65].z - wall.total(66)).abs() < 1e-9);
+    assert!((laid[65].z - 80.0).abs() < 0.05);
+    assert!(laid.iter().all(|l| l.passes.len() == 1 && l.passes[0].closed));
+}
+
+#[test]
+fn between_two_heights_the_way_is_straight_wherever_the_curves_begin() {
+    let turned = |radius: f64, z: f64, by: f64| {
+        let (u, v) = (DVec3::new(by.cos(), by.sin(), 0.0), DVec3::new(by.sin(), -by.cos(), 0.0));
+        Nurbs::circle(DVec3::new(0.0, 0.0, z), u * radius, v * radius).unwrap()
+    };
+    // The upper circle begins elsewhere and runs the other way round.
+    let wall = curves(&[circle(20.0, 0.0), turned(40.0, 50.0, 2.0)]).unwrap();
+    for section in wall.at(25.0, 0.01) {
+        assert!(section.closed);
+        for point in section.points {
+            assert!((point.length() - 30.0).abs() < 0.6, "{point}");
+        }
+    }
+    assert!((wall.offset(20.0, 30.0) - 4.0).abs() < 0.1, "{}", wall.offset(20.0, 30.0));
+}
+
+#[test]
+fn what_is_no_wall_is_refused_with_the_place() {
+    let slanted = Nurbs::line(DVec3::ZERO, DVec3::new(10.0, 0.0, 3.0)).unwrap();
+    assert!(matches!(curves(&[slanted]), Err(WallCurvesError::NotLevel { entry: 1, .. })));
+    let uneven = [circle(20.0, 0.0), circle(10.0, 0.0), circle(20.0, 30.0)];
+    assert!(matches!(curves(&uneven), Err(WallCurvesError::Uneven { lower: 2, upper: 1, .. })));
+    let nothing = WallCurves::of_iges(&IgesFile::default(), &DAffine3::IDENTITY);
+    assert_eq!(nothing, Err(WallCurvesError::None { curves: 0 }));
+}
