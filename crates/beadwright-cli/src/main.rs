@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage.
 
 mod bead;
+mod check;
 mod compare;
 mod example;
 mod inspect;
@@ -34,6 +35,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Judge a plan or anyone's program by what it would build.
     Simulate(simulate::Arguments),
+    /// Tell what would go wrong if a plan were welded as it is; without a plan, list the checks.
+    Check(check::Arguments),
     /// Width and height of measured beads, and the parameters of a wanted one.
     #[command(subcommand)]
     Bead(bead::Command),
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -16,7 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// How a program is understood.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(crate) struct Reading {
     /// Words that light the arc, besides those that the language knows and those of the profile: --arc-on "M64 P1".
     #[arg(long, value_name = "CODE")]

@@ -31,6 +31,7 @@
 //! ```
 
 pub mod bead;
+pub mod check;
 pub mod compare;
 pub mod curve;
 pub mod deposit;

@@ -22,7 +22,7 @@ const ROWS: &[&[&str]] = &[
     &["profile"],
     &["metrics", "plan"],
     &["plan_file", "program"],
-    &["post"],
+    &["check", "post"],
     &["report"],
     &["simulate"],
     &["example"],

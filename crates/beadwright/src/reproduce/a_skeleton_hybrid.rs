@@ -1,14 +1,12 @@
 //! Zhao et al. 2023: the contour-skeleton hybrid on a propeller of 260 × 260 × 20 mm with the values of their table 1.
 
-use super::{ReproduceError, Reproduced};
+use super::{ReproduceError, Reproduced, program};
 use crate::bead::MassBalance;
 use crate::compare::{self, Chosen, Entry};
 use crate::example;
 use crate::model::Mesh;
 use crate::plan;
-use crate::post;
 use crate::profile::Profile;
-use crate::program::Programmer;
 use crate::report::sheet::Sheet;
 use crate::task::Task;
 use std::collections::BTreeSet;
@@ -47,7 +45,8 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
 
     let mut lines: Vec<String> = entries.iter().map(line).collect();
     lines.push(finding);
-    let files = krl(&mesh, &profile, task).map_err(|e| wrong(&e))?;
+    let plan = plan::plan("propeller", &mesh, &profile, task).map_err(|e| wrong(&e))?;
+    let files = program("krl", &plan, &profile)?;
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
     lines.push(format!("KRL of the default hybrid: {} files beside the page", names.len()));
     Ok(Reproduced { page, lines, files })
@@ -96,14 +95,4 @@ fn balance(profile: &Profile) -> String {
         profile.bead().area(),
         printed.fitting_speed
     )
-}
-
-fn krl(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<(String, String)>, Box<dyn std::error::Error>> {
-    let plan = plan::plan("propeller", mesh, profile, task)?;
-    let mut post = post::post("krl", "propeller", profile)?;
-    let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(plan.layers.len());
-    plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
-    chunks.extend(post.end(programmer.leave()));
-    Ok(chunks.into_iter().map(|chunk| (chunk.file, chunk.text)).collect())
 }

@@ -1,7 +1,7 @@
 //! Li et al.: four thin-walled parts, the heights foretold for their layers, and the frame whose junctions must not pile
 //! up.
 
-use super::{ReproduceError, Reproduced};
+use super::{ReproduceError, Reproduced, program};
 use crate::bead::wall::WallBead;
 use crate::compare::MAP_PIXELS;
 use crate::deposit::{Judge, Picture};
@@ -9,9 +9,7 @@ use crate::example;
 use crate::fill::PassKind;
 use crate::pass::{Along, Pass};
 use crate::plan::{self, Layer, Plan};
-use crate::post;
 use crate::profile::Profile;
-use crate::program::Programmer;
 use crate::report::sheet::Sheet;
 use crate::report::svg;
 use crate::task::Task;
@@ -67,7 +65,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         let layer = &plan.layers[plan.layers.len() / 3];
         page.text(&format!("{}, layer {} at z {:.2} mm", plan.header.part, layer.index + 1, layer.z));
         page.svg(&svg::layer(layer, &plan.header.part));
-        files.extend(rapid(plan, profile).map_err(|e| wrong(&e))?);
+        files.extend(program("rapid", plan, profile)?);
     }
     let (frame, profile) = &plans[0];
     page.heading("Junctions of the frame after eight layers");
@@ -172,13 +170,4 @@ fn straight_through(layer: &Layer) -> Layer {
         pass(false, &[(0.0, -1.0), (0.0, 1.0)]),
     ];
     Layer { passes: passes.to_vec(), ..layer.clone() }
-}
-
-fn rapid(plan: &Plan, profile: &Profile) -> Result<Vec<(String, String)>, post::PostError> {
-    let mut post = post::post("rapid", &plan.header.part, profile)?;
-    let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(plan.layers.len());
-    plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
-    chunks.extend(post.end(programmer.leave()));
-    Ok(chunks.into_iter().map(|chunk| (chunk.file, chunk.text)).collect())
 }

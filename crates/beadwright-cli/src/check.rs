@@ -1,0 +1,82 @@
+//! `beadwright check`.
+
+use crate::output::write_file;
+use crate::{profile, program, progress};
+use beadwright::check::{self, CHECKS, Finding};
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// plan.json; without it, the checks are listed.
+    plan: Option<PathBuf>,
+    /// Profile that the plan was made with: a built-in name or a TOML file.
+    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
+    profile: String,
+    /// A value of the profile, such as check.max_void=1; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Write the findings as JSON into this file.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print the findings as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Findings of one check that are printed; all of them stand in the JSON.
+const PRINTED: usize = 5;
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let Some(plan) = &arguments.plan else {
+        for check in &CHECKS {
+            writeln!(
+                out,
+                "{}: {}.\n  Why: {}.\n  Example: {}\n  Remedy: {}.",
+                check.name, check.what, check.why, check.example, check.remedy
+            )?;
+        }
+        return Ok(());
+    };
+    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let (task, bar) = progress::task()?;
+    let loaded = program::Reading::default().load(plan, &profile, None, &task)?;
+    anyhow::ensure!(
+        loaded.language == "plan",
+        "{}: plans are checked; give the plan.json of the program",
+        plan.display()
+    );
+    let findings = check::check(&loaded.layers, &profile, loaded.settings, &task)?;
+    bar.finish_and_clear();
+    let json = serde_json::to_string_pretty(&findings)?;
+    if let Some(path) = &arguments.output {
+        write_file(path, json.as_bytes())?;
+    }
+    if arguments.json {
+        writeln!(out, "{json}")?
+    } else {
+        print(&mut out, &findings)?
+    }
+    anyhow::ensure!(findings.is_empty(), "{} findings in {}", findings.len(), plan.display());
+    Ok(())
+}
+
+fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
+    for check in &CHECKS {
+        let found: Vec<&Finding> = findings.iter().filter(|f| f.check == check.name).collect();
+        if found.is_empty() {
+            continue;
+        }
+        writeln!(out, "{} ({}): {}.", check.name, found.len(), check.why)?;
+        found.iter().take(PRINTED).try_for_each(|finding| writeln!(out, "  {}", finding.sentence()))?;
+        if found.len() > PRINTED {
+            writeln!(out, "  … and {} more", found.len() - PRINTED)?;
+        }
+        writeln!(out, "  Remedy: {}.", check.remedy)?;
+    }
+    if findings.is_empty() {
+        writeln!(out, "{} checks, nothing found.", CHECKS.len())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,40 @@
+//! The arc on where there is no part.
+
+use super::{Check, Finding, Subject};
+use crate::pass::Segment;
+use planar::{Join, Region};
+
+pub(super) const CHECK: Check = Check {
+    name: "air",
+    what: "the arc on where the layer has no metal to lay",
+    why: "a bead is welded across an opening or beside the part, as if a travel were made with the arc on",
+    example: "layer 2, pass 5, x 10.0 y 4.0 z 4.00 mm: the arc is on outside the part for 12.3 mm.",
+    remedy: "split the pass there, so that the torch travels with the arc off",
+    find,
+};
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let width = subject.profile.bead.width;
+    let room = subject.profile.fill.machining_allowance + width / 2.0;
+    let mut findings = Vec::new();
+    for layer in subject.layers.iter().filter(|l| !l.islands.is_empty()) {
+        let near = Region::from_normalised(layer.islands.clone()).offset(room, Join::ROUND);
+        for (i, pass) in layer.passes.iter().enumerate() {
+            let outside = |s: &Segment| s.from.is_finite() && outside(&near, s, width);
+            let pieces: Vec<Segment> = pass.segments().filter(outside).collect();
+            if let Some(first) = pieces.first() {
+                let length: f64 = pieces.iter().map(Segment::length).sum();
+                let text = format!("the arc is on outside the part, on pieces of {length:.1} mm.");
+                findings.push(Finding::of_pass(&CHECK, layer, i, Some(first.from), text));
+            }
+        }
+    }
+    findings
+}
+
+/// Whether a piece leaves the region: judged at places a bead width apart.
+fn outside(near: &Region, s: &Segment, width: f64) -> bool {
+    let steps = (s.length() / width).ceil().max(1.0) as usize;
+    let place = |k: usize| s.from.lerp(s.to, (k as f64 + 0.5) / steps as f64).truncate();
+    (0..steps).any(|k| !near.contains(place(k)))
+}

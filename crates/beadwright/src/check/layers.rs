@@ -1,0 +1,36 @@
+//! Layers that do not lie on each other.
+
+use super::{Check, Finding, Subject};
+
+pub(super) const CHECK: Check = Check {
+    name: "layers",
+    what: "layers without passes though the part goes on, layers out of order, and gaps between them",
+    why: "the next layer is welded into the air, or the torch runs into the part",
+    example: "layer 7: it begins 2.00 mm above the layer below.",
+    remedy: "plan with beads that fit the part, and keep the layers in their order",
+    find,
+};
+
+/// Gaps and overlaps above this share of a layer's thickness count.
+const TOLERANCE: f64 = 0.25;
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut below = 0.0;
+    for layer in subject.layers {
+        let gap = layer.z - layer.height - below;
+        if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
+            let way = if gap < 0.0 { "inside" } else { "above" };
+            findings.push(Finding::of_layer(
+                &CHECK,
+                layer,
+                format!("it begins {:.2} mm {way} the layer below.", gap.abs()),
+            ));
+        }
+        if layer.passes.is_empty() {
+            findings.push(Finding::of_layer(&CHECK, layer, "nothing is welded here.".to_owned()));
+        }
+        below = layer.z;
+    }
+    findings
+}

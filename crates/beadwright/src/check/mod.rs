@@ -1,0 +1,156 @@
+//! Checks: what would go wrong if a plan were welded as it is. A check is one file and one line in [`CHECKS`].
+//!
+//! Every check has a name, says what it looks for, why that matters, gives an example and a remedy. Its limits stand in
+//! the profile's section `[check]`.
+
+mod air;
+mod bead_width;
+mod crossing;
+mod heat_input;
+mod layers;
+mod outside;
+mod overfill;
+mod overhang;
+mod points;
+mod program_size;
+mod short_pass;
+mod speed_window;
+mod stacked_starts;
+mod towers;
+mod void;
+mod wire_balance;
+
+use crate::deposit::{DepositSettings, Figures, Judge, stack::Growth};
+use crate::plan::Layer;
+use crate::profile::Profile;
+use crate::task::{Cancelled, Stage, Task};
+use glam::DVec3;
+use planar::Bounds;
+use serde::Serialize;
+
+/// The checks.
+pub const CHECKS: [Check; 16] = [
+    points::CHECK,
+    layers::CHECK,
+    air::CHECK,
+    crossing::CHECK,
+    short_pass::CHECK,
+    speed_window::CHECK,
+    bead_width::CHECK,
+    wire_balance::CHECK,
+    heat_input::CHECK,
+    void::CHECK,
+    overfill::CHECK,
+    outside::CHECK,
+    overhang::CHECK,
+    towers::CHECK,
+    stacked_starts::CHECK,
+    program_size::CHECK,
+];
+
+/// A check.
+pub struct Check {
+    /// The name people type.
+    pub name: &'static str,
+    /// What it looks for.
+    pub what: &'static str,
+    /// Why that matters.
+    pub why: &'static str,
+    /// A finding as it may read.
+    pub example: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+    /// Looks for it.
+    find: fn(&Subject<'_>) -> Vec<Finding>,
+}
+
+/// Something that would go wrong.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Name of the check.
+    pub check: &'static str,
+    /// Index of the layer from 0; none for what concerns the whole plan.
+    pub layer: Option<usize>,
+    /// Index of the pass in its layer, from 0.
+    pub pass: Option<usize>,
+    /// Where, mm.
+    pub place: Option<DVec3>,
+    /// A sentence.
+    pub text: String,
+}
+
+/// What is checked.
+pub struct Subject<'a> {
+    layers: &'a [Layer],
+    profile: &'a Profile,
+    /// Nominal rise of a layer in the deposit model, mm.
+    rise: f64,
+    /// What the deposit model says of each layer.
+    figures: Vec<Figures>,
+    /// How the stack grows.
+    growth: Vec<Growth>,
+}
+
+/// Runs all checks on a plan.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn check(
+    layers: &[Layer],
+    profile: &Profile,
+    settings: DepositSettings,
+    task: &Task,
+) -> Result<Vec<Finding>, Cancelled> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).filter(|p| p.is_finite());
+    let mut judge = Judge::new(settings);
+    if let Some(bounds) = Bounds::of(points.map(|p| p.truncate())) {
+        judge = judge.with_stack(&bounds);
+    }
+    let mut figures = Vec::with_capacity(layers.len());
+    for (i, layer) in layers.iter().enumerate() {
+        task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
+        // Points that are no numbers are found by a check of their own; nothing can be built from them.
+        let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
+        figures.push(if sound { judge.layer(layer.subject()).figures } else { Figures::default() });
+    }
+    let growth = judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
+    let subject = Subject { layers, profile, rise: settings.nominal.rise, figures, growth };
+    Ok(CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect())
+}
+
+impl Finding {
+    fn of_plan(check: &Check, text: String) -> Self {
+        Self { check: check.name, layer: None, pass: None, place: None, text }
+    }
+
+    fn of_layer(check: &Check, layer: &Layer, text: String) -> Self {
+        Self { check: check.name, layer: Some(layer.index), pass: None, place: None, text }
+    }
+
+    fn of_pass(check: &Check, layer: &Layer, pass: usize, place: Option<DVec3>, text: String) -> Self {
+        Self { check: check.name, layer: Some(layer.index), pass: Some(pass), place, text }
+    }
+
+    /// The finding with its place, for people.
+    pub fn sentence(&self) -> String {
+        let layer = self.layer.map(|layer| format!("layer {}", layer + 1));
+        let pass = self.pass.map(|pass| format!("pass {}", pass + 1));
+        let place = self.place.map(|p| format!("x {:.1} y {:.1} z {:.2} mm", p.x, p.y, p.z));
+        let words: Vec<String> = [layer, pass, place].into_iter().flatten().collect();
+        if words.is_empty() { self.text.clone() } else { format!("{}: {}", words.join(", "), self.text) }
+    }
+}
+
+impl Subject<'_> {
+    /// Every pass with its layer and its index in it.
+    fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
+        self.layers.iter().flat_map(|layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+    }
+
+    /// Layers of which a figure is above a limit, as findings.
+    fn above(&self, check: &Check, value: fn(&Figures) -> f64, limit: f64, words: &str) -> Vec<Finding> {
+        let over = self.layers.iter().zip(&self.figures).filter(|(_, figures)| value(figures) > limit);
+        let text = |figures: &Figures| format!("{:.2} % {words}; the limit is {limit} %.", value(figures));
+        over.map(|(layer, figures)| Finding::of_layer(check, layer, text(figures))).collect()
+    }
+}

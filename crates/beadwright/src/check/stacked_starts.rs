@@ -1,0 +1,43 @@
+//! Arc starts on top of each other.
+
+use super::{Check, Finding, Subject};
+use crate::pass::Pass;
+use crate::plan::Layer;
+
+pub(super) const CHECK: Check = Check {
+    name: "stacked-starts",
+    what: "arc starts that lie above each other in check.stacked_starts layers, one after another",
+    why: "every start is a little high and every end a little low: stacked, they become a tower and a hole",
+    example: "layer 9, pass 1: arcs start within 1.0 bead width of this place on 8 layers, one after another.",
+    remedy: "move the seam from layer to layer, or alternate the direction",
+    find,
+};
+
+/// Starts nearer than this lie above each other, in bead widths.
+const NEAR: f64 = 0.5;
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let (width, most) = (subject.profile.bead.width, subject.profile.check.stacked_starts as usize);
+    // How many layers, down from this one, have a start at each start of the layer.
+    let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
+    let mut findings = Vec::new();
+    for layer in subject.layers {
+        let mut here = Vec::with_capacity(layer.passes.len());
+        for (i, start) in starts(layer) {
+            let under = below.iter().filter(|(at, _)| at.distance(start.truncate()) < NEAR * width);
+            let count = 1 + under.map(|(_, count)| *count).max().unwrap_or(0);
+            if count == most {
+                let text = format!("arcs start at this place on {count} layers, one after another.");
+                findings.push(Finding::of_pass(&CHECK, layer, i, Some(start), text));
+            }
+            here.push((start.truncate(), count));
+        }
+        below = here;
+    }
+    findings
+}
+
+fn starts(layer: &Layer) -> impl Iterator<Item = (usize, glam::DVec3)> + '_ {
+    let start = |(i, pass): (usize, &Pass)| Some((i, pass.start().filter(|p| p.is_finite())?));
+    layer.passes.iter().enumerate().filter_map(start)
+}

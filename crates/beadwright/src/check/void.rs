@@ -1,0 +1,17 @@
+//! Voids.
+
+use super::{Check, Finding, Subject};
+
+pub(super) const CHECK: Check = Check {
+    name: "void",
+    what: "layers with more void in the deposit model than check.max_void",
+    why: "voids stay in the part as pores and lacks of fusion",
+    example: "layer 12: 4.10 % of the area stays empty; the limit is 3 %.",
+    remedy: "take the strategy hybrid, or a smaller stepover or contour gap",
+    find,
+};
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let limit = subject.profile.check.max_void;
+    subject.above(&CHECK, |f| f.void_percent(), limit, "of the area stays empty")
+}

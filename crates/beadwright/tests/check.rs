@@ -1,0 +1,185 @@
+//! Checks: every seeded fault is found by the check that is there for it, and clean plans have no finding.
+#![allow(clippy::unwrap_used)]
+
+use beadwright::check::{self, CHECKS};
+use beadwright::example;
+use beadwright::pass::Along;
+use beadwright::plan::{self, Layer};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
+use glam::DVec3;
+
+fn profile(name: &str, strategy: &str) -> Profile {
+    let mut profile = Profile::built_in(name).unwrap();
+    profile.fill.strategy = strategy.to_owned();
+    profile
+}
+
+fn planned(part: &str, profile: &Profile, layers: usize) -> Vec<Layer> {
+    let mesh = example::find(part).unwrap().mesh();
+    let mut plan = plan::plan(part, &mesh, profile, &Task::new()).unwrap();
+    plan.layers.truncate(layers);
+    plan.layers
+}
+
+/// Names of the checks that find something.
+fn found(layers: &[Layer], profile: &Profile) -> Vec<&'static str> {
+    let findings = check::check(layers, profile, plan::deposit_settings(profile), &Task::new()).unwrap();
+    assert!(findings.iter().all(|f| f.sentence().ends_with('.')), "{findings:?}");
+    let mut names: Vec<&str> = findings.into_iter().map(|f| f.check).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+#[test]
+fn clean_plans_have_no_finding() {
+    for part in ["cross", "star", "gear", "propeller"] {
+        let profile = profile("cmt-al2319-kuka", "hybrid");
+        assert_eq!(found(&planned(part, &profile, 10), &profile), [""; 0], "{part}");
+    }
+    let profile = profile("cmt-steel-abb", "wall");
+    assert_eq!(found(&planned("tian", &profile, 18), &profile), [""; 0]);
+}
+
+/// A fault: what it is, how it comes into the plan or the profile, and the check that finds it.
+type Fault = (&'static str, fn(&mut Vec<Layer>, &mut Profile), &'static str);
+
+const FAULTS: [Fault; 20] = [
+    ("a coordinate that is no number", |l, _| l[1].passes[0].points[1].x = f64::NAN, "points"),
+    ("an infinite coordinate", |l, _| l[0].passes[1].points[0].y = f64::INFINITY, "points"),
+    (
+        "a pass of one spot",
+        |l, _| {
+            let spot = l[0].passes[0].points[0];
+            l[0].passes[0].points.iter_mut().for_each(|p| *p = spot);
+        },
+        "points",
+    ),
+    ("a point below its layer", |l, _| l[2].passes[0].points[0].z -= 3.0, "points"),
+    ("a layer gone", |l, _| drop(l.remove(1)), "layers"),
+    ("two layers exchanged", |l, _| l.swap(1, 2), "layers"),
+    ("a layer without passes", |l, _| l[1].passes.clear(), "layers"),
+    (
+        "a travel with the arc on",
+        |l, _| {
+            let far = l[0].passes[0].points[0] + DVec3::new(400.0, 0.0, 0.0);
+            l[0].passes[0].points.push(far);
+        },
+        "air",
+    ),
+    (
+        "a bead across the layer",
+        |l, _| {
+            let mut across = l[0].passes[0].clone();
+            let z = l[0].z;
+            across.closed = false;
+            across.points = vec![DVec3::new(-45.0, 0.3, z), DVec3::new(45.0, 0.2, z)];
+            (across.width, across.speed) = (Along::Same(7.54), Along::Same(10.5));
+            l[0].passes.push(across);
+        },
+        "crossing",
+    ),
+    (
+        "a stub",
+        |l, _| {
+            let end = l[0].passes[0].points[0] + DVec3::new(1.0, 0.0, 0.0);
+            l[0].passes[0].points = vec![l[0].passes[0].points[0], end];
+            l[0].passes[0].closed = false;
+        },
+        "short-pass",
+    ),
+    ("a speed of zero", |l, _| l[1].passes[0].speed = Along::Same(0.0), "speed-window"),
+    ("a speed over the window", |_, p| p.check.max_speed = Some(5.0), "speed-window"),
+    ("a bead three times as wide", |l, _| l[0].passes[0].width = Along::Same(22.0), "bead-width"),
+    ("wire feed halved", |_, p| p.process.wire_feed_speed /= 2.0, "wire-balance"),
+    ("a speed that does not follow the width", |l, _| l[0].passes[0].speed = Along::Same(20.0), "wire-balance"),
+    (
+        "too much heat",
+        |_, p| {
+            (p.process.current, p.process.voltage) = (Some(200.0), Some(25.0));
+            p.check.max_heat_input = Some(300.0);
+        },
+        "heat-input",
+    ),
+    (
+        "half of the passes gone",
+        |l, _| {
+            let half = l[0].passes.len() / 2;
+            l[0].passes.truncate(half);
+        },
+        "void",
+    ),
+    (
+        "all passes twice",
+        |l, _| {
+            let again = l[1].passes.clone();
+            l[1].passes.extend(again);
+        },
+        "overfill",
+    ),
+    (
+        "a layer moved aside",
+        |l, _| {
+            let points = l[3].passes.iter_mut().flat_map(|p| &mut p.points);
+            points.for_each(|p| p.x += 6.0);
+        },
+        "outside",
+    ),
+    (
+        "a layer that hangs over",
+        |l, _| {
+            for island in &mut l[3].islands {
+                *island = beadwright::planar::Polygon::simple(beadwright::planar::Ring::new(
+                    island.outer.points().iter().map(|p| *p + glam::DVec2::new(9.0, 0.0)).collect(),
+                ));
+            }
+        },
+        "overhang",
+    ),
+];
+
+#[test]
+fn every_seeded_fault_is_found() {
+    let profile = profile("cmt-al2319-kuka", "hybrid");
+    let clean = planned("cross", &profile, 4);
+    for (what, seed, check) in FAULTS {
+        let (mut layers, mut profile) = (clean.clone(), profile.clone());
+        seed(&mut layers, &mut profile);
+        let names = found(&layers, &profile);
+        assert!(names.contains(&check), "{what}: found by {names:?}");
+    }
+}
+
+#[test]
+fn towers_stacked_starts_and_large_layers_are_found() {
+    let mut profile = profile("cmt-al2319-kuka", "contour");
+    let layer = planned("cross", &profile, 1).remove(0);
+    let stack = |count: usize| -> Vec<Layer> {
+        let place = |k: usize| {
+            let (mut layer, up) = (layer.clone(), layer.height * k as f64);
+            (layer.index, layer.z) = (k, layer.z + up);
+            layer.passes.iter_mut().flat_map(|p| &mut p.points).for_each(|p| p.z += up);
+            layer
+        };
+        (0..count).map(place).collect()
+    };
+    profile.travel.clearance = 2.0;
+    let names = found(&stack(14), &profile);
+    assert!(names.contains(&"stacked-starts") && names.contains(&"towers"), "{names:?}");
+    profile.check.max_points = 20;
+    assert!(found(&stack(1), &profile).contains(&"program-size"));
+}
+
+#[test]
+fn every_check_tells_what_why_and_what_to_do() {
+    for check in &CHECKS {
+        for text in [check.what, check.why, check.example, check.remedy] {
+            assert!(text.len() > 20, "{}", check.name);
+        }
+    }
+    let mut names: Vec<&str> = CHECKS.iter().map(|c| c.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), CHECKS.len());
+}
