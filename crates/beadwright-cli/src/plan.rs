@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
     let output = Output::new(&arguments.output)?;
-    let programmer = Programmer::new(profile.travel.clearance);
+    let programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let settings = deposit_settings(arguments.grid, &profile, &import);
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();

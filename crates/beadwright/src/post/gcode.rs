@@ -3,7 +3,7 @@
 use super::{Chunk, Post, Values, ascii};
 use crate::number::push_fixed;
 use crate::profile::{Gcode, Profile};
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 
 /// Block numbers begin anew after this.
@@ -56,6 +56,15 @@ impl CncGcode {
 
     /// A straight move; axes that stand still are left out.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, feed: Option<f64>) {
+        self.motion(text, word, to, None, feed);
+    }
+
+    fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
+        let word = circle.map_or("G1", |circle| circle.word());
+        self.motion(text, word, to, circle, Some(speed));
+    }
+
+    fn motion(&mut self, text: &mut String, word: &str, to: DVec3, circle: Option<Circle>, feed: Option<f64>) {
         let moved = |axis: usize| self.at.is_none_or(|at| at[axis] != to[axis]);
         let axes: Vec<usize> = (0..3).filter(|&axis| moved(axis)).collect();
         if axes.is_empty() {
@@ -66,6 +75,9 @@ impl CncGcode {
         for axis in axes {
             text.push_str([" X", " Y", " Z"][axis]);
             push_fixed(text, to[axis], self.gcode.decimals);
+        }
+        if let (Some(circle), Some(at)) = (circle, self.at) {
+            push_centre(text, circle.centre - at, self.gcode.decimals);
         }
         if let Some(feed) = feed.filter(|&f| f != self.feed) {
             self.feed = feed;
@@ -94,7 +106,7 @@ impl CncGcode {
                 let lines = self.gcode.arc_on.clone();
                 self.blocks(text, &lines);
             }
-            Instruction::Weld { to, speed, .. } => self.go(text, "G1", to, Some(speed)),
+            Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
             Instruction::ArcOff { .. } => {
                 let lines = self.gcode.arc_off.clone();
                 self.blocks(text, &lines);
@@ -105,6 +117,14 @@ impl CncGcode {
     fn chunk(&self, text: String) -> Vec<Chunk> {
         vec![Chunk { file: self.file.clone(), text }]
     }
+}
+
+/// I and J: where the centre lies from the start of the arc, mm.
+pub(super) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
+    text.push_str(" I");
+    push_fixed(text, centre.x, decimals);
+    text.push_str(" J");
+    push_fixed(text, centre.y, decimals);
 }
 
 impl Post for CncGcode {

@@ -1,6 +1,6 @@
 //! What values can be: one table of ranges, and the few rules that tie keys together.
 
-use super::Profile;
+use super::{Gcode, Profile, Program};
 use crate::template;
 
 /// The first value that cannot be.
@@ -82,6 +82,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("slice.simplify", p.slice.simplify, 0.0, 0.2 * w, "mm (at most 0.2 bead widths)"),
         ("travel.speed", p.travel.speed, TINY, 3000.0, "mm/s"),
         ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
+        ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),
     ];
     if let Some(krl) = &p.krl {
         ranges.extend([
@@ -133,6 +134,9 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         let names = crate::post::NAMES.join(", ");
         return broken("posts", format!("\"{post}\""), format!("the posts are {names}."));
     }
+    if let Some(reason) = p.program.contradiction(p.gcode.as_ref()) {
+        return broken("program.chord_tolerance", format!("{}", p.program.chord_tolerance), reason.to_owned());
+    }
     let gcode = p.gcode.as_ref().map(|g| ("gcode.extension", &g.extension));
     let marlin = p.marlin.as_ref().map(|m| ("marlin.extension", &m.extension));
     for (key, extension) in gcode.into_iter().chain(marlin) {
@@ -145,6 +149,20 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         return broken("krl.home", format!("\"{home}\""), "an axis position such as \"A1 0.0,A2 -90.0,…\".".to_owned());
     }
     p.rapid.as_ref().and_then(|rapid| rapid.broken())
+}
+
+impl Program {
+    /// What does not fit together.
+    fn contradiction(&self, gcode: Option<&Gcode>) -> Option<&'static str> {
+        if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
+            return Some("0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move.");
+        }
+        if self.arcs && self.chord_tolerance == 0.0 {
+            return Some("arcs = true needs a tolerance, such as 0.05 mm.");
+        }
+        let coarse = gcode.is_some_and(|g| g.decimals < 3);
+        (self.arcs && coarse).then_some("arcs = true needs 3 gcode.decimals or more: the radius must be kept.")
+    }
 }
 
 /// Templates may use known placeholders and printable ASCII only: controllers read nothing else.

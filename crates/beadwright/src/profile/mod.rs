@@ -62,6 +62,9 @@ pub struct Profile {
     pub slice: Slice,
     /// Moves without arc.
     pub travel: Travel,
+    /// How paths become moves of a program; optional.
+    #[serde(default)]
+    pub program: Program,
     /// Acceleration, for machines whose time depends on it; optional.
     pub motion: Option<Motion>,
     /// KUKA KRL; needed for the post `krl`.
@@ -330,6 +333,18 @@ pub struct Travel {
     pub speed: f64,
     /// Height of the move above the layer, mm.
     pub clearance: f64,
+}
+
+/// How paths become moves of a program; every key has a default.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Program {
+    /// How far the moves may leave the planned path so that they are fewer, mm, 0.015 or more; default 0: every point
+    /// is kept.
+    pub chord_tolerance: f64,
+    /// Whether arcs are fitted, and not straight moves only; default false.
+    pub arcs: bool,
 }
 
 /// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.

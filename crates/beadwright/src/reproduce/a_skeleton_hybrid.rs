@@ -101,7 +101,7 @@ fn balance(profile: &Profile) -> String {
 fn krl(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<(String, String)>, Box<dyn std::error::Error>> {
     let plan = plan::plan("propeller", mesh, profile, task)?;
     let mut post = post::post("krl", "propeller", profile)?;
-    let mut programmer = Programmer::new(profile.travel.clearance);
+    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let mut chunks = post.begin(plan.layers.len());
     plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
     chunks.extend(post.end(programmer.leave()));

@@ -46,11 +46,12 @@ impl Reader {
         if words.contains(&('G', 4.0)) {
             return;
         }
-        let mut moves = false;
+        let (mut moves, mut centre) = (false, [None; 2]);
         for &(letter, value) in words {
             match letter {
-                'G' if value == 0.0 || value == 1.0 => self.motion = Some(value as u32),
+                'G' if (0.0..=3.0).contains(&value) => self.motion = Some(value as u32),
                 'F' => self.feed = Some(value),
+                'I' | 'J' => centre["IJ".find(letter).unwrap()] = Some(value),
                 'X' | 'Y' | 'Z' => {
                     self.axes["XYZ".find(letter).unwrap()] = Some(value);
                     moves = true;
@@ -62,10 +63,14 @@ impl Reader {
             return;
         }
         let motion = self.motion.expect("a move without G0 or G1");
-        assert!(motion == 1 || !self.machine.burns(), "G0 with the arc on: {line}");
-        let speed = if motion == 1 { self.feed.expect("G1 without F") / 60.0 } else { f64::INFINITY };
+        assert!(motion >= 1 || !self.machine.burns(), "G0 with the arc on: {line}");
+        let speed = if motion >= 1 { self.feed.expect("G1 without F") / 60.0 } else { f64::INFINITY };
         if let [Some(x), Some(y), Some(z)] = self.axes {
-            self.machine.move_to([x, y, z], speed);
+            match (motion, centre) {
+                (2 | 3, [Some(i), Some(j)]) => self.machine.turn_about([i, j], motion == 3, [x, y, z], speed),
+                (0 | 1, [None, None]) => self.machine.move_to([x, y, z], speed),
+                _ => panic!("{line}"),
+            }
         }
     }
 }
