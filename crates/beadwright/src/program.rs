@@ -91,18 +91,20 @@ pub struct Programmer {
     clearance: f64,
     torch: Option<DVec3>,
     fit: Option<Fit>,
+    speed_tolerance: f64,
 }
 
 impl Programmer {
     /// Travels go `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
-        Self { clearance, torch: None, fit: None }
+        Self { clearance, torch: None, fit: None, speed_tolerance: 0.0 }
     }
 
     /// Fits straight pieces and arcs as the profile says; without a tolerance every point is kept.
     pub fn with_fit(mut self, program: &Program) -> Self {
         // What dropping close points may have moved comes on top.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
+        self.speed_tolerance = program.speed_tolerance;
         self.fit = (tolerance > 0.0).then_some(Fit { tolerance, arcs: program.arcs, grid: RESOLUTION_MM });
         self
     }
@@ -117,7 +119,8 @@ impl Programmer {
     }
 
     fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
-        let moves = distinct(pass);
+        let mut moves = distinct(pass);
+        level_speeds(&mut moves, self.speed_tolerance);
         let [(start, _), rest @ ..] = &moves[..] else { return };
         let (start, Some(&(end, _))) = (*start, rest.last()) else { return };
         let top = self.torch.map_or(start.z, |from| from.z.max(start.z)) + self.clearance;
@@ -145,6 +148,29 @@ impl Programmer {
 
 fn weld(to: DVec3, speed: f64, circle: Option<Circle>) -> Instruction {
     Instruction::Weld { to, circle, speed, last: false }
+}
+
+/// Gives neighbouring moves whose speeds differ by no more than that part one speed: the one that takes the same time
+/// along them together, and so lays the same metal.
+fn level_speeds(moves: &mut [(DVec3, f64)], tolerance: f64) {
+    let mut start = 1;
+    while tolerance > 0.0 && start < moves.len() {
+        let (mut low, mut high, mut end) = (f64::INFINITY, 0.0_f64, start);
+        while let Some(&(_, speed)) = moves.get(end) {
+            (low, high) = (low.min(speed), high.max(speed));
+            if high > low * (1.0 + tolerance) {
+                break;
+            }
+            end += 1;
+        }
+        let end = end.max(start + 1);
+        let pieces = || moves[start - 1..end].windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
+        let (length, time) = pieces().fold((0.0, 0.0), |(l, t), (length, speed)| (l + length, t + length / speed));
+        let (first, alike) = (moves[start].1, pieces().all(|(_, speed)| speed == moves[start].1));
+        let speed = if alike || time <= 0.0 { first } else { length / time };
+        moves[start..end].iter_mut().for_each(|(_, s)| *s = speed);
+        start = end;
+    }
 }
 
 /// The welds from the first point on. Pieces end where speed or height change.

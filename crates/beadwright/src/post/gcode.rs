@@ -1,8 +1,9 @@
-//! CNC G-code, three axes: one file between `%` signs, feeds in mm/min, G0 never with the arc on.
+//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
+//! keys and templates of the profile.
 
 use super::{Chunk, Post, Values, ascii};
 use crate::number::push_fixed;
-use crate::profile::{Gcode, Profile};
+use crate::profile::{Gcode, GcodeComments, Profile};
 use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 
@@ -40,9 +41,13 @@ impl CncGcode {
         }
     }
 
-    fn comment(text: &mut String, comment: &str) {
+    fn comment(&self, text: &mut String, comment: &str) {
         let clean = comment.replace(['(', ')'], "_").to_uppercase();
-        text.push_str(&format!("({})\n", &clean[..clean.len().min(MAX_COMMENT)]));
+        let clean = &clean[..clean.len().min(MAX_COMMENT)];
+        match self.gcode.comments {
+            GcodeComments::Parentheses => text.push_str(&format!("({clean})\n")),
+            GcodeComments::Semicolon => text.push_str(&format!("; {clean}\n")),
+        }
     }
 
     fn blocks(&mut self, text: &mut String, template: &[String]) {
@@ -102,7 +107,7 @@ impl CncGcode {
             Instruction::Travel { to } => self.go(text, "G0", to, None),
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
-                Self::comment(text, &format!("PASS {pass} {}", kind.name()));
+                self.comment(text, &format!("PASS {pass} {}", kind.name()));
                 let lines = self.gcode.arc_on.clone();
                 self.blocks(text, &lines);
             }
@@ -129,8 +134,14 @@ pub(super) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
 
 impl Post for CncGcode {
     fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
-        let mut text = "%\n".to_owned();
-        Self::comment(&mut text, &self.comment);
+        let mut text = String::new();
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
+        if let Some(number) = self.gcode.program_number {
+            text.push_str(&format!("O{number:04}\n"));
+        }
+        self.comment(&mut text, &self.comment);
         let header = self.gcode.header.clone();
         self.blocks(&mut text, &header);
         self.chunk(text)
@@ -142,7 +153,7 @@ impl Post for CncGcode {
         }
         let mut text = String::with_capacity(program.instructions.len() * 32);
         self.values.set("layer", program.index + 1);
-        Self::comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
+        self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
         let layer_start = self.gcode.layer_start.clone();
         self.blocks(&mut text, &layer_start);
         for &instruction in &program.instructions {
@@ -158,7 +169,9 @@ impl Post for CncGcode {
         }
         let footer = self.gcode.footer.clone();
         self.blocks(&mut text, &footer);
-        text.push_str("%\n");
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
         self.chunk(text)
     }
 }
