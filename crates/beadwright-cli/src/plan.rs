@@ -28,7 +28,8 @@ pub(crate) struct Arguments {
     /// Let the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
-    /// Dialect instead of the profile's; may be given several times: krl, gcode, marlin, rapid.
+    /// Dialect instead of the profile's; may be given several times: krl, gcode, marlin, rapid, fanuc,
+    /// inform, urscript.
     #[arg(long, value_name = "NAME")]
     post: Vec<String>,
     /// A value of the profile, such as fill.raster_angle=45; may be given several times.

@@ -62,7 +62,8 @@ fn without_arcs_a_circle_becomes_chords() {
 
 #[test]
 fn a_wave_is_followed_within_the_tolerance() {
-    let wave: Vec<DVec2> = (0..4000).map(|i| f64::from(i) * 0.02).map(|x| DVec2::new(x, 6.0 * (x / 5.0).sin())).collect();
+    let wave: Vec<DVec2> =
+        (0..4000).map(|i| f64::from(i) * 0.02).map(|x| DVec2::new(x, 6.0 * (x / 5.0).sin())).collect();
     let pieces = FIT.pieces(&wave);
     assert!(pieces.len() < 60, "{}", pieces.len());
     let mut start = 0;

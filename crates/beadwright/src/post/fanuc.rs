@@ -168,7 +168,10 @@ impl Post for FanucTp {
             }
             part.iter().for_each(|&instruction| self.instruction(&mut program, instruction));
             self.main.line(&format!("  CALL {name}"));
-            chunks.push(Chunk { file: format!("{name}.ls"), text: program.text(&name, &format!("LAYER {}", layer.index + 1)) });
+            chunks.push(Chunk {
+                file: format!("{name}.ls"),
+                text: program.text(&name, &format!("LAYER {}", layer.index + 1)),
+            });
         }
         chunks
     }

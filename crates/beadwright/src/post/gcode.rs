@@ -124,8 +124,10 @@ impl CncGcode {
     }
 }
 
-/// I and J: where the centre lies from the start of the arc, mm.
+/// I and J: where the centre lies from the start of the arc, mm. With one decimal more than the points: their rounding
+/// moves the whole arc.
 pub(super) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
+    let decimals = (decimals + 1).min(4);
     text.push_str(" I");
     push_fixed(text, centre.x, decimals);
     text.push_str(" J");

@@ -51,7 +51,16 @@ impl YaskawaInform {
         let name = upper_name(part);
         let values = Values::new(&name, profile);
         let travel_speed = profile.travel.speed;
-        Self { name, comment: ascii(part), inform, values, travel_speed, digits: 3, main: String::new(), at: DVec3::ZERO }
+        Self {
+            name,
+            comment: ascii(part),
+            inform,
+            values,
+            travel_speed,
+            digits: 3,
+            main: String::new(),
+            at: DVec3::ZERO,
+        }
     }
 
     fn lines(&self, text: &mut String, template: &[String]) {
@@ -96,7 +105,9 @@ impl YaskawaInform {
             Instruction::Weld { to, circle, speed, last } => {
                 let level = if last { 0 } else { self.inform.position_level };
                 let Some(circle) = circle else { return self.motion(job, "MOVL", to, speed, level) };
-                for (to, level) in [(self.at, self.inform.position_level), (circle.via, self.inform.position_level), (to, level)] {
+                for (to, level) in
+                    [(self.at, self.inform.position_level), (circle.via, self.inform.position_level), (to, level)]
+                {
                     self.motion(job, "MOVC", to, speed, level);
                 }
             }

@@ -105,15 +105,7 @@ impl AbbRapid {
     }
 
     /// The same with the target on an arc in front: `word via,target,…;`
-    fn motion_over(
-        &self,
-        text: &mut String,
-        word: &str,
-        via: Option<DVec3>,
-        to: DVec3,
-        between: &str,
-        blend: bool,
-    ) {
+    fn motion_over(&self, text: &mut String, word: &str, via: Option<DVec3>, to: DVec3, between: &str, blend: bool) {
         let zone = if blend && self.rapid.zone > 0.0 { "zBead" } else { "fine" };
         text.push_str("    ");
         text.push_str(word);

@@ -11,7 +11,13 @@ pub(super) fn parts(instructions: &[Instruction], most: usize) -> Vec<&[Instruct
             between = i;
         }
         let inside = matches!(instructions[i], Instruction::Weld { .. });
-        let cut = if between > start { between } else if inside { i } else { continue };
+        let cut = if between > start {
+            between
+        } else if inside {
+            i
+        } else {
+            continue;
+        };
         if i - start >= most {
             parts.push(&instructions[start..cut]);
             start = cut;
@@ -35,7 +41,11 @@ mod tests {
             let weld = Instruction::Weld { to, circle: None, speed: 1.0, last: false };
             let head = [Instruction::Travel { to }, Instruction::Travel { to }];
             let on = Instruction::ArcOn { pass: 1, kind: PassKind::Infill };
-            head.into_iter().chain([on]).chain(vec![weld; count]).chain([Instruction::ArcOff { pass: 1 }]).collect::<Vec<_>>()
+            head.into_iter()
+                .chain([on])
+                .chain(vec![weld; count])
+                .chain([Instruction::ArcOff { pass: 1 }])
+                .collect::<Vec<_>>()
         };
         moves.iter().flat_map(pass).collect()
     }

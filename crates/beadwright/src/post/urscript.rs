@@ -12,8 +12,26 @@ use glam::DVec3;
 
 /// Words that no program may be called.
 const RESERVED: [&str; 20] = [
-    "and", "break", "continue", "def", "elif", "else", "end", "false", "global", "halt", "if", "local", "not", "or",
-    "return", "sec", "thread", "true", "while", "part_frame",
+    "and",
+    "break",
+    "continue",
+    "def",
+    "elif",
+    "else",
+    "end",
+    "false",
+    "global",
+    "halt",
+    "if",
+    "local",
+    "not",
+    "or",
+    "return",
+    "sec",
+    "thread",
+    "true",
+    "while",
+    "part_frame",
 ];
 
 /// Part of the shorter of two moves by which they are blended at most.

@@ -4,15 +4,25 @@ use super::{Machine, Motion};
 
 /// Runs a program; `arc_on` and `arc_off` are the M codes of the arc.
 pub fn run(text: &str, arc_on: u32, arc_off: u32) -> Motion {
+    assert!(text.starts_with("%\n") && text.ends_with("%\n"));
+    run_flavour(&text[2..text.len() - 2], arc_on, arc_off)
+}
+
+/// The same for a program without `%` signs.
+pub fn run_flavour(text: &str, arc_on: u32, arc_off: u32) -> Motion {
     let lines: Vec<&str> = text.lines().collect();
-    assert!(text.is_ascii() && lines.first() == Some(&"%") && lines.last() == Some(&"%"));
+    assert!(text.is_ascii() && !text.contains('%'));
     let mut reader = Reader::default();
     let mut ended = false;
-    for line in &lines[1..lines.len() - 1] {
+    for line in &lines {
         assert!(line.len() < 80, "block too long: {line}");
         assert!(!ended, "a block after M30: {line}");
         if line.starts_with('(') {
-            assert!(line.ends_with(')') && line.matches('(').count() == 1, "{line}");
+            assert!(!text.contains(';') && line.ends_with(')') && line.matches('(').count() == 1, "{line}");
+            continue;
+        }
+        if line.starts_with(';') {
+            assert!(!text.contains('('), "two kinds of comments");
             continue;
         }
         let words: Vec<(char, f64)> = line.split_whitespace().map(word).collect();

@@ -230,7 +230,9 @@ impl Reader<'_> {
                 self.common(module, speed, zone, tool);
                 self.homes += 1;
             }
-            "MoveL" | "MoveC" | "ArcLStart" | "ArcL" | "ArcLEnd" | "ArcC" | "ArcCEnd" => self.motion(module, word, rest),
+            "MoveL" | "MoveC" | "ArcLStart" | "ArcL" | "ArcLEnd" | "ArcC" | "ArcCEnd" => {
+                self.motion(module, word, rest)
+            }
             "WaitTime" => {
                 let seconds: f64 = rest.strip_prefix("\\InPos,").unwrap().parse().unwrap();
                 assert!(seconds >= 0.0);
