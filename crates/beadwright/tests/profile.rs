@@ -405,7 +405,9 @@ fn templates_with_unknown_placeholders_are_refused() {
         let (section, item) = key.split_once('.').unwrap();
         document[section][item] = Item::Value([line].into_iter().collect::<Value>());
         let edited = document.to_string();
-        check_text(&edited, line_of(&edited, &format!("\n{item} = ")) + 1, &[key, "is impossible"]);
+        let head = edited.find(&format!("\n[{section}]")).unwrap();
+        let line = line_of(&edited[head..], &format!("\n{item} = ")) + edited[..head].matches('\n').count() + 1;
+        check_text(&edited, line, &[key, "is impossible"]);
         Profile::parse(&edited).unwrap_err().to_string()
     };
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {

@@ -52,7 +52,7 @@ impl Program {
         let _ = write!(self.positions, "P[{}]{{\r\n   GP1:\r\n    {head}\r\n", self.points);
         for (i, (axis, value)) in axes.iter().enumerate() {
             let end = ["", ",", ",\r\n"][if i == 5 { 0 } else { 1 + usize::from(i == 2) }];
-            let _ = write!(self.positions, "{}{axis} = {value:>9}{end}", if i % 3 == 0 { "    " } else { " " });
+            let _ = write!(self.positions, "{}{axis} = {value}{end}", if i % 3 == 0 { "    " } else { " " });
         }
         self.positions.push_str("\r\n};\r\n");
         self.points
@@ -91,14 +91,14 @@ impl FanucTp {
     fn pose(&self, program: &mut Program, to: DVec3) -> usize {
         let Fanuc { user_frame, tool_frame, configuration, orientation: [w, p, r], .. } = &self.fanuc;
         let head = format!("UF : {user_frame}, UT : {tool_frame}, CONFIG : '{configuration}',");
-        let (mm, deg) = (|v: f64| format!("{} mm", fixed(v, 3)), |v: &f64| format!("{} deg", fixed(*v, 4)));
+        let (mm, deg) = (|v: f64| format!("{:>9} mm", fixed(v, 3)), |v: &f64| format!("{:>9} deg", fixed(*v, 4)));
         let axes = [("X", mm(to.x)), ("Y", mm(to.y)), ("Z", mm(to.z)), ("W", deg(w)), ("P", deg(p)), ("R", deg(r))];
         program.position(&head, axes)
     }
 
     fn home(&self, program: &mut Program) {
         let names = ["J1", "J2", "J3", "J4", "J5", "J6"];
-        let axes = std::array::from_fn(|i| (names[i], format!("{} deg", fixed(self.fanuc.home[i], 3))));
+        let axes = std::array::from_fn(|i| (names[i], format!("{:>9} deg", fixed(self.fanuc.home[i], 3))));
         let head = format!("UF : {}, UT : {},", self.fanuc.user_frame, self.fanuc.tool_frame);
         let number = program.position(&head, axes);
         program.line(&format!("J P[{number}] {}% FINE", fixed(self.fanuc.home_speed, 0)));

@@ -17,19 +17,19 @@ DEFAULT_GROUP = 1,*,*,*,*;
 P[1]{
    GP1:
     UF : 1, UT : 1,
-    J1 = 0.000 deg, J2 = 0.000 deg, J3 = 0.000 deg,
-    J4 = 0.000 deg, J5 = -90.000 deg, J6 = 0.000 deg
+    J1 =     0.000 deg, J2 =     0.000 deg, J3 =     0.000 deg,
+    J4 =     0.000 deg, J5 =   -90.000 deg, J6 =     0.000 deg
 };
 P[2]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 70.000 mm, Y = 30.000 mm, Z = 22.837 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    70.000 mm, Y =    30.000 mm, Z =    22.837 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[3]{
    GP1:
     UF : 1, UT : 1,
-    J1 = 0.000 deg, J2 = 0.000 deg, J3 = 0.000 deg,
-    J4 = 0.000 deg, J5 = -90.000 deg, J6 = 0.000 deg
+    J1 =     0.000 deg, J2 =     0.000 deg, J3 =     0.000 deg,
+    J4 =     0.000 deg, J5 =   -90.000 deg, J6 =     0.000 deg
 };
 /END

@@ -46,91 +46,91 @@ DEFAULT_GROUP = 1,*,*,*,*;
 P[1]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 35.000 mm, Y = 20.000 mm, Z = 21.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    35.000 mm, Y =    20.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[2]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 35.000 mm, Y = 20.000 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    35.000 mm, Y =    20.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[3]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 21.568 mm, Y = 34.912 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    21.568 mm, Y =    34.912 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[4]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X =  5.328 mm, Y = 23.119 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =     5.328 mm, Y =    23.119 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[5]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 15.366 mm, Y =  5.739 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    15.366 mm, Y =     5.739 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[6]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 33.703 mm, Y = 13.899 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    33.703 mm, Y =    13.899 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[7]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 34.667 mm, Y = 16.882 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    34.667 mm, Y =    16.882 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[8]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 35.000 mm, Y = 20.000 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    35.000 mm, Y =    20.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[9]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 35.000 mm, Y = 20.000 mm, Z = 21.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    35.000 mm, Y =    20.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[10]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 50.000 mm, Y =  5.000 mm, Z = 21.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    50.000 mm, Y =     5.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[11]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 50.000 mm, Y =  5.000 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    50.000 mm, Y =     5.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[12]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 60.872 mm, Y =  5.038 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    60.872 mm, Y =     5.038 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[13]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 67.366 mm, Y =  8.251 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    67.366 mm, Y =     8.251 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[14]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 70.000 mm, Y = 15.000 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    70.000 mm, Y =    15.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 P[15]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X = 70.000 mm, Y = 30.000 mm, Z =  1.419 mm,
-    W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+    X =    70.000 mm, Y =    30.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 /END
