@@ -5,11 +5,12 @@ mod readers;
 
 use beadwright::fill::PassKind;
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::Layer;
-use beadwright::post;
+use beadwright::plan::{self, Layer};
 use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, Profile, RapidArc};
 use beadwright::program::Programmer;
 use beadwright::readback::{ArcCodes, Options, read};
+use beadwright::task::Task;
+use beadwright::{example, post};
 use glam::{DVec2, DVec3};
 use readers::{Motion, Point, Weld, distance};
 use std::collections::BTreeMap;
@@ -99,11 +100,14 @@ fn flavour(name: &str) -> Profile {
 
 /// Every dialect: its name, its files, and what an independent reader finds in them.
 fn all() -> Vec<(&'static str, Files, Motion)> {
-    let job = job();
-    let write = |post: &str| written(post, "demo", &job, &profile());
+    all_of(&job())
+}
+
+fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
+    let write = |post: &str| written(post, "demo", job, &profile());
     let mut plain = profile();
     plain.rapid.as_mut().unwrap().arc = RapidArc::Plain;
-    let plain = written("rapid", "demo", &job, &plain);
+    let plain = written("rapid", "demo", job, &plain);
     let (krl, rapid, fanuc, inform) = (write("krl"), write("rapid"), write("fanuc"), write("inform"));
     let (urscript, marlin) = (write("urscript"), write("marlin"));
     let print = readers::marlin::run(&marlin["demo.gcode"]);
@@ -119,7 +123,7 @@ fn all() -> Vec<(&'static str, Files, Motion)> {
         ("marlin", marlin, printed),
     ];
     for (name, file) in [("gcode-linuxcnc", "demo.nc"), ("gcode-fanuc", "demo.nc"), ("gcode-siemens", "demo.MPF")] {
-        let files = written("gcode", "demo", &job, &flavour(&name[6..]));
+        let files = written("gcode", "demo", job, &flavour(&name[6..]));
         let text = files[file].trim_matches(['%', '\n']).to_owned() + "\n";
         // The O number is no word of a block.
         let motion = readers::gcode::run_flavour(text.trim_start_matches("O1234\n"), 3, 5);
@@ -170,6 +174,35 @@ fn every_dialect_reads_back_alike() {
             assert!(a.speeds.iter().zip(&b.speeds).all(|(v, w)| (v - w).abs() < 0.051), "{name}");
         }
     }
+}
+
+/// Every pass of a real part is as long in every dialect, and begins and ends at the same place.
+#[test]
+fn the_propeller_reads_back_alike_in_every_dialect() {
+    let mesh = example::find("propeller").unwrap().mesh();
+    for strategy in ["contour", "hybrid"] {
+        let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+        profile.fill.strategy = strategy.to_owned();
+        let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
+        let all = all_of(&plan.layers);
+        let first = &all[0].2;
+        assert_eq!(first.welds.len(), plan.layers.iter().map(|l| l.passes.len()).sum::<usize>());
+        for (name, _, motion) in &all {
+            assert!((motion.travel - first.travel).abs() < 0.01, "{strategy} {name}: {}", motion.travel);
+            assert_eq!(motion.welds.len(), first.welds.len(), "{strategy} {name}");
+            for (a, b) in motion.welds.iter().zip(&first.welds) {
+                let off = (length(a) - length(b)).abs();
+                assert!(off < 0.01, "{strategy} {name}: {} for {}", length(a), length(b));
+                let ends = [(a.points[0], b.points[0]), (*a.points.last().unwrap(), *b.points.last().unwrap())];
+                assert!(ends.iter().all(|(p, q)| distance(*p, *q) < 0.002), "{strategy} {name}");
+            }
+        }
+        println!("{strategy}: {} passes, {} arcs, {:.3} mm", first.welds.len(), first.circles, first.weld_length());
+    }
+}
+
+fn length(weld: &Weld) -> f64 {
+    weld.points.windows(2).map(|p| distance(p[0], p[1])).sum()
 }
 
 #[test]
