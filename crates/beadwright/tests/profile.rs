@@ -288,10 +288,10 @@ fn impossible_counts_are_refused_with_line_and_key() {
         (KUKA, "krl.base", 0, 33),
         (CNC, "gcode.decimals", 0, 5),
         (ROBOTS, "fanuc.tool_frame", 0, 30),
-        (ROBOTS, "fanuc.max_points", 9, 4501),
+        (ROBOTS, "fanuc.max_points", 9, 3001),
         (ROBOTS, "inform.user_frame", 0, 64),
         (ROBOTS, "inform.max_name", 7, 33),
-        (ROBOTS, "inform.max_points", 9, 2501),
+        (ROBOTS, "inform.max_points", 9, 2001),
     ] {
         impossible(profile, path, low);
         impossible(profile, path, high);

@@ -61,7 +61,7 @@ impl Fanuc {
             ("fanuc.tool_frame", self.tool_frame.into(), 1.0, 29.0, "(tool frame)"),
             ("fanuc.home_speed", self.home_speed, 1.0, 100.0, "%"),
             ("fanuc.continuity", self.continuity.into(), 0.0, 100.0, "(CNT)"),
-            ("fanuc.max_points", self.max_points as f64, 10.0, 4500.0, "moves a program"),
+            ("fanuc.max_points", self.max_points as f64, 10.0, 3000.0, "moves a program"),
         ];
         ranges.extend(self.home.map(|axis| ("fanuc.home", axis, -720.0, 720.0, "°")));
         ranges.extend(self.orientation.map(|angle| ("fanuc.orientation", angle, -360.0, 360.0, "°")));

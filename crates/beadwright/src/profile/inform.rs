@@ -65,7 +65,7 @@ impl Inform {
             ("inform.home_speed", self.home_speed, 0.01, 100.0, "%"),
             ("inform.position_level", self.position_level.into(), 0.0, 8.0, "(PL)"),
             ("inform.max_name", self.max_name as f64, 8.0, 32.0, "characters"),
-            ("inform.max_points", self.max_points as f64, 10.0, 2500.0, "moves a job"),
+            ("inform.max_points", self.max_points as f64, 10.0, 2000.0, "moves a job"),
         ];
         ranges.extend(self.home.map(|axis| ("inform.home", axis as f64, -1e7, 1e7, "pulses")));
         ranges.extend(self.orientation.map(|angle| ("inform.orientation", angle, -360.0, 360.0, "°")));
