@@ -33,7 +33,8 @@ pub(crate) struct Arguments {
     /// Let the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
-    /// Dialect instead of the profile's; may be given several times: krl, gcode, marlin, rapid.
+    /// Dialect instead of the profile's; may be given several times: krl, gcode, marlin, rapid, fanuc,
+    /// inform, urscript.
     #[arg(long, value_name = "NAME")]
     post: Vec<String>,
     /// A value of the profile, such as fill.raster_angle=45; may be given several times.
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         profile
     };
     let output = Output::new(&arguments.output)?;
-    let programmer = Programmer::new(profile.travel.clearance);
+    let programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();

@@ -141,7 +141,8 @@ fn wrong_usage_and_wrong_values_are_told_apart() {
     for (arguments, part) in [
         (&["-p", "cmt-al2319-kuke"][..], "Did you mean \"cmt-al2319-kuka\"?"),
         (&["--strategy", "spiral"], "raster, zigzag, contour, compound"),
-        (&["--post", "fanuc"], "there is no post \"fanuc\". The posts are krl, gcode, marlin, rapid."),
+        (&["--post", "kawasaki"], "The posts are krl, gcode, marlin, rapid, fanuc, inform, urscript."),
+        (&["--post", "fanuc"], "cmt-steel-robots"),
         (&["--post", "rapid"], "cmt-steel-abb"),
         (&["--post", "gcode"], "plasma-304-cnc"),
         (&["--set", "fill.raster_angel=4"], "Did you mean \"raster_angle\"?"),

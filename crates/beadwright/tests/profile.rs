@@ -8,6 +8,7 @@ use toml_edit::{Document, DocumentMut, Item, Value};
 
 const KUKA: &str = "cmt-al2319-kuka";
 const CNC: &str = "plasma-304-cnc";
+const ROBOTS: &str = "cmt-steel-robots";
 const ABB: &str = "cmt-steel-abb";
 
 fn text(name: &str) -> &'static str {
@@ -51,7 +52,7 @@ fn built_in_profiles_have_no_notes() {
 fn a_misspelt_name_gets_the_nearest_or_all() {
     let error = |name: &str| Profile::built_in(name).unwrap_err().to_string();
     assert!(error("plasma-304").contains("Did you mean \"plasma-304-cnc\"?"));
-    assert!(error("zzz").contains(&format!("Known: {KUKA}, {ABB}, {CNC}, fdm-abs-0.4.")), "{}", error("zzz"));
+    assert!(error("zzz").contains(&format!("Known: {KUKA}, {ABB}, {ROBOTS}, {CNC}, fdm-abs-0.4.")), "{}", error("zzz"));
 }
 
 #[test]
@@ -163,6 +164,7 @@ fn only_optional_keys_may_be_missing() {
         "fill.solid_layers",
         "rapid.tool_frame",
         "rapid.part_frame",
+        "urscript.tool_frame",
     ];
     for (name, full) in BUILT_IN {
         let document: DocumentMut = full.parse().unwrap();
@@ -265,6 +267,11 @@ fn impossible_numbers_are_refused_with_line_and_key() {
         (ABB, "rapid.speed_step", 0.0, 101.0),
         (ABB, "rapid.voltage", -101.0, 101.0),
         (ABB, "rapid.control", -101.0, 101.0),
+        (ROBOTS, "fanuc.home_speed", 0.5, 101.0),
+        (ROBOTS, "inform.home_speed", 0.0, 101.0),
+        (ROBOTS, "urscript.home_speed", 0.0, 181.0),
+        (ROBOTS, "urscript.acceleration", 0.0, 20_001.0),
+        (ROBOTS, "urscript.blend", -0.1, 51.0),
     ]);
     for (profile, path, low, high) in both {
         for value in [low, high, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -280,12 +287,21 @@ fn impossible_counts_are_refused_with_line_and_key() {
         (KUKA, "krl.tool", 0, 17),
         (KUKA, "krl.base", 0, 33),
         (CNC, "gcode.decimals", 0, 5),
+        (ROBOTS, "fanuc.tool_frame", 0, 30),
+        (ROBOTS, "fanuc.max_points", 9, 3001),
+        (ROBOTS, "inform.user_frame", 0, 64),
+        (ROBOTS, "inform.max_name", 7, 33),
+        (ROBOTS, "inform.max_points", 9, 2001),
     ] {
         impossible(profile, path, low);
         impossible(profile, path, high);
     }
     impossible(ABB, "rapid.schedule", 10_000);
     impossible(ABB, "rapid.mode", 100);
+    impossible(ROBOTS, "fanuc.user_frame", 62);
+    impossible(ROBOTS, "fanuc.continuity", 101);
+    impossible(ROBOTS, "inform.tool", 64);
+    impossible(ROBOTS, "inform.position_level", 9);
     impossible(KUKA, "krl.orientation", [0.0, 400.0, 0.0].into_iter().collect::<Value>());
 }
 
@@ -294,10 +310,19 @@ fn impossible_words_are_refused_with_line_and_key() {
     impossible(KUKA, "fill.strategy", "spiral");
     check(KUKA, "\"compound\"", "\"spiral\"", &["the strategies are raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
-    check(KUKA, "[\"krl\"]", "[\"abb\"]", &["posts = \"abb\"", "the posts are krl, gcode, marlin, rapid"]);
+    check(
+        KUKA,
+        "[\"krl\"]",
+        "[\"abb\"]",
+        &["posts = \"abb\"", "the posts are krl, gcode, marlin, rapid, fanuc, inform, urscript"],
+    );
     impossible(CNC, "gcode.extension", "../nc");
     impossible(CNC, "gcode.extension", "");
     impossible(KUKA, "krl.home", "X 0,Y 0");
+    impossible(ROBOTS, "fanuc.configuration", "N'U");
+    impossible(ROBOTS, "inform.group", "RB 1");
+    impossible(ROBOTS, "inform.configuration", "x");
+    impossible(ROBOTS, "inform.date", "today");
     impossible(KUKA, "krl.home", "A1 0}; HALT");
     for name in ["tool0", "1st", "a b", "smBead", "v100", "a_name_of_more_than_32_characters"] {
         impossible(ABB, "rapid.tool", name);
@@ -352,6 +377,23 @@ fn a_stepover_stands_exactly_with_a_free_overlap() {
 }
 
 #[test]
+fn tolerances_of_programs_are_checked() {
+    let with = |lines: &str| format!("{}\n[program]\n{lines}", text(CNC));
+    for (lines, line, part) in [
+        ("chord_tolerance = 0.01", "chord_tolerance", "0.015 mm or more"),
+        ("chord_tolerance = 3.0", "chord_tolerance", "half a bead width"),
+        ("arcs = true", "[program]", "needs a tolerance"),
+        ("speed_tolerance = 0.5", "speed_tolerance", "of the speed"),
+    ] {
+        let edited = with(lines);
+        check_text(&edited, line_of(&edited, line), &["program.", "is impossible", part]);
+    }
+    let coarse = with("chord_tolerance = 0.05\narcs = true").replace("decimals = 3", "decimals = 2");
+    check_text(&coarse, line_of(&coarse, "chord_tolerance"), &["3 gcode.decimals"]);
+    assert!(Profile::parse(&with("chord_tolerance = 0.05\narcs = true")).is_ok());
+}
+
+#[test]
 fn a_free_overlap_without_a_stepover_is_refused_where_it_stands() {
     check(CNC, "overlap = \"tangent\"", "overlap = \"free\"", &["stepover", "free"]);
 }
@@ -363,7 +405,9 @@ fn templates_with_unknown_placeholders_are_refused() {
         let (section, item) = key.split_once('.').unwrap();
         document[section][item] = Item::Value([line].into_iter().collect::<Value>());
         let edited = document.to_string();
-        check_text(&edited, line_of(&edited, &format!("\n{item} = ")) + 1, &[key, "is impossible"]);
+        let head = edited.find(&format!("\n[{section}]")).unwrap();
+        let line = line_of(&edited[head..], &format!("\n{item} = ")) + edited[..head].matches('\n').count() + 1;
+        check_text(&edited, line, &[key, "is impossible"]);
         Profile::parse(&edited).unwrap_err().to_string()
     };
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
@@ -372,6 +416,9 @@ fn templates_with_unknown_placeholders_are_refused() {
     }
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
         key(ABB, &format!("rapid.{part}"), "SetDO doGas,{{gas}};");
+        for section in ["fanuc", "inform", "urscript"] {
+            key(ROBOTS, &format!("{section}.{part}"), "WAIT {{gas}}");
+        }
     }
     for part in ["header", "layer_start", "arc_on", "arc_off", "footer"] {
         let error = key(CNC, &format!("gcode.{part}"), "(Grüße)");

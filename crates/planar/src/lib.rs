@@ -6,6 +6,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`ring`] | [`Ring`], [`Polygon`], [`Region`]: the shapes and their measures |
+//! | [`arcs`] | lines fitted by straight pieces and arcs |
 //! | [`boolean`] | union, difference, intersection of regions |
 //! | [`offset`](mod@offset) | growing and shrinking, with round or mitred joins |
 //! | [`clip`] | open lines cut by a region |
@@ -25,6 +26,7 @@
 //! 0.07 µm, wherever it lies; coordinates may reach ±[`MAX_COORDINATE_MM`] = 50 m and are clamped there.
 //! An offset is then simplified by [`offset::SIMPLIFY_MM`].
 
+pub mod arcs;
 pub mod boolean;
 pub mod clip;
 mod grid;

@@ -1,9 +1,10 @@
-//! CNC G-code, three axes: one file between `%` signs, feeds in mm/min, G0 never with the arc on.
+//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
+//! keys and templates of the profile.
 
 use super::{Chunk, Post, Values, ascii};
 use crate::number::push_fixed;
-use crate::profile::{Gcode, Profile};
-use crate::program::{Instruction, LayerProgram};
+use crate::profile::{Gcode, GcodeComments, Profile};
+use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 
 /// Block numbers begin anew after this.
@@ -40,9 +41,13 @@ impl CncGcode {
         }
     }
 
-    fn comment(text: &mut String, comment: &str) {
+    fn comment(&self, text: &mut String, comment: &str) {
         let clean = comment.replace(['(', ')'], "_").to_uppercase();
-        text.push_str(&format!("({})\n", &clean[..clean.len().min(MAX_COMMENT)]));
+        let clean = &clean[..clean.len().min(MAX_COMMENT)];
+        match self.gcode.comments {
+            GcodeComments::Parentheses => text.push_str(&format!("({clean})\n")),
+            GcodeComments::Semicolon => text.push_str(&format!("; {clean}\n")),
+        }
     }
 
     fn blocks(&mut self, text: &mut String, template: &[String]) {
@@ -56,6 +61,15 @@ impl CncGcode {
 
     /// A straight move; axes that stand still are left out.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, feed: Option<f64>) {
+        self.motion(text, word, to, None, feed);
+    }
+
+    fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
+        let word = circle.map_or("G1", |circle| circle.word());
+        self.motion(text, word, to, circle, Some(speed));
+    }
+
+    fn motion(&mut self, text: &mut String, word: &str, to: DVec3, circle: Option<Circle>, feed: Option<f64>) {
         let moved = |axis: usize| self.at.is_none_or(|at| at[axis] != to[axis]);
         let axes: Vec<usize> = (0..3).filter(|&axis| moved(axis)).collect();
         if axes.is_empty() {
@@ -66,6 +80,9 @@ impl CncGcode {
         for axis in axes {
             text.push_str([" X", " Y", " Z"][axis]);
             push_fixed(text, to[axis], self.gcode.decimals);
+        }
+        if let (Some(circle), Some(at)) = (circle, self.at) {
+            push_centre(text, circle.centre - at, self.gcode.decimals);
         }
         if let Some(feed) = feed.filter(|&f| f != self.feed) {
             self.feed = feed;
@@ -90,11 +107,11 @@ impl CncGcode {
             Instruction::Travel { to } => self.go(text, "G0", to, None),
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
-                Self::comment(text, &format!("PASS {pass} {}", kind.name()));
+                self.comment(text, &format!("PASS {pass} {}", kind.name()));
                 let lines = self.gcode.arc_on.clone();
                 self.blocks(text, &lines);
             }
-            Instruction::Weld { to, speed, .. } => self.go(text, "G1", to, Some(speed)),
+            Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
             Instruction::ArcOff { .. } => {
                 let lines = self.gcode.arc_off.clone();
                 self.blocks(text, &lines);
@@ -107,10 +124,26 @@ impl CncGcode {
     }
 }
 
+/// I and J: where the centre lies from the start of the arc, mm. With one decimal more than the points: their rounding
+/// moves the whole arc.
+pub(super) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
+    let decimals = (decimals + 1).min(4);
+    text.push_str(" I");
+    push_fixed(text, centre.x, decimals);
+    text.push_str(" J");
+    push_fixed(text, centre.y, decimals);
+}
+
 impl Post for CncGcode {
     fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
-        let mut text = "%\n".to_owned();
-        Self::comment(&mut text, &self.comment);
+        let mut text = String::new();
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
+        if let Some(number) = self.gcode.program_number {
+            text.push_str(&format!("O{number:04}\n"));
+        }
+        self.comment(&mut text, &self.comment);
         let header = self.gcode.header.clone();
         self.blocks(&mut text, &header);
         self.chunk(text)
@@ -122,7 +155,7 @@ impl Post for CncGcode {
         }
         let mut text = String::with_capacity(program.instructions.len() * 32);
         self.values.set("layer", program.index + 1);
-        Self::comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
+        self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
         let layer_start = self.gcode.layer_start.clone();
         self.blocks(&mut text, &layer_start);
         for &instruction in &program.instructions {
@@ -138,7 +171,9 @@ impl Post for CncGcode {
         }
         let footer = self.gcode.footer.clone();
         self.blocks(&mut text, &footer);
-        text.push_str("%\n");
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
         self.chunk(text)
     }
 }

@@ -62,7 +62,26 @@ impl KukaKrl {
     }
 
     fn lin(&self, text: &mut String, to: DVec3, blend: bool) {
-        text.push_str("LIN {X ");
+        text.push_str("LIN ");
+        self.pose(text, to);
+        self.end_move(text, blend);
+    }
+
+    /// `via` lies on the arc, less than half a turn from start and end.
+    fn circ(&self, text: &mut String, via: DVec3, to: DVec3, blend: bool) {
+        text.push_str("CIRC ");
+        self.pose(text, via);
+        text.push(',');
+        self.pose(text, to);
+        self.end_move(text, blend);
+    }
+
+    fn end_move(&self, text: &mut String, blend: bool) {
+        text.push_str(if blend && self.krl.blend > 0.0 { " C_DIS\r\n" } else { "\r\n" });
+    }
+
+    fn pose(&self, text: &mut String, to: DVec3) {
+        text.push_str("{X ");
         push_fixed(text, to.x, 3);
         text.push_str(",Y ");
         push_fixed(text, to.y, 3);
@@ -72,7 +91,7 @@ impl KukaKrl {
             text.push_str(axis);
             push_fixed(text, angle, 4);
         }
-        text.push_str(if blend && self.krl.blend > 0.0 { "} C_DIS\r\n" } else { "}\r\n" });
+        text.push('}');
     }
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
@@ -86,9 +105,12 @@ impl KukaKrl {
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 self.lines(text, &self.krl.arc_on);
             }
-            Instruction::Weld { to, speed, last } => {
+            Instruction::Weld { to, circle, speed, last } => {
                 self.set_speed(text, speed);
-                self.lin(text, to, !last);
+                match circle {
+                    Some(circle) => self.circ(text, circle.via, to, !last),
+                    None => self.lin(text, to, !last),
+                }
             }
             Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
         }

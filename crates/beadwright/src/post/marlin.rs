@@ -2,12 +2,13 @@
 //!
 //! Comments name layers, kinds and widths as printers' viewers expect them. Filament is drawn back before long travels.
 
+use super::gcode::push_centre;
 use super::{Chunk, Post, Values, ascii};
 use crate::bead::wire_area;
 use crate::fill::PassKind;
 use crate::number::push_fixed;
 use crate::profile::{Marlin, Profile};
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 
 /// Lines stay under Marlin's 96 characters.
@@ -70,6 +71,25 @@ impl MarlinGcode {
 
     /// A straight move; axes that stand still are left out.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, filament: Option<f64>, speed: f64) {
+        self.motion(text, word, to, None, filament, speed);
+    }
+
+    fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
+        let straight = self.at.map_or(0.0, |at| at.distance(to));
+        let (word, length) = circle.map_or(("G1", straight), |circle| (circle.word(), circle.length()));
+        self.motion(text, word, to, circle, Some(self.filament_speed * length / speed), speed);
+    }
+
+    /// A move; arcs need ARC_SUPPORT in the firmware, or `[gcode_arcs]` in Klipper.
+    fn motion(
+        &mut self,
+        text: &mut String,
+        word: &str,
+        to: DVec3,
+        circle: Option<Circle>,
+        filament: Option<f64>,
+        speed: f64,
+    ) {
         let before = self.at;
         let moved = (0..3).filter(|&axis| before.is_none_or(|at| at[axis] != to[axis]));
         let axes: Vec<usize> = moved.collect();
@@ -80,6 +100,9 @@ impl MarlinGcode {
         for axis in axes {
             text.push_str([" X", " Y", " Z"][axis]);
             push_fixed(text, to[axis], 3);
+        }
+        if let (Some(circle), Some(at)) = (circle, before) {
+            push_centre(text, circle.centre - at, 3);
         }
         if let Some(filament) = filament {
             self.push_e(text, filament);
@@ -139,10 +162,7 @@ impl MarlinGcode {
                 }
                 self.retract(text, false);
             }
-            Instruction::Weld { to, speed, .. } => {
-                let length = self.at.map_or(0.0, |at| at.distance(to));
-                self.go(text, "G1", to, Some(self.filament_speed * length / speed), speed);
-            }
+            Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
             Instruction::ArcOff { .. } => {}
         }
     }

@@ -8,18 +8,25 @@
 //! | [`gcode`] | CNC G-code: one file |
 //! | [`marlin`] | G-code for printers: one file |
 //! | [`rapid`] | ABB RAPID: a main module with its data, and one module a layer |
+//! | [`fanuc`] | FANUC TP: a main program, and one program a layer |
+//! | [`inform`] | Yaskawa INFORM: a main job, and one job a layer |
+//! | [`urscript`] | URScript: one file, a function a layer |
 
+pub mod fanuc;
 pub mod gcode;
+pub mod inform;
 pub mod krl;
 pub mod marlin;
 pub mod rapid;
+mod split;
+pub mod urscript;
 
 use crate::profile::{BUILT_IN, Profile, ProfileError};
 use crate::program::{Instruction, LayerProgram};
 use crate::template;
 
 /// The posts by name.
-pub const NAMES: [&str; 4] = ["krl", "gcode", "marlin", "rapid"];
+pub const NAMES: [&str; 7] = ["krl", "gcode", "marlin", "rapid", "fanuc", "inform", "urscript"];
 
 /// Text to be appended to a file of the program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -75,6 +82,18 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
             let section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
             Ok(Box::new(rapid::AbbRapid::new(part, profile, section)))
         }
+        "fanuc" => {
+            let section = profile.fanuc.clone().ok_or_else(|| no_section(profile, "fanuc"))?;
+            Ok(Box::new(fanuc::FanucTp::new(part, profile, section)))
+        }
+        "inform" => {
+            let section = profile.inform.clone().ok_or_else(|| no_section(profile, "inform"))?;
+            Ok(Box::new(inform::YaskawaInform::new(part, profile, section)))
+        }
+        "urscript" => {
+            let section = profile.urscript.clone().ok_or_else(|| no_section(profile, "urscript"))?;
+            Ok(Box::new(urscript::UniversalScript::new(part, profile, section)))
+        }
         _ => Err(PostError::Unknown(name.to_owned())),
     }
 }
@@ -91,6 +110,7 @@ struct Values(Vec<(&'static str, String)>);
 impl Values {
     fn new(program: &str, profile: &Profile) -> Self {
         let process = &profile.process;
+        let milliseconds = |seconds: f64| (seconds * 1000.0).round().to_string();
         Self(vec![
             ("program", program.to_owned()),
             ("layer", String::new()),
@@ -102,6 +122,10 @@ impl Values {
             ("gas_preflow", process.gas_preflow.to_string()),
             ("gas_postflow", process.gas_postflow.to_string()),
             ("gas_flow", process.gas_flow.to_string()),
+            ("arc_start_delay_ms", milliseconds(process.arc_start_delay)),
+            ("arc_end_delay_ms", milliseconds(process.arc_end_delay)),
+            ("gas_preflow_ms", milliseconds(process.gas_preflow)),
+            ("gas_postflow_ms", milliseconds(process.gas_postflow)),
         ])
     }
 
@@ -119,4 +143,14 @@ impl Values {
 /// Printable ASCII for comments; other characters become `_`.
 fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect()
+}
+
+/// A name of upper-case letters, digits and `_`, a letter first.
+fn upper_name(part: &str) -> String {
+    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let mut name: String = part.chars().map(legal).collect();
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        name.insert_str(0, "P_");
+    }
+    name
 }

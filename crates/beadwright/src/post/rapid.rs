@@ -101,10 +101,19 @@ impl AbbRapid {
 
     /// `word target,between,zone,tool\WObj:=wobj;`
     fn motion(&self, text: &mut String, word: &str, to: DVec3, between: &str, blend: bool) {
+        self.motion_over(text, word, None, to, between, blend);
+    }
+
+    /// The same with the target on an arc in front: `word via,target,…;`
+    fn motion_over(&self, text: &mut String, word: &str, via: Option<DVec3>, to: DVec3, between: &str, blend: bool) {
         let zone = if blend && self.rapid.zone > 0.0 { "zBead" } else { "fine" };
         text.push_str("    ");
         text.push_str(word);
         text.push(' ');
+        if let Some(via) = via {
+            data::push_target(text, via, &self.orientation);
+            text.push(',');
+        }
         data::push_target(text, to, &self.orientation);
         text.push_str(&format!(",{between},{zone},{}\\WObj:={};\r\n", self.rapid.tool, self.rapid.wobj));
     }
@@ -125,7 +134,9 @@ impl AbbRapid {
                     statement(text, &format!("! pass {pass} {}", kind.name()));
                     self.arc_on(text, i.checked_sub(1).and_then(|before| all.get(before)), next, speeds);
                 }
-                (Instruction::Weld { to, speed, last }, _) => self.weld(text, to, self.number(speeds, speed), last),
+                (Instruction::Weld { to, circle, speed, last }, _) => {
+                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed), last);
+                }
                 (Instruction::ArcOff { .. }, _) => self.arc_off(text),
             }
         }
@@ -141,13 +152,16 @@ impl AbbRapid {
         }
     }
 
-    fn weld(&self, text: &mut String, to: DVec3, number: usize, last: bool) {
-        if self.with_arc() {
-            let word = if last { "ArcLEnd" } else { "ArcL" };
-            self.motion(text, word, to, &format!("vTravel,smBead,wd{number}"), !last);
-        } else {
-            self.motion(text, "MoveL", to, &format!("vd{number}"), !last);
-        }
+    fn weld(&self, text: &mut String, via: Option<DVec3>, to: DVec3, number: usize, last: bool) {
+        let (word, between) = match (self.with_arc(), via.is_some(), last) {
+            (true, false, false) => ("ArcL", format!("vTravel,smBead,wd{number}")),
+            (true, false, true) => ("ArcLEnd", format!("vTravel,smBead,wd{number}")),
+            (true, true, false) => ("ArcC", format!("vTravel,smBead,wd{number}")),
+            (true, true, true) => ("ArcCEnd", format!("vTravel,smBead,wd{number}")),
+            (false, false, _) => ("MoveL", format!("vd{number}")),
+            (false, true, _) => ("MoveC", format!("vd{number}")),
+        };
+        self.motion_over(text, word, via, to, &between, !last);
     }
 
     fn arc_off(&self, text: &mut String) {

@@ -1,6 +1,6 @@
 //! What values can be: one table of ranges, and the few rules that tie keys together.
 
-use super::Profile;
+use super::{Gcode, Profile, Program};
 use crate::template;
 
 /// The first value that cannot be.
@@ -10,8 +10,13 @@ pub(super) struct Broken {
     pub(super) reason: String,
 }
 
+/// A text that cannot be.
+pub(super) fn broken_text(key: &str, value: &str, reason: &str) -> Broken {
+    Broken { key: key.to_owned(), value: format!("\"{value}\""), reason: reason.to_owned() }
+}
+
 /// Placeholders that a template may use.
-pub(crate) const PLACEHOLDERS: [&str; 10] = [
+pub(crate) const PLACEHOLDERS: [&str; 14] = [
     "program",
     "layer",
     "pass",
@@ -22,6 +27,10 @@ pub(crate) const PLACEHOLDERS: [&str; 10] = [
     "gas_preflow",
     "gas_postflow",
     "gas_flow",
+    "arc_start_delay_ms",
+    "arc_end_delay_ms",
+    "gas_preflow_ms",
+    "gas_postflow_ms",
 ];
 
 pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
@@ -92,6 +101,8 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("check.max_points", p.check.max_points.into(), 10.0, 1e8, "points"),
         ("travel.speed", p.travel.speed, TINY, 3000.0, "mm/s"),
         ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
+        ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),
+        ("program.speed_tolerance", p.program.speed_tolerance, 0.0, 0.3, "of the speed"),
     ];
     if let Some(krl) = &p.krl {
         ranges.extend([
@@ -104,6 +115,8 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
     }
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
+        let number = gcode.program_number.unwrap_or(1);
+        ranges.push(("gcode.program_number", number.into(), 1.0, 9999.0, "(O number)"));
     }
     if let Some(motion) = &p.motion {
         ranges.push(("motion.acceleration", motion.acceleration, 1.0, 1e6, "mm/s²"));
@@ -115,6 +128,9 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ranges.push(("marlin.retract_from", marlin.retract_from, 0.0, 1000.0, "mm"));
     }
     ranges.extend(p.rapid.iter().flat_map(|rapid| rapid.ranges()));
+    ranges.extend(p.fanuc.iter().flat_map(|fanuc| fanuc.ranges()));
+    ranges.extend(p.inform.iter().flat_map(|inform| inform.ranges()));
+    ranges.extend(p.urscript.iter().flat_map(|urscript| urscript.ranges()));
     // Written so that NaN is out of range too.
     let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
     broken.map(|(key, value, low, high, unit)| Broken {
@@ -143,6 +159,9 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         let names = crate::post::NAMES.join(", ");
         return broken("posts", format!("\"{post}\""), format!("the posts are {names}."));
     }
+    if let Some(reason) = p.program.contradiction(p.gcode.as_ref()) {
+        return broken("program.chord_tolerance", format!("{}", p.program.chord_tolerance), reason.to_owned());
+    }
     let gcode = p.gcode.as_ref().map(|g| ("gcode.extension", &g.extension));
     let marlin = p.marlin.as_ref().map(|m| ("marlin.extension", &m.extension));
     for (key, extension) in gcode.into_iter().chain(marlin) {
@@ -154,7 +173,23 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
         return broken("krl.home", format!("\"{home}\""), "an axis position such as \"A1 0.0,A2 -90.0,…\".".to_owned());
     }
-    p.rapid.as_ref().and_then(|rapid| rapid.broken())
+    let rapid = p.rapid.as_ref().and_then(|rapid| rapid.broken());
+    let fanuc = || p.fanuc.as_ref().and_then(|fanuc| fanuc.broken());
+    rapid.or_else(fanuc).or_else(|| p.inform.as_ref().and_then(|inform| inform.broken()))
+}
+
+impl Program {
+    /// What does not fit together.
+    fn contradiction(&self, gcode: Option<&Gcode>) -> Option<&'static str> {
+        if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
+            return Some("0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move.");
+        }
+        if self.arcs && self.chord_tolerance == 0.0 {
+            return Some("arcs = true needs a tolerance, such as 0.05 mm.");
+        }
+        let coarse = gcode.is_some_and(|g| g.decimals < 3);
+        (self.arcs && coarse).then_some("arcs = true needs 3 gcode.decimals or more: the radius must be kept.")
+    }
 }
 
 /// Templates may use known placeholders and printable ASCII only: controllers read nothing else.
@@ -181,7 +216,9 @@ fn bad_template(p: &Profile) -> Option<Broken> {
         [("marlin.header", &m.header), ("marlin.layer_start", &m.layer_start), ("marlin.footer", &m.footer)]
     });
     let rapid = p.rapid.iter().flat_map(|r| r.templates());
-    for (key, lines) in krl.chain(gcode).chain(marlin).chain(rapid) {
+    let fanuc = p.fanuc.iter().flat_map(|f| f.templates());
+    let others = p.inform.iter().flat_map(|i| i.templates()).chain(p.urscript.iter().flat_map(|u| u.templates()));
+    for (key, lines) in krl.chain(gcode).chain(marlin).chain(rapid).chain(fanuc).chain(others) {
         for line in lines {
             let reason = match template::unknown_placeholder(line, &PLACEHOLDERS) {
                 Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", PLACEHOLDERS.join(", ")),

@@ -3,12 +3,18 @@
 //! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
+mod fanuc;
+mod inform;
 mod limits;
 mod rapid;
 mod read;
+mod urscript;
 
+pub use fanuc::{Fanuc, FanucSpeed};
+pub use inform::{Inform, InformSpeed};
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
+pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance, Overlap};
@@ -21,9 +27,10 @@ use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 4] = [
+pub const BUILT_IN: [(&str, &str); 5] = [
     ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
     ("cmt-steel-abb", include_str!("../../../../profiles/cmt-steel-abb.toml")),
+    ("cmt-steel-robots", include_str!("../../../../profiles/cmt-steel-robots.toml")),
     ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
     ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
 ];
@@ -37,7 +44,7 @@ pub struct Profile {
     pub name: String,
     /// One line for lists.
     pub description: String,
-    /// Dialects written when none is asked for: `krl`, `gcode`, `rapid`.
+    /// Dialects written when none is asked for: `krl`, `gcode`, `marlin`, `rapid`, `fanuc`, `inform`, `urscript`.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
@@ -66,6 +73,9 @@ pub struct Profile {
     pub check: CheckLimits,
     /// Moves without arc.
     pub travel: Travel,
+    /// How paths become moves of a program; optional.
+    #[serde(default)]
+    pub program: Program,
     /// Acceleration, for machines whose time depends on it; optional.
     pub motion: Option<Motion>,
     /// KUKA KRL; needed for the post `krl`.
@@ -76,6 +86,12 @@ pub struct Profile {
     pub marlin: Option<Marlin>,
     /// ABB RAPID; needed for the post `rapid`.
     pub rapid: Option<Rapid>,
+    /// FANUC TP; needed for the post `fanuc`.
+    pub fanuc: Option<Fanuc>,
+    /// Yaskawa INFORM; needed for the post `inform`.
+    pub inform: Option<Inform>,
+    /// URScript; needed for the post `urscript`.
+    pub urscript: Option<Urscript>,
 }
 
 /// The wire.
@@ -398,6 +414,21 @@ pub struct Travel {
     pub clearance: f64,
 }
 
+/// How paths become moves of a program; every key has a default.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Program {
+    /// How far the moves may leave the planned path so that they are fewer, mm, 0.015 or more; default 0: every point
+    /// is kept.
+    pub chord_tolerance: f64,
+    /// Whether arcs are fitted, and not straight moves only; default false.
+    pub arcs: bool,
+    /// Speeds along a pass that differ by no more than this part become one, with the same time along it: fewer changes,
+    /// longer moves; default 0.
+    pub speed_tolerance: f64,
+}
+
 /// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -427,7 +458,25 @@ pub struct Krl {
     pub end: Vec<String>,
 }
 
-/// CNC G-code. Templates are blocks with `{{placeholders}}`.
+/// How comments are written in CNC G-code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum GcodeComments {
+    /// `(LAYER 1)`
+    #[default]
+    Parentheses,
+    /// `; LAYER 1`
+    Semicolon,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// CNC G-code. Flavours of controllers differ in these keys and in the templates: a dwell of `{{gas_preflow}}` s is
+/// `G4 P{{gas_preflow}}` for LinuxCNC, `G4 P{{gas_preflow_ms}}` for Fanuc and `G4 F{{gas_preflow}}` for Siemens.
+/// Templates are blocks with `{{placeholders}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -438,6 +487,14 @@ pub struct Gcode {
     pub block_numbers: bool,
     /// Decimals of coordinates, 1 to 4.
     pub decimals: usize,
+    /// Whether a `%` stands before and behind the program (LinuxCNC, Fanuc; not Siemens); default true.
+    #[serde(default = "yes")]
+    pub percent_signs: bool,
+    /// O number of the program (Fanuc); default none.
+    pub program_number: Option<u32>,
+    /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
+    #[serde(default)]
+    pub comments: GcodeComments,
     /// Blocks at the beginning.
     pub header: Vec<String>,
     /// Blocks at the beginning of every layer.

@@ -59,7 +59,7 @@ pub const PAPERS: [Paper; 4] = [
 /// The program of a plan in one dialect, as texts to be appended to named files.
 fn program(dialect: &str, plan: &Plan, profile: &Profile) -> Result<Vec<(String, String)>, ReproduceError> {
     let mut post = post::post(dialect, &plan.header.part, profile).map_err(|e| ReproduceError(e.to_string()))?;
-    let mut programmer = Programmer::new(profile.travel.clearance);
+    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let mut chunks = post.begin(plan.layers.len());
     plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
     chunks.extend(post.end(programmer.leave()));

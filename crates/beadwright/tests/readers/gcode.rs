@@ -4,15 +4,25 @@ use super::{Machine, Motion};
 
 /// Runs a program; `arc_on` and `arc_off` are the M codes of the arc.
 pub fn run(text: &str, arc_on: u32, arc_off: u32) -> Motion {
+    assert!(text.starts_with("%\n") && text.ends_with("%\n"));
+    run_flavour(&text[2..text.len() - 2], arc_on, arc_off)
+}
+
+/// The same for a program without `%` signs.
+pub fn run_flavour(text: &str, arc_on: u32, arc_off: u32) -> Motion {
     let lines: Vec<&str> = text.lines().collect();
-    assert!(text.is_ascii() && lines.first() == Some(&"%") && lines.last() == Some(&"%"));
+    assert!(text.is_ascii() && !text.contains('%'));
     let mut reader = Reader::default();
     let mut ended = false;
-    for line in &lines[1..lines.len() - 1] {
+    for line in &lines {
         assert!(line.len() < 80, "block too long: {line}");
         assert!(!ended, "a block after M30: {line}");
         if line.starts_with('(') {
-            assert!(line.ends_with(')') && line.matches('(').count() == 1, "{line}");
+            assert!(!text.contains(';') && line.ends_with(')') && line.matches('(').count() == 1, "{line}");
+            continue;
+        }
+        if line.starts_with(';') {
+            assert!(!text.contains('('), "two kinds of comments");
             continue;
         }
         let words: Vec<(char, f64)> = line.split_whitespace().map(word).collect();
@@ -46,11 +56,12 @@ impl Reader {
         if words.contains(&('G', 4.0)) {
             return;
         }
-        let mut moves = false;
+        let (mut moves, mut centre) = (false, [None; 2]);
         for &(letter, value) in words {
             match letter {
-                'G' if value == 0.0 || value == 1.0 => self.motion = Some(value as u32),
+                'G' if (0.0..=3.0).contains(&value) => self.motion = Some(value as u32),
                 'F' => self.feed = Some(value),
+                'I' | 'J' => centre["IJ".find(letter).unwrap()] = Some(value),
                 'X' | 'Y' | 'Z' => {
                     self.axes["XYZ".find(letter).unwrap()] = Some(value);
                     moves = true;
@@ -62,10 +73,14 @@ impl Reader {
             return;
         }
         let motion = self.motion.expect("a move without G0 or G1");
-        assert!(motion == 1 || !self.machine.burns(), "G0 with the arc on: {line}");
-        let speed = if motion == 1 { self.feed.expect("G1 without F") / 60.0 } else { f64::INFINITY };
+        assert!(motion >= 1 || !self.machine.burns(), "G0 with the arc on: {line}");
+        let speed = if motion >= 1 { self.feed.expect("G1 without F") / 60.0 } else { f64::INFINITY };
         if let [Some(x), Some(y), Some(z)] = self.axes {
-            self.machine.move_to([x, y, z], speed);
+            match (motion, centre) {
+                (2 | 3, [Some(i), Some(j)]) => self.machine.turn_about([i, j], motion == 3, [x, y, z], speed),
+                (0 | 1, [None, None]) => self.machine.move_to([x, y, z], speed),
+                _ => panic!("{line}"),
+            }
         }
     }
 }

@@ -67,6 +67,12 @@ impl Reader<'_> {
                 self.machine.move_to(coordinates(point), self.speed.unwrap());
                 self.blended = blend.trim() == "C_DIS";
                 assert!(self.blended || blend.is_empty(), "{line}");
+            } else if let Some(rest) = line.strip_prefix("CIRC ") {
+                let (via, rest) = rest.split_once("},").unwrap();
+                let (point, blend) = rest.split_once('}').unwrap();
+                self.machine.arc_to(coordinates(via), coordinates(point), self.speed.unwrap());
+                self.blended = blend.trim() == "C_DIS";
+                assert!(self.blended || blend.is_empty(), "{line}");
             } else if let Some(value) = line.strip_prefix(self.arc).and_then(|l| l.strip_prefix(" = ")) {
                 assert!(!self.blended, "the arc is switched after a blended point");
                 match value {

@@ -1,6 +1,6 @@
 //! A reader of printers' G-code: positions and E, absolute or relative; filament back before it goes forward again.
 
-use super::{Point, distance};
+use super::{Point, angle_between, distance};
 
 /// What a printer does.
 #[derive(Debug, Default)]
@@ -35,7 +35,7 @@ pub fn run(text: &str) -> Print {
             "M109" => hot = value('S').unwrap() > 150.0,
             "M104" => hot &= value('S') != Some(0.0),
             "G92" => e = value('E').unwrap(),
-            "G0" | "G1" => {
+            "G0" | "G1" | "G2" | "G3" => {
                 let from = at;
                 for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
                     at[axis] = value(letter).or(at[axis]);
@@ -45,7 +45,7 @@ pub fn run(text: &str) -> Print {
                     (Some(by), true) => by,
                     (Some(to), false) => to - std::mem::replace(&mut e, to),
                 };
-                assert!(command == "G1" || pushed == 0.0, "extrusion with G0: {line}");
+                assert!(command != "G0" || pushed == 0.0, "extrusion with G0: {line}");
                 let ends = (point(from), point(at));
                 let (Some(a), Some(b)) = ends else { continue };
                 if a == b {
@@ -60,7 +60,11 @@ pub fn run(text: &str) -> Print {
                     if !goes_on {
                         print.paths.push(vec![a]);
                     }
-                    print.paths.last_mut().unwrap().push(b);
+                    let path = print.paths.last_mut().unwrap();
+                    if let ("G2" | "G3", Some(i), Some(j)) = (command, value('I'), value('J')) {
+                        path.extend(chords(a, [a[0] + i, a[1] + j], command == "G3", b));
+                    }
+                    path.push(b);
                 } else {
                     assert!(pushed == 0.0, "filament drawn back on the way: {line}");
                     print.travel += distance(a, b);
@@ -72,6 +76,18 @@ pub fn run(text: &str) -> Print {
     }
     assert!(!hot, "the nozzle stays hot");
     print
+}
+
+/// Points along an arc, without its ends.
+fn chords(from: Point, centre: [f64; 2], left: bool, to: Point) -> Vec<Point> {
+    let angle = |p: Point| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+    let radius = |p: Point| (p[1] - centre[1]).hypot(p[0] - centre[0]);
+    assert!((radius(from) - radius(to)).abs() < 0.01, "the end does not lie on the circle");
+    let sweep = angle_between(angle(from), angle(to));
+    assert_eq!(sweep > 0.0, left, "an arc of half a turn or more");
+    let at = |t: f64| [centre[0] + radius(from) * t.cos(), centre[1] + radius(from) * t.sin(), to[2]];
+    let count = (sweep.abs() / 0.01).ceil() as usize;
+    (1..count).map(|i| at(angle(from) + sweep * i as f64 / count as f64)).collect()
 }
 
 fn point(at: [Option<f64>; 3]) -> Option<Point> {

@@ -1,10 +1,13 @@
 //! Independent readers of the written programs: they know the languages, not the writers.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod fanuc;
 pub mod gcode;
+pub mod inform;
 pub mod krl;
 pub mod marlin;
 pub mod rapid;
+pub mod urscript;
 
 /// A point, mm.
 pub type Point = [f64; 3];
@@ -16,6 +19,8 @@ pub struct Motion {
     pub welds: Vec<Weld>,
     /// Length of moves without arc after the first point was reached, mm.
     pub travel: f64,
+    /// Circular moves.
+    pub circles: usize,
 }
 
 /// One path with the arc on.
@@ -34,6 +39,23 @@ impl Motion {
 
 pub fn distance(a: Point, b: Point) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Centre and radius of the circle through three points of one height.
+fn circle(a: Point, b: Point, c: Point) -> (Point, f64) {
+    assert!(a[2] == b[2] && b[2] == c[2], "an arc that climbs");
+    let (bx, by, cx, cy) = (b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]);
+    let d = 2.0 * (bx * cy - by * cx);
+    assert!(d.abs() > 1e-9, "an arc through three points of a line");
+    let (b2, c2) = (bx * bx + by * by, cx * cx + cy * cy);
+    let (x, y) = ((cy * b2 - by * c2) / d, (bx * c2 - cx * b2) / d);
+    ([a[0] + x, a[1] + y, a[2]], x.hypot(y))
+}
+
+/// The smaller turn from one direction to another, radians.
+pub fn angle_between(a: f64, b: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    (b - a + PI).rem_euclid(TAU) - PI
 }
 
 /// Follows moves and arc switching; panics where a controller would do harm.
@@ -72,6 +94,47 @@ impl Machine {
             (_, None) => {}
         }
         self.at = Some(to);
+    }
+
+    /// A circular move over `via`, in chords so fine that its length is kept within 1e-5.
+    pub fn arc_to(&mut self, via: Point, to: Point, speed: f64) {
+        let from = self.at.expect("an arc from nowhere");
+        let (centre, radius) = circle(from, via, to);
+        let angle = |p: Point| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+        let sweep = angle_between(angle(from), angle(via)) + angle_between(angle(via), angle(to));
+        assert!(sweep.abs() < std::f64::consts::PI, "an arc of half a turn or more to {to:?}");
+        assert!(sweep.abs() > 0.017 && distance(from, via) >= 0.1 && distance(via, to) >= 0.1, "a tiny arc to {to:?}");
+        self.turn_to(centre, radius, sweep, to, speed);
+    }
+
+    /// A circular move about `centre`; `sweep` in radians, counter-clockwise above 0.
+    pub fn turn_to(&mut self, centre: Point, radius: f64, sweep: f64, to: Point, speed: f64) {
+        let from = self.at.expect("an arc from nowhere");
+        assert!(self.weld.is_some(), "an arc without metal to {to:?}");
+        assert!((distance(to, centre) - radius).abs() < 0.01, "the end {to:?} does not lie on the circle");
+        assert!(distance(from, to) >= 0.0099, "a weld move of no length at {to:?}");
+        let start = (from[1] - centre[1]).atan2(from[0] - centre[0]);
+        let chords = (sweep.abs() / 0.01).ceil().max(1.0);
+        let weld = self.weld.as_mut().unwrap();
+        for i in 1..chords as usize {
+            let angle = start + sweep * i as f64 / chords;
+            weld.points.push([centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin(), to[2]]);
+            weld.speeds.push(speed);
+        }
+        weld.points.push(to);
+        weld.speeds.push(speed);
+        self.at = Some(to);
+        self.motion.circles += 1;
+    }
+
+    /// G2 and G3: the centre as seen from the start.
+    pub fn turn_about(&mut self, centre: [f64; 2], left: bool, to: Point, speed: f64) {
+        let from = self.at.expect("an arc from nowhere");
+        let centre = [from[0] + centre[0], from[1] + centre[1], from[2]];
+        let angle = |p: Point| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+        let sweep = angle_between(angle(from), angle(to));
+        assert_eq!(sweep > 0.0, left, "an arc of half a turn or more to {to:?}");
+        self.turn_to(centre, distance(from, centre), sweep, to, speed);
     }
 
     pub fn finish(self) -> Motion {

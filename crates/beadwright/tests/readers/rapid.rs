@@ -230,7 +230,9 @@ impl Reader<'_> {
                 self.common(module, speed, zone, tool);
                 self.homes += 1;
             }
-            "MoveL" | "ArcLStart" | "ArcL" | "ArcLEnd" => self.motion(module, word, rest),
+            "MoveL" | "MoveC" | "ArcLStart" | "ArcL" | "ArcLEnd" | "ArcC" | "ArcCEnd" => {
+                self.motion(module, word, rest)
+            }
             "WaitTime" => {
                 let seconds: f64 = rest.strip_prefix("\\InPos,").unwrap().parse().unwrap();
                 assert!(seconds >= 0.0);
@@ -271,15 +273,24 @@ impl Reader<'_> {
     }
 
     fn motion(&mut self, module: &str, word: &str, rest: &str) {
-        let pieces = parts(rest);
-        let target = literal(pieces[0]);
-        check("robtarget", &target);
-        let to: Point = [0, 1, 2].map(|i| target.part(0).part(i).number());
-        if word == "MoveL" {
+        let mut pieces = parts(rest);
+        let place = |text: &str| -> Point {
+            let target = literal(text);
+            check("robtarget", &target);
+            [0, 1, 2].map(|i| target.part(0).part(i).number())
+        };
+        let circular = matches!(word, "MoveC" | "ArcC" | "ArcCEnd");
+        let via = circular.then(|| place(pieces.remove(0)));
+        let to = place(pieces[0]);
+        let go = |machine: &mut Machine, speed: f64| match via {
+            Some(via) => machine.arc_to(via, to, speed),
+            None => machine.move_to(to, speed),
+        };
+        if matches!(word, "MoveL" | "MoveC") {
             let [_, speed, zone, tool] = pieces[..] else { panic!("{rest}") };
             assert!(!self.machine.burns() || !self.output.is_empty(), "a Move while the arc is on: {rest}");
             let speed = self.common(module, speed, zone, tool);
-            self.machine.move_to(to, speed);
+            go(&mut self.machine, speed);
             return;
         }
         let [_, speed, seam, weld, zone, tool] = pieces[..] else { panic!("{rest}") };
@@ -294,10 +305,10 @@ impl Reader<'_> {
             }
             _ => {
                 assert!(self.machine.burns(), "{word} without ArcLStart");
-                self.machine.move_to(to, speed);
+                go(&mut self.machine, speed);
             }
         }
-        if word == "ArcLEnd" {
+        if word.ends_with("End") {
             assert!(self.exact, "the arc ends at a blended point");
             self.machine.arc_off();
         }

@@ -1,0 +1,101 @@
+//! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and what its values can be.
+
+use super::limits::{Broken, Range, broken_text};
+use serde::{Deserialize, Serialize};
+
+/// Unit of `V=`, as the controller's parameters say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum InformSpeed {
+    /// Millimetres a second.
+    #[serde(rename = "mm/s")]
+    MillimetresPerSecond,
+    /// Centimetres a minute.
+    #[serde(rename = "cm/min")]
+    CentimetresPerMinute,
+}
+
+/// Yaskawa INFORM. Templates are instructions with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Inform {
+    /// User frame of the part, 1 to 63.
+    pub user_frame: u32,
+    /// Tool of the torch, 0 to 63.
+    pub tool: u32,
+    /// Robot's group, such as `RB1`.
+    pub group: String,
+    /// Configuration of the points, ///RCONF: `1,0,0,0,0,0,0,0`.
+    pub configuration: String,
+    /// Axis position before and after the program, pulses of S, L, U, R, B, T.
+    pub home: [i64; 6],
+    /// Speed to and from it, VJ, %.
+    pub home_speed: f64,
+    /// Orientation of the tool in the user frame: Rx, Ry, Rz, °; `[180, 0, 0]` is straight down.
+    pub orientation: [f64; 3],
+    /// Position level along a pass: PL 0 to 8; where the arc switches it is 0.
+    pub position_level: u32,
+    /// Unit of `V=`, as the controller is set: `mm/s` or `cm/min`.
+    pub speed: InformSpeed,
+    /// Date in the jobs, `yyyy/mm/dd hh:mm`: the same plan gives the same bytes.
+    pub date: String,
+    /// Job names have at most this many characters: 32, or 8 on the NX100.
+    pub max_name: usize,
+    /// A job of a layer holds at most this many moves and goes on in another: controllers take 9,999 instructions.
+    pub max_points: usize,
+    /// Instructions at the beginning of the main job.
+    pub start: Vec<String>,
+    /// Instructions at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Instructions that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Instructions that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Instructions at the end of the main job.
+    pub end: Vec<String>,
+}
+
+impl Inform {
+    /// Ranges of the numbers.
+    pub(super) fn ranges(&self) -> Vec<Range> {
+        let mut ranges = vec![
+            ("inform.user_frame", self.user_frame.into(), 1.0, 63.0, "(user frame)"),
+            ("inform.tool", self.tool.into(), 0.0, 63.0, "(tool)"),
+            ("inform.home_speed", self.home_speed, 0.01, 100.0, "%"),
+            ("inform.position_level", self.position_level.into(), 0.0, 8.0, "(PL)"),
+            ("inform.max_name", self.max_name as f64, 8.0, 32.0, "characters"),
+            ("inform.max_points", self.max_points as f64, 10.0, 2000.0, "moves a job"),
+        ];
+        ranges.extend(self.home.map(|axis| ("inform.home", axis as f64, -1e7, 1e7, "pulses")));
+        ranges.extend(self.orientation.map(|angle| ("inform.orientation", angle, -360.0, 360.0, "°")));
+        ranges
+    }
+
+    /// The first text that a controller would refuse.
+    pub(super) fn broken(&self) -> Option<Broken> {
+        let digits = |text: &str, marks: &[u8]| text.bytes().all(|b| b.is_ascii_digit() || marks.contains(&b));
+        let group = !self.group.is_empty() && self.group.bytes().all(|b| b.is_ascii_alphanumeric() || b == b',');
+        let date = self.date.len() == 16 && digits(&self.date, b"/ :");
+        let configuration = !self.configuration.is_empty() && digits(&self.configuration, b",");
+        [
+            (group, "inform.group", &self.group, "such as \"RB1\"."),
+            (configuration, "inform.configuration", &self.configuration, "such as \"1,0,0,0,0,0,0,0\"."),
+            (date, "inform.date", &self.date, "yyyy/mm/dd hh:mm."),
+        ]
+        .into_iter()
+        .find(|(fits, ..)| !fits)
+        .map(|(_, key, value, reason)| broken_text(key, value, reason))
+    }
+
+    /// Keys and lines of the templates.
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+        [
+            ("inform.start", &self.start),
+            ("inform.layer_start", &self.layer_start),
+            ("inform.arc_on", &self.arc_on),
+            ("inform.arc_off", &self.arc_off),
+            ("inform.end", &self.end),
+        ]
+    }
+}

@@ -1,0 +1,65 @@
+//! The section `[urscript]`: a Universal Robots cell, and what its values can be.
+
+use super::limits::Range;
+use serde::{Deserialize, Serialize};
+
+/// URScript. Templates are statements with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Urscript {
+    /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; left out where the installation has it.
+    pub tool_frame: Option<[f64; 6]>,
+    /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
+    pub part_frame: [f64; 6],
+    /// Axis position before and after the program, °.
+    pub home: [f64; 6],
+    /// Speed to and from it, °/s.
+    pub home_speed: f64,
+    /// Orientation of the tool in the part's frame: rotation vector, rad; `[3.141593, 0, 0]` is straight down.
+    pub orientation: [f64; 3],
+    /// Acceleration of the tool, mm/s².
+    pub acceleration: f64,
+    /// Blending radius along a pass, mm; less where points lie closer than twice that; 0 for exact stops.
+    pub blend: f64,
+    /// Statements at the beginning of the program.
+    pub start: Vec<String>,
+    /// Statements at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Statements that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Statements that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Statements at the end of the program.
+    pub end: Vec<String>,
+}
+
+impl Urscript {
+    /// Ranges of the numbers.
+    pub(super) fn ranges(&self) -> Vec<Range> {
+        let mut ranges = vec![
+            ("urscript.home_speed", self.home_speed, 0.1, 180.0, "°/s"),
+            ("urscript.acceleration", self.acceleration, 1.0, 20_000.0, "mm/s²"),
+            ("urscript.blend", self.blend, 0.0, 50.0, "mm"),
+        ];
+        ranges.extend(self.home.map(|axis| ("urscript.home", axis, -363.0, 363.0, "°")));
+        ranges.extend(self.orientation.map(|angle| ("urscript.orientation", angle, -6.284, 6.284, "rad")));
+        let frames = [("urscript.tool_frame", self.tool_frame), ("urscript.part_frame", Some(self.part_frame))];
+        for (key, frame) in frames.iter().filter_map(|(key, frame)| Some((*key, (*frame)?))) {
+            ranges.extend(frame[..3].iter().map(|&v| (key, v, -1e4, 1e4, "mm")));
+            ranges.extend(frame[3..].iter().map(|&v| (key, v, -6.284, 6.284, "rad")));
+        }
+        ranges
+    }
+
+    /// Keys and lines of the templates.
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+        [
+            ("urscript.start", &self.start),
+            ("urscript.layer_start", &self.layer_start),
+            ("urscript.arc_on", &self.arc_on),
+            ("urscript.arc_off", &self.arc_off),
+            ("urscript.end", &self.end),
+        ]
+    }
+}

@@ -1,0 +1,160 @@
+//! Arcs and straight pieces fitted to planned paths: fewer moves along the same path.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use beadwright::example;
+use beadwright::model::{Mesh, import};
+use beadwright::pass::{Along, Pass};
+use beadwright::plan::{self, Plan};
+use beadwright::profile::{self, Profile};
+use beadwright::program::{Circle, Instruction, Programmer};
+use beadwright::task::Task;
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+const FITTED: profile::Program = profile::Program { chord_tolerance: 0.05, arcs: true, speed_tolerance: 0.0 };
+
+fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
+    let mut profile = Profile::built_in(profile).unwrap();
+    profile.fill.strategy = strategy.to_owned();
+    plan::plan("part", mesh, &profile, &Task::new()).unwrap()
+}
+
+/// Instructions of every layer, as planned and fitted.
+fn programs(plan: &Plan, settings: &profile::Program) -> Vec<Vec<Instruction>> {
+    let mut programmer = Programmer::new(10.0).with_fit(settings);
+    plan.layers.iter().map(|layer| programmer.layer(layer).instructions).collect()
+}
+
+fn welds(programs: &[Vec<Instruction>]) -> usize {
+    programs.iter().flatten().filter(|i| matches!(i, Instruction::Weld { .. })).count()
+}
+
+/// Points along the passes, no farther apart than 0.2 mm, arcs along their circle.
+fn traced(instructions: &[Instruction]) -> Vec<Vec<DVec3>> {
+    let (mut passes, mut at) = (Vec::new(), DVec3::ZERO);
+    for instruction in instructions {
+        match *instruction {
+            Instruction::Travel { to } => at = to,
+            Instruction::ArcOn { .. } => passes.push(vec![at]),
+            Instruction::Weld { to, circle, .. } => {
+                let pass = passes.last_mut().unwrap();
+                let length = circle.map_or(at.distance(to), |c| c.length());
+                let steps = (length / 0.2).ceil() as usize;
+                pass.extend((1..steps).map(|i| along(at, to, circle, i as f64 / steps as f64)));
+                pass.push(to);
+                at = to;
+            }
+            Instruction::ArcOff { .. } => {}
+        }
+    }
+    passes
+}
+
+fn along(from: DVec3, to: DVec3, circle: Option<Circle>, part: f64) -> DVec3 {
+    let Some(circle) = circle else { return from.lerp(to, part) };
+    let start = (from - circle.centre).truncate();
+    circle.centre + glam::DVec2::from_angle(circle.sweep * part).rotate(start).extend(0.0)
+}
+
+/// Greatest distance from a point of `points` to the line; points go along it, so that it is sought near the last place.
+fn farthest(points: &[DVec3], line: &[DVec3]) -> f64 {
+    let (mut near, mut worst) = (0_usize, 0.0_f64);
+    for &p in points {
+        let window = near.saturating_sub(80)..(near + 80).min(line.len() - 1);
+        let to = |i: &usize| {
+            let (a, b) = (line[*i], line[*i + 1]);
+            let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-18)).clamp(0.0, 1.0);
+            p.distance(a.lerp(b, t))
+        };
+        near = window.min_by(|i, j| to(i).total_cmp(&to(j))).unwrap();
+        worst = worst.max(to(&near));
+    }
+    worst
+}
+
+fn dense(pass: &Pass) -> Vec<DVec3> {
+    let piece = |s: beadwright::pass::Segment| {
+        let steps = (s.length() / 0.2).ceil().max(1.0) as usize;
+        (1..=steps).map(move |i| s.from.lerp(s.to, i as f64 / steps as f64))
+    };
+    pass.start().into_iter().chain(pass.segments().flat_map(piece)).collect()
+}
+
+/// Checks distance and speeds and gives the moves before and after.
+fn compare(case: &str, plan: &Plan, settings: &profile::Program) -> (usize, usize) {
+    let (full, fitted) = (programs(plan, &profile::Program::default()), programs(plan, settings));
+    for (layer, instructions) in plan.layers.iter().zip(&fitted) {
+        let paths = traced(instructions);
+        assert_eq!(paths.len(), layer.passes.len(), "{case}");
+        for (path, pass) in paths.iter().zip(&layer.passes) {
+            let dense = dense(pass);
+            let (there, back) = (farthest(path, &dense), farthest(&dense, path));
+            // Points of the arcs are 0.2 mm apart: their chords lie less than 1e-3 mm inside.
+            assert!(there.max(back) <= settings.chord_tolerance + 1e-3, "{case}: {there} there, {back} back");
+        }
+    }
+    let seconds = |programs: &[Vec<Instruction>]| programs.iter().map(|p| seconds(p)).sum::<f64>();
+    let (before, after) = (seconds(&full), seconds(&fitted));
+    assert!((after / before - 1.0).abs() < 0.005, "{case}: {after} s for {before}");
+    (welds(&full), welds(&fitted))
+}
+
+/// Time with the arc on: tells whether every speed has kept its place.
+fn seconds(instructions: &[Instruction]) -> f64 {
+    let (mut at, mut sum) = (DVec3::ZERO, 0.0);
+    for instruction in instructions {
+        match *instruction {
+            Instruction::Travel { to } => at = to,
+            Instruction::Weld { to, circle, speed, .. } => {
+                sum += circle.map_or(at.distance(to), |c| c.length()) / speed;
+                at = to;
+            }
+            _ => {}
+        }
+    }
+    sum
+}
+
+fn thruster() -> Option<Mesh> {
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
+    let folder = std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from);
+    let Ok(bytes) = std::fs::read(folder.join("openthruster_prop_cw.stl")) else {
+        eprintln!("skipped: there is no openthruster_prop_cw.stl in {}", folder.display());
+        return None;
+    };
+    let mut mesh = import(&bytes, &Task::new()).unwrap().mesh;
+    mesh.place(3.66, DVec3::ZERO);
+    Some(mesh)
+}
+
+#[test]
+fn propellers_take_a_third_of_the_moves_along_the_same_path() {
+    let propeller = example::find("propeller").unwrap().mesh();
+    for (name, mesh) in [("propeller", Some(propeller)), ("thruster", thruster())] {
+        let Some(mesh) = mesh else { continue };
+        for strategy in ["contour", "hybrid"] {
+            let plan = planned(&mesh, "cmt-al2319-kuka", strategy);
+            let case = format!("{name} {strategy}");
+            let (before, after) = compare(&case, &plan, &FITTED);
+            let lines = compare(&case, &plan, &profile::Program { arcs: false, ..FITTED }).1;
+            println!("{case}: {before} moves, {after} fitted, {lines} with lines only");
+            if strategy == "contour" {
+                assert!(before >= 3 * after, "{case}: {before} moves became {after}");
+                continue;
+            }
+            // The hybrid's speed follows its width from place to place, and no move spans a change of it.
+            let level = profile::Program { speed_tolerance: 0.11, ..FITTED };
+            let level = compare(&case, &plan, &level).1;
+            println!("{case}: {level} with speeds of 11 % one");
+            let even = compare(&case, &of_one_speed(plan), &FITTED);
+            println!("{case}: {} moves, {} fitted, of one speed", even.0, even.1);
+            assert!(before >= 2 * level && level < after && even.0 >= 3 * even.1, "{case}: {level}, {even:?}");
+        }
+    }
+}
+
+/// The same paths at one speed: what fitting does to the paths alone.
+fn of_one_speed(mut plan: Plan) -> Plan {
+    plan.layers.iter_mut().flat_map(|l| &mut l.passes).for_each(|pass| pass.speed = Along::Same(8.0));
+    plan
+}

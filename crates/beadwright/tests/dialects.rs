@@ -1,0 +1,277 @@
+//! One small job in every dialect: golden files, and the same poses, arc starts and weld length read back from each.
+#![allow(clippy::unwrap_used)]
+
+mod readers;
+
+use beadwright::fill::PassKind;
+use beadwright::pass::{Along, Pass};
+use beadwright::plan::{self, Layer};
+use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, Profile, RapidArc};
+use beadwright::program::Programmer;
+use beadwright::readback::{ArcCodes, Options, read};
+use beadwright::task::Task;
+use beadwright::{example, post};
+use glam::{DVec2, DVec3};
+use readers::{Motion, Point, Weld, distance};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+type Files = BTreeMap<String, String>;
+
+/// All dialects on one process: that of the steel cells, arcs fitted within 0.05 mm.
+fn profile() -> Profile {
+    let built_in = |name| Profile::built_in(name).unwrap();
+    let mut profile = built_in("cmt-steel-robots");
+    profile.rapid = built_in("cmt-steel-abb").rapid;
+    profile.krl = built_in("cmt-al2319-kuka").krl;
+    profile.gcode = built_in("plasma-304-cnc").gcode;
+    profile.marlin = built_in("fdm-abs-0.4").marlin;
+    (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
+    profile
+}
+
+/// Two layers: a ring of many points, and a line that goes straight, bends and becomes slower.
+fn job() -> Vec<Layer> {
+    let layer = |index: usize| {
+        let z = 1.4187 * (index + 1) as f64;
+        let ring = (0..120).map(|i| DVec2::new(20.0, 20.0) + 15.0 * DVec2::from_angle(TAU * f64::from(i) / 120.0));
+        let straight = (0..=10).map(|i| DVec2::new(50.0 + f64::from(i), 5.0));
+        let bend = (1..=18)
+            .map(|i| DVec2::new(60.0, 15.0) + 10.0 * DVec2::from_angle((f64::from(i) * 5.0 - 90.0).to_radians()));
+        let tail = [DVec2::new(70.0, 25.0), DVec2::new(70.0, 30.0)];
+        let pass = |kind, closed, points: Vec<DVec2>, speed: Along| Pass {
+            kind,
+            closed,
+            points: points.iter().map(|p| p.extend(z)).collect(),
+            width: Along::Same(4.5),
+            speed,
+        };
+        let line: Vec<DVec2> = straight.chain(bend).chain(tail).collect();
+        let speeds = (0..line.len()).map(|i| if i < 28 { 8.0 } else { 6.0 }).collect();
+        let passes = vec![
+            pass(PassKind::Contour, true, ring.collect(), Along::Same(8.0)),
+            pass(PassKind::Infill, false, line, Along::Each(speeds)),
+        ];
+        let (islands, warnings) = (Vec::new(), Vec::new());
+        Layer { index, z, height: 1.4187, islands, passes, slice_area: 0.0, planned_area: 0.0, warnings }
+    };
+    vec![layer(0), layer(1)]
+}
+
+fn written(name: &str, part: &str, layers: &[Layer], profile: &Profile) -> Files {
+    let mut files = Files::new();
+    let mut post = post::post(name, part, profile).unwrap();
+    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
+    let mut chunks = post.begin(layers.len());
+    for layer in layers {
+        chunks.extend(post.layer(&programmer.layer(layer)));
+    }
+    chunks.extend(post.end(programmer.leave()));
+    for chunk in chunks {
+        files.entry(chunk.file).or_default().push_str(&chunk.text);
+    }
+    files
+}
+
+/// The flavours of G-code.
+fn flavour(name: &str) -> Profile {
+    let mut profile = profile();
+    let gcode = profile.gcode.as_mut().unwrap();
+    let lines = |lines: &[&str]| lines.iter().map(|l| (*l).to_owned()).collect::<Vec<_>>();
+    match name {
+        "fanuc" => {
+            gcode.program_number = Some(1234);
+            gcode.header = lines(&["G21 G90 G94 G17 G40 G49 G80", "G54", "G5.1 Q1"]);
+            gcode.arc_on = lines(&["M64", "G4 P{{gas_preflow_ms}}", "M3", "G4 P{{arc_start_delay_ms}}"]);
+            gcode.arc_off = lines(&["M5", "G4 P{{gas_postflow_ms}}", "M65"]);
+        }
+        "siemens" => {
+            (gcode.percent_signs, gcode.comments) = (false, GcodeComments::Semicolon);
+            gcode.extension = "MPF".to_owned();
+            gcode.header = lines(&["G71 G90 G94 G17 G40", "G54"]);
+            gcode.arc_on = lines(&["M64", "G4 F{{gas_preflow}}", "M3", "G4 F{{arc_start_delay}}"]);
+            gcode.arc_off = lines(&["M5", "G4 F{{gas_postflow}}", "M65"]);
+        }
+        _ => gcode.header.push("G64 P0.05".to_owned()),
+    }
+    profile
+}
+
+/// Every dialect: its name, its files, and what an independent reader finds in them.
+fn all() -> Vec<(&'static str, Files, Motion)> {
+    all_of(&job())
+}
+
+fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
+    let write = |post: &str| written(post, "demo", job, &profile());
+    let mut plain = profile();
+    plain.rapid.as_mut().unwrap().arc = RapidArc::Plain;
+    let plain = written("rapid", "demo", job, &plain);
+    let (krl, rapid, fanuc, inform) = (write("krl"), write("rapid"), write("fanuc"), write("inform"));
+    let (urscript, marlin) = (write("urscript"), write("marlin"));
+    let print = readers::marlin::run(&marlin["demo.gcode"]);
+    let welds = print.paths.into_iter().map(|points| Weld { points, speeds: Vec::new() }).collect();
+    let printed = Motion { welds, travel: print.travel, ..Motion::default() };
+    let mut all = vec![
+        ("krl", krl.clone(), readers::krl::run(&krl, "DEMO", "$OUT[2]")),
+        ("rapid-arcs", rapid.clone(), readers::rapid::run(&rapid, "demo", "")),
+        ("rapid-plain-arcs", plain.clone(), readers::rapid::run(&plain, "demo", "doArc")),
+        ("fanuc", fanuc.clone(), readers::fanuc::run(&fanuc, "DEMO")),
+        ("inform", inform.clone(), readers::inform::run(&inform, "DEMO")),
+        ("urscript", urscript.clone(), readers::urscript::run(&urscript["demo.script"], 1)),
+        ("marlin", marlin, printed),
+    ];
+    for (name, file) in [("gcode-linuxcnc", "demo.nc"), ("gcode-fanuc", "demo.nc"), ("gcode-siemens", "demo.MPF")] {
+        let files = written("gcode", "demo", job, &flavour(&name[6..]));
+        let text = files[file].trim_matches(['%', '\n']).to_owned() + "\n";
+        // The O number is no word of a block.
+        let motion = readers::gcode::run_flavour(text.trim_start_matches("O1234\n"), 3, 5);
+        all.push((name, files, motion));
+    }
+    all
+}
+
+/// Compares with the folder `tests/golden/NAME`; `BEADWRIGHT_GOLDEN=write` writes it instead.
+fn golden(name: &str, files: &Files) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
+        std::fs::create_dir_all(&folder).unwrap();
+        files.iter().for_each(|(file, text)| std::fs::write(folder.join(file), text).unwrap());
+    }
+    let mut found: Vec<String> =
+        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    found.sort();
+    assert_eq!(found, files.keys().cloned().collect::<Vec<_>>());
+    for (file, text) in files {
+        let expected = std::fs::read_to_string(folder.join(file)).unwrap();
+        let differs = text.lines().zip(expected.lines()).find(|(a, b)| a != b);
+        assert_eq!(differs, None, "{name}/{file}");
+        assert!(*text == expected, "{name}/{file} differs in length or line ends");
+    }
+}
+
+#[test]
+fn the_job_is_written_as_before() {
+    all().iter().for_each(|(name, files, _)| golden(name, files));
+}
+
+#[test]
+fn every_dialect_reads_back_alike() {
+    let planned: f64 = job().iter().flat_map(|l| &l.passes).map(Pass::length).sum();
+    let all = all();
+    let first = &all[0].2;
+    assert!(first.circles >= 8, "{}", first.circles);
+    for (name, _, motion) in &all {
+        let length = motion.weld_length();
+        println!("{name}: {length:.4} mm in {} welds, travel {:.3}", motion.welds.len(), motion.travel);
+        assert!((length - first.weld_length()).abs() < 0.01, "{name}: {length} for {}", first.weld_length());
+        assert!((length / planned - 1.0).abs() < 1e-3, "{name}: {length} for {planned}");
+        assert_eq!(motion.welds.len(), 4, "{name}");
+        for (a, b) in motion.welds.iter().zip(&first.welds) {
+            let places = a.points.len() == b.points.len();
+            assert!(places && a.points.iter().zip(&b.points).all(|(p, q)| distance(*p, *q) < 0.003), "{name}");
+            assert!(a.speeds.iter().zip(&b.speeds).all(|(v, w)| (v - w).abs() < 0.051), "{name}");
+        }
+    }
+}
+
+/// Every pass of a real part is as long in every dialect, and begins and ends at the same place.
+#[test]
+fn the_propeller_reads_back_alike_in_every_dialect() {
+    let mesh = example::find("propeller").unwrap().mesh();
+    for strategy in ["contour", "hybrid"] {
+        let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+        profile.fill.strategy = strategy.to_owned();
+        let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
+        let all = all_of(&plan.layers);
+        let first = &all[0].2;
+        assert_eq!(first.welds.len(), plan.layers.iter().map(|l| l.passes.len()).sum::<usize>());
+        for (name, _, motion) in &all {
+            assert!((motion.travel - first.travel).abs() < 0.01, "{strategy} {name}: {}", motion.travel);
+            assert_eq!(motion.welds.len(), first.welds.len(), "{strategy} {name}");
+            for (a, b) in motion.welds.iter().zip(&first.welds) {
+                let off = (length(a) - length(b)).abs();
+                assert!(off < 0.01, "{strategy} {name}: {} for {}", length(a), length(b));
+                let ends = [(a.points[0], b.points[0]), (*a.points.last().unwrap(), *b.points.last().unwrap())];
+                assert!(ends.iter().all(|(p, q)| distance(*p, *q) < 0.002), "{strategy} {name}");
+            }
+        }
+        println!("{strategy}: {} passes, {} arcs, {:.3} mm", first.welds.len(), first.circles, first.weld_length());
+    }
+}
+
+fn length(weld: &Weld) -> f64 {
+    weld.points.windows(2).map(|p| distance(p[0], p[1])).sum()
+}
+
+#[test]
+fn what_the_project_reads_is_the_same() {
+    let options = Options {
+        arc: ArcCodes {
+            on: vec!["$OUT[2] = TRUE".to_owned(), "SetDO doArc,1".to_owned()],
+            off: vec!["$OUT[2] = FALSE".to_owned(), "SetDO doArc,0".to_owned()],
+        },
+        ..Options::default()
+    };
+    let mains = ["DEMO.src", "demo.mod", "demo.mod", "", "", "", "", "demo.nc", "demo.nc", "demo.MPF"];
+    for ((name, files, motion), main) in all().iter().zip(mains).filter(|(_, main)| !main.is_empty()) {
+        let mut find = |name: &str| {
+            [name.to_owned(), format!("{name}.src"), format!("{name}.mod")].iter().find_map(|n| files.get(n)).cloned()
+        };
+        let totals = read(&files[main], &mut find, &options).unwrap().totals();
+        assert_eq!(totals.arc_starts, 4, "{name}");
+        // It takes chords within 0.01 mm of an arc.
+        let off = (totals.deposited_length_mm / motion.weld_length() - 1.0).abs();
+        assert!(off < 5e-4, "{name}: {} for {}", totals.deposited_length_mm, motion.weld_length());
+    }
+}
+
+#[test]
+fn long_layers_are_split_and_read_back_alike() {
+    let mut profile = profile();
+    (profile.program.arcs, profile.program.chord_tolerance) = (false, 0.0);
+    let long = |part: &str, profile: &Profile| {
+        let (fanuc, inform) = (written("fanuc", part, &job(), profile), written("inform", part, &job(), profile));
+        let main = |files: &Files, end: &str| {
+            files.keys().min_by_key(|k| k.len()).unwrap().strip_suffix(end).unwrap().to_owned()
+        };
+        let (a, b) = (main(&fanuc, ".ls"), main(&inform, ".jbi"));
+        (readers::fanuc::run(&fanuc, &a), readers::inform::run(&inform, &b), fanuc.len(), inform.len())
+    };
+    let whole = long("demo", &profile);
+    profile.fanuc.as_mut().unwrap().max_points = 20;
+    profile.inform.as_mut().unwrap().max_points = 20;
+    for part in ["demo", &*"long ".repeat(20), "7-segment display", "Gr\u{fc}n", ""] {
+        let split = long(part, &profile);
+        assert!(split.2 > whole.2 + 8 && split.3 > whole.3 + 8, "{} {}", split.2, split.3);
+        assert_eq!((&split.0, &split.1), (&whole.0, &whole.1));
+    }
+    profile.fanuc.as_mut().unwrap().speed = FanucSpeed::CentimetresPerMinute;
+    profile.inform.as_mut().unwrap().speed = InformSpeed::CentimetresPerMinute;
+    let other = long("demo", &profile);
+    assert!((other.0.welds[1].speeds[0] - 8.0).abs() < 0.02);
+    assert!((other.1.welds[1].speeds[0] - 48.0).abs() < 0.06);
+}
+
+#[test]
+fn odd_names_are_legal_in_urscript() {
+    for part in ["end", "layer_001", "7up", "Gr\u{fc}n", ""] {
+        let files = written("urscript", part, &job(), &profile());
+        readers::urscript::run(files.values().next().unwrap(), 1);
+    }
+}
+
+/// The readers measure an arc as it is: a quarter of a circle of 10 mm.
+#[test]
+fn the_test_readers_know_arcs() {
+    let mut machine = readers::Machine::default();
+    let at = |x: f64, y: f64| -> Point { DVec3::new(x, y, 1.0).to_array() };
+    machine.move_to(at(10.0, 0.0), 1.0);
+    machine.arc_on();
+    let half = 10.0 * 0.5_f64.sqrt();
+    machine.arc_to(at(half, half), at(0.0, 10.0), 1.0);
+    machine.arc_off();
+    let length = machine.finish().weld_length();
+    assert!((length - 2.5 * TAU).abs() < 1e-3, "{length}");
+}

@@ -1,0 +1,104 @@
+//! A reader of INFORM jobs: runs `main` and what it calls, and checks heads, counts and positions.
+
+use super::{Machine, Motion, Point, distance};
+use std::collections::BTreeMap;
+
+/// Runs the job of that name (file names as keys).
+pub fn run(files: &BTreeMap<String, String>, main: &str) -> Motion {
+    let mut reader = Reader { files, machine: Machine::default(), exact: true, homes: 0 };
+    reader.job(main);
+    assert_eq!(reader.homes, 2);
+    reader.machine.finish()
+}
+
+struct Reader<'a> {
+    files: &'a BTreeMap<String, String>,
+    machine: Machine,
+    exact: bool,
+    homes: usize,
+}
+
+impl Reader<'_> {
+    fn job(&mut self, name: &str) {
+        assert!(name.len() <= 32 && !name.is_empty());
+        assert!(name.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b"_-".contains(&b)), "{name}");
+        let text = &self.files[&format!("{name}.jbi")];
+        assert!(text.is_ascii() && !text.contains('\t'));
+        assert_eq!(text.matches('\n').count(), text.matches("\r\n").count(), "{name} mixes line ends");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[..3], ["/JOB", &format!("//NAME {name}"), "//POS"]);
+        let positions: Vec<&str> = lines.iter().filter(|l| l.starts_with('C') && l.contains('=')).copied().collect();
+        let positions: Vec<&str> =
+            positions.into_iter().filter(|l| l[1..6].bytes().all(|b| b.is_ascii_digit())).collect();
+        assert_eq!(lines[3], format!("///NPOS {},0,0,0,0,0", positions.len()));
+        let comment = lines.iter().find_map(|l| l.strip_prefix("///COMM ")).unwrap();
+        assert!(comment.len() <= 32);
+        let relative = lines.contains(&"///RECTAN");
+        assert_eq!(relative, lines.contains(&"///ATTR SC,RW,RJ"));
+        assert!(!relative || (lines.contains(&"///USER 1") && lines.contains(&"////FRAME USER 1")));
+        let begin = lines.iter().position(|l| *l == "NOP").unwrap();
+        assert_eq!(lines.last(), Some(&"END"));
+        assert!(lines.len() - begin < 9999);
+        let (mut used, mut circle) = (0, Vec::new());
+        for line in &lines[begin + 1..lines.len() - 1] {
+            self.instruction(line, &positions, &mut used, &mut circle);
+        }
+        assert!(circle.is_empty(), "{name} ends within an arc");
+        assert_eq!(used, positions.len(), "{name}: positions that nothing uses");
+    }
+
+    fn instruction(&mut self, line: &str, positions: &[&str], used: &mut usize, circle: &mut Vec<Point>) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        if words[0].starts_with("MOV") {
+            assert_eq!(words[1], format!("C{used:05}"));
+            let numbers = positions[*used].strip_prefix(&format!("C{used:05}=")).unwrap();
+            *used += 1;
+            let numbers: Vec<f64> = numbers.split(',').map(|v| v.parse().unwrap()).collect();
+            assert_eq!(numbers.len(), 6);
+            if words[0] == "MOVJ" {
+                assert!(words[2].starts_with("VJ=") && !self.machine.burns());
+                self.homes += 1;
+                return;
+            }
+            let speed: f64 = words[2].strip_prefix("V=").unwrap().parse().unwrap();
+            let level: u32 = words[3].strip_prefix("PL=").unwrap().parse().unwrap();
+            assert!((0.1..=1500.0).contains(&speed) && level <= 8, "{line}");
+            self.motion(words[0], [numbers[0], numbers[1], numbers[2]], speed, circle);
+            self.exact = level == 0;
+            return;
+        }
+        assert!(circle.is_empty(), "{line} within an arc");
+        match words[..] {
+            ["CALL", job] => self.job(job.strip_prefix("JOB:").unwrap()),
+            ["ARCON", _] => {
+                assert!(self.exact, "the arc is lit at a blended point");
+                self.machine.arc_on();
+            }
+            ["ARCOF", _] => {
+                assert!(self.exact, "the arc ends at a blended point");
+                self.machine.arc_off();
+            }
+            ["TIMER", time] => assert!(time.strip_prefix("T=").unwrap().parse::<f64>().unwrap() >= 0.0),
+            _ => assert!(line.starts_with('\'') || words[0] == "DOUT", "{line}"),
+        }
+    }
+
+    /// Three MOVC make an arc; the robot goes straight to the first.
+    fn motion(&mut self, word: &str, to: Point, speed: f64, circle: &mut Vec<Point>) {
+        match (word, circle.len()) {
+            ("MOVL", 0) => self.machine.move_to(to, speed),
+            ("MOVC", 0) => {
+                if self.machine.at.is_none_or(|at| distance(at, to) > 0.0) {
+                    self.machine.move_to(to, speed);
+                }
+                circle.push(to);
+            }
+            ("MOVC", 1) => circle.push(to),
+            ("MOVC", 2) => {
+                self.machine.arc_to(circle[1], to, speed);
+                circle.clear();
+            }
+            _ => panic!("{word} within an arc"),
+        }
+    }
+}
