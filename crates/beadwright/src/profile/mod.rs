@@ -9,6 +9,7 @@ mod read;
 
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
+pub(crate) use read::{explain, line_of, line_of_key, nearest};
 
 use crate::bead::{Bead, MassBalance, Overlap};
 use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};

@@ -1,0 +1,161 @@
+//! A better place for the part: a search over x, y, z and rotation for the greatest least margin.
+//!
+//! A grid over the room in front of the robot, then smaller and smaller steps from its best place. A place is judged by
+//! the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
+
+use super::arm::{Arm, Branch, Frame};
+use super::cell::{Cell, PartPlace};
+use super::part_from_tool;
+use super::track::Track;
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Layers that are looked at.
+const LAYERS: usize = 5;
+/// Horizontal directions in which the outermost points are taken, each above and below.
+const DIRECTIONS: usize = 8;
+/// Torch angles that are tried.
+const ANGLES: usize = 12;
+/// Steps of the refinement, mm and °; the last ones are the grain of the answer.
+const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
+
+/// A place for the part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Suggestion {
+    /// Where to put it.
+    pub place: PartPlace,
+    /// Least margin of the points looked at, °.
+    pub margin: f64,
+    /// The torch angle that gives it, °.
+    pub torch_angle: f64,
+}
+
+impl Suggestion {
+    /// What to do.
+    pub fn sentence(&self) -> String {
+        format!(
+            "Put the part's origin at {}: the outermost points then keep {:.1}° from all limits and singularities, with the \
+             torch at {:.0}°. Check the room for arm and torch there.",
+            self.place.sentence(),
+            self.margin,
+            self.torch_angle
+        )
+    }
+}
+
+/// Searches; none where the arm reaches all points from no place of the grid.
+pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestion> {
+    let points = outermost(track);
+    let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
+    let judge = |place: PartPlace| judge(&arm, &tool_from_flange, place, &points);
+    let mut places = vec![start];
+    places.extend(grid(&arm, start.rotation));
+    // Collected in order: the first of equal ones wins, whatever the threads do.
+    let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(judge).collect();
+    let mut best = better(None, judged)?;
+    for (mm, degrees) in STEPS {
+        // Every step forward wins some margin, so this ends.
+        loop {
+            let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(judge).collect();
+            let Some(found) = better(Some(best), tried).filter(|f| f.margin > best.margin + 0.05) else { break };
+            best = found;
+        }
+    }
+    Some(best)
+}
+
+fn better(best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
+    let better = |best: Option<Suggestion>, new: Suggestion| match best {
+        Some(old) if old.margin >= new.margin => Some(old),
+        _ => Some(new),
+    };
+    tried.into_iter().flatten().fold(best, better)
+}
+
+/// Places in front of the robot, on or above the floor, in whole centimetres.
+fn grid(arm: &Arm, rotation: f64) -> Vec<PartPlace> {
+    let part_of_reach = |part: f64| (part * arm.reach() / 10.0).round() * 10.0;
+    let mut places = Vec::new();
+    for y in [0.0, -0.3, 0.3] {
+        for x in 0..8 {
+            for z in 0..8 {
+                for turn in 0..4 {
+                    let position = [0.3 + 0.1 * f64::from(x), y, 0.1 * f64::from(z)].map(part_of_reach);
+                    let rotation = super::arm::turned_near(rotation + 45.0 * f64::from(turn), 0.0);
+                    places.push(PartPlace { position, rotation });
+                }
+            }
+        }
+    }
+    places
+}
+
+fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
+    let mut places = Vec::with_capacity(8);
+    for sign in [1.0, -1.0] {
+        for axis in 0..3 {
+            let mut position = place.position;
+            position[axis] += sign * mm;
+            // The table does not go into the floor.
+            if axis < 2 || position[axis] >= 0.0 {
+                places.push(PartPlace { position, ..place });
+            }
+        }
+        places.push(PartPlace { rotation: place.rotation + sign * degrees, ..place });
+    }
+    places
+}
+
+/// The best least margin over branches and torch angles; none where a point is beyond reach or a limit in all of them.
+fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3]) -> Option<Suggestion> {
+    let base_from_part = place.base_from_part();
+    let mut least = [[f64::INFINITY; ANGLES]; Branch::COUNT];
+    for &point in points {
+        for k in 0..ANGLES {
+            if least.iter().all(|margins| margins[k] < 0.0) {
+                continue;
+            }
+            let tool = base_from_part.then(&part_from_tool(point, angle(k)));
+            let mut here = [-1.0; Branch::COUNT];
+            for (branch, joints) in arm.inverse(&tool.then(tool_from_flange)) {
+                here[branch.index()] = arm.margins(&joints).least();
+            }
+            for (margins, here) in least.iter_mut().zip(here) {
+                margins[k] = margins[k].min(here);
+            }
+        }
+        if least.as_flattened().iter().all(|m| *m < 0.0) {
+            return None;
+        }
+    }
+    let found = least.iter().flat_map(|margins| margins.iter().enumerate()).filter(|(_, m)| m.is_finite());
+    let best = found.fold(None, |best: Option<(usize, f64)>, (k, &m)| match best {
+        Some(old) if old.1 >= m => Some(old),
+        _ => Some((k, m)),
+    });
+    best.map(|(k, margin)| Suggestion { place, margin, torch_angle: angle(k) })
+}
+
+fn angle(k: usize) -> f64 {
+    k as f64 * 360.0 / ANGLES as f64
+}
+
+/// The outermost stops of a few layers, in each direction upwards and downwards.
+fn outermost(track: &Track) -> Vec<DVec3> {
+    let mut layers: Vec<&[super::Stop]> = track.stops.chunk_by(|a, b| a.layer == b.layer).collect();
+    let count = layers.len();
+    if count > LAYERS {
+        layers = (0..LAYERS).map(|i| layers[i * (count - 1) / (LAYERS - 1)]).collect();
+    }
+    let mut points: Vec<DVec3> = Vec::new();
+    for stops in layers {
+        for d in 0..2 * DIRECTIONS {
+            let turn = (d / 2) as f64 / DIRECTIONS as f64 * std::f64::consts::TAU;
+            let way = DVec3::new(turn.cos(), turn.sin(), if d % 2 == 0 { 0.3 } else { -0.3 });
+            let outermost = stops.iter().map(|s| s.at).max_by(|a, b| a.dot(way).total_cmp(&b.dot(way)));
+            points.extend(outermost.filter(|p| !points.contains(p)));
+        }
+    }
+    points
+}
