@@ -81,7 +81,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             reach.computed,
             reach.computed as f64 / seconds.max(1e-9)
         )?;
-        reach.findings.iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;
+        // The first bad one is the error below.
+        let told = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
+        told.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;
         match suggestion {
             Some(Some(better)) => writeln!(out, "\n{}", better.sentence())?,
             Some(None) => writeln!(
@@ -103,6 +105,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn print(out: &mut impl Write, part: &str, cell: &Cell, track: &Track, reach: &Reach) -> std::io::Result<()> {
     writeln!(out, "{part} on {}: {}", cell.name, cell.description)?;
     writeln!(out, "origin of the part at {}\n", reach.place.sentence())?;
+    if reach.reached().next().is_none() {
+        return writeln!(out, "  no point of {} is reached", track.stops.len());
+    }
     writeln!(out, "  joint      from       to    margin   speed with arc   on travel     limit")?;
     for j in 0..6 {
         let Some(r) = reach.joint(j) else { continue };

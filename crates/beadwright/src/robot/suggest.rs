@@ -17,6 +17,8 @@ const LAYERS: usize = 5;
 const DIRECTIONS: usize = 8;
 /// Torch angles that are tried.
 const ANGLES: usize = 12;
+/// Less gain in margin than this is not worth moving a part, °.
+const WORTH_MOVING: f64 = 5.0;
 /// Steps of the refinement, mm and °; the last ones are the grain of the answer.
 const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
 
@@ -29,17 +31,26 @@ pub struct Suggestion {
     pub margin: f64,
     /// The torch angle that gives it, °.
     pub torch_angle: f64,
+    /// Least margin of these points where the part lies now, °; none where some are out of reach.
+    pub now: Option<f64>,
 }
 
 impl Suggestion {
     /// What to do.
     pub fn sentence(&self) -> String {
+        let Self { place, margin, torch_angle, now } = self;
+        if let Some(now) = now.filter(|now| margin - now < WORTH_MOVING) {
+            return format!(
+                "The part lies well: its outermost points keep {now:.1}° from all limits and singularities with the torch at \
+                 one angle; the best place found, {}, would give {margin:.1}°.",
+                place.sentence()
+            );
+        }
+        let now = now.map_or("some are out of reach now".to_owned(), |now| format!("it is {now:.1}° now"));
         format!(
-            "Put the part's origin at {}: the outermost points then keep {:.1}° from all limits and singularities, with the \
-             torch at {:.0}°. Check the room for arm and torch there.",
-            self.place.sentence(),
-            self.margin,
-            self.torch_angle
+            "Put the part's origin at {}: its outermost points then keep {margin:.1}° from all limits and singularities with \
+             the torch at {torch_angle:.0}° ({now}). Make sure that arm and torch have room there.",
+            place.sentence()
         )
     }
 }
@@ -53,6 +64,7 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     places.extend(grid(&arm, start.rotation));
     // Collected in order: the first of equal ones wins, whatever the threads do.
     let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(judge).collect();
+    let now = judged.first().copied().flatten().map(|s| s.margin);
     let mut best = better(None, judged)?;
     for (mm, degrees) in STEPS {
         // Every step forward wins some margin, so this ends.
@@ -62,7 +74,7 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
             best = found;
         }
     }
-    Some(best)
+    Some(Suggestion { now, ..best })
 }
 
 fn better(best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
@@ -134,7 +146,7 @@ fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3]
         Some(old) if old.1 >= m => Some(old),
         _ => Some((k, m)),
     });
-    best.map(|(k, margin)| Suggestion { place, margin, torch_angle: angle(k) })
+    best.map(|(k, margin)| Suggestion { place, margin, torch_angle: angle(k), now: None })
 }
 
 fn angle(k: usize) -> f64 {

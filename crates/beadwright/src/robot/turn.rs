@@ -2,7 +2,8 @@
 //!
 //! Two dynamic programs over a table of margins (station × branch × angle): the first finds the greatest least margin
 //! of any course, the second, of all courses that keep it, the one that turns least. A turn from one station to the
-//! next is at most one step of the table.
+//! next is at most one step of the table. Posts write one angle for the whole program, so one that does nearly as well
+//! is preferred.
 
 use super::arm::{Arm, Branch, Frame};
 use super::part_from_tool;
@@ -17,6 +18,8 @@ pub(super) const STEP: f64 = 360.0 / ANGLES as f64;
 const TURNING_SECONDS: f64 = 0.2;
 /// Margin of a pose that no joint angles give, °.
 const NOWHERE: f32 = -1e3;
+/// Margin that is given up so that the torch need not turn at all, °.
+const WORTH_TURNING: f32 = 5.0;
 /// Margins that differ by less are the same, °.
 const SAME: f32 = 1e-2;
 /// What a station beyond a limit costs, in turns.
@@ -45,17 +48,21 @@ pub(super) fn course(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame
     let steps = |branch: usize| Steps { rows: &rows, turnable: &turnable, branch };
     let least: Vec<f32> = (0..Branch::COUNT).map(|b| steps(b).best_margin()).collect();
     let greatest = (0..Branch::COUNT).rev().max_by(|&a, &b| least[a].total_cmp(&least[b])).unwrap_or(0);
-    let (branch, chosen) = if least[greatest] >= 0.0 {
+    let single = steps(greatest).single();
+    let (branch, chosen) = if single.1 >= (least[greatest] - WORTH_TURNING).max(0.0) {
+        (greatest, vec![single.0; stations.len()])
+    } else if least[greatest] >= 0.0 {
         (greatest, steps(greatest).fewest_turns(least[greatest] - SAME).1)
     } else {
         // Nothing reaches all: the branch that reaches most.
         let tried = (0..Branch::COUNT).map(|b| (b, steps(b).fewest_turns(0.0)));
         tried.min_by_key(|(b, (cost, _))| (*cost, *b)).map_or((0, Vec::new()), |(b, (_, path))| (b, path))
     };
+    let single_of = |(k, margin): (usize, f32)| (k as f64 * STEP, f64::from(margin));
     Course {
         branch: Branch::new(branch),
         angles: spread(stops, &stations, &chosen),
-        single: steps(branch).single(),
+        single: single_of(steps(branch).single()),
         poses: stations.len() * ANGLES,
     }
 }
@@ -161,11 +168,10 @@ impl Steps<'_> {
         (costs[end], path)
     }
 
-    /// The best angle that is never changed, °, and its least margin, °.
-    fn single(&self) -> (f64, f64) {
+    /// The best angle that is never changed, as a number of steps, and its least margin, °.
+    fn single(&self) -> (usize, f32) {
         let least = |k: usize| (0..self.rows.len()).map(|s| self.margins(s)[k]).fold(f32::INFINITY, f32::min);
-        let best = (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE));
-        (best.0 as f64 * STEP, best.1.into())
+        (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE))
     }
 }
 
