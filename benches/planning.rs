@@ -136,7 +136,7 @@ fn hybrid_layer(bencher: Bencher, vertices: usize) {
 }
 
 /// Joint angles and margins of all ways to stand at each stop of the propeller's program; items are poses.
-#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"])]
+#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"], sample_count = 50)]
 fn solve_poses(bencher: Bencher, cell: &str) {
     let (cell, track) = (Cell::built_in(cell).unwrap(), propeller_track());
     let (arm, base_from_part) = (cell.arm(), cell.part.base_from_part());
@@ -149,7 +149,7 @@ fn solve_poses(bencher: Bencher, cell: &str) {
 }
 
 /// The whole walk along the propeller's program with all its torch angles, on all threads; items are poses.
-#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"])]
+#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"], sample_count = 20)]
 fn reach_propeller(bencher: Bencher, cell: &str) {
     let (cell, track) = (Cell::built_in(cell).unwrap(), propeller_track());
     let count = robot::reach(&cell, cell.part, &track).computed;

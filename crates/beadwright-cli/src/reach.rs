@@ -178,7 +178,7 @@ fn load_cell(name: &str) -> anyhow::Result<Cell> {
     if !is_file {
         return Ok(Cell::built_in(name)?);
     }
-    let text = std::fs::read_to_string(path).with_context(|| format!("{name}"))?;
+    let text = std::fs::read_to_string(path).with_context(|| name.to_owned())?;
     Cell::parse(&text).with_context(|| name.to_owned())
 }
 

@@ -342,5 +342,5 @@ fn reach_tells_margins_and_refuses_what_is_too_far() {
     let cell = ok(folder.path(), &["reach", "--show", "abb-irb1410"]);
     fs::write(folder.path().join("mine.toml"), cell.replace("c2 = 600.0", "c2 = -1.0")).unwrap();
     let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "mine.toml"], 1);
-    assert!(error.contains("line 11") && error.contains("arm.c2"), "{error}");
+    assert!(error.contains("line 12") && error.contains("arm.c2"), "{error}");
 }

@@ -23,10 +23,10 @@ const WORTH_TURNING: f32 = 5.0;
 /// Margins that differ by less are the same, °.
 const SAME: f32 = 1e-2;
 /// What a station beyond a limit costs, in turns.
-const BAD: u32 = 1 << 12;
+const BAD: u64 = 1 << 12;
 
-/// Margins of one station: for each branch, those of all angles, °.
-type Row = [[f32; ANGLES]; Branch::COUNT];
+/// Margins of one station: for each angle, those of all branches, °.
+type Row = [[f32; Branch::COUNT]; ANGLES];
 
 /// The chosen course.
 pub(super) struct Course {
@@ -95,11 +95,11 @@ fn turnable(stops: &[Stop], stations: &[usize]) -> Vec<bool> {
 }
 
 fn row(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame, stop: &Stop) -> Row {
-    let mut row = [[NOWHERE; ANGLES]; Branch::COUNT];
-    for k in 0..ANGLES {
+    let mut row = [[NOWHERE; Branch::COUNT]; ANGLES];
+    for (k, margins) in row.iter_mut().enumerate() {
         let tool = base_from_part.then(&part_from_tool(stop.at, k as f64 * STEP));
         for (branch, joints) in arm.inverse(&tool.then(tool_from_flange)) {
-            let margin = &mut row[branch.index()][k];
+            let margin = &mut margins[branch.index()];
             *margin = margin.max(arm.margins(&joints).least() as f32);
         }
     }
@@ -115,8 +115,8 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    fn margins(&self, station: usize) -> &[f32; ANGLES] {
-        &self.rows[station][self.branch]
+    fn margin(&self, station: usize, k: usize) -> f32 {
+        self.rows[station][k][self.branch]
     }
 
     /// Angles from which the angle `k` of a station can be come to, the unturned one first.
@@ -129,30 +129,28 @@ impl Steps<'_> {
     fn best_margin(&self) -> f32 {
         let mut best = [f32::INFINITY; ANGLES];
         for station in 0..self.rows.len() {
-            let margins = self.margins(station);
             best = std::array::from_fn(|k| {
                 let before = self.before(station, k).map(|j| best[j]).fold(f32::NEG_INFINITY, f32::max);
-                before.min(margins[k])
+                before.min(self.margin(station, k))
             });
         }
         best.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
     /// The course with the fewest stations below that margin, and then the fewest turns; with its cost.
-    fn fewest_turns(&self, margin: f32) -> (u32, Vec<usize>) {
-        let mut costs = [0_u32; ANGLES];
+    fn fewest_turns(&self, margin: f32) -> (u64, Vec<usize>) {
+        let mut costs = [0_u64; ANGLES];
         let mut came = Vec::with_capacity(self.rows.len());
         for station in 0..self.rows.len() {
-            let margins = self.margins(station);
             let mut from = [0_u8; ANGLES];
             costs = std::array::from_fn(|k| {
-                let turned = |j: usize| (costs[j].saturating_add(u32::from(j != k)), j);
+                let turned = |j: usize| (costs[j].saturating_add(u64::from(j != k)), j);
                 let (cost, j) = self.before(station, k).map(turned).min_by_key(|(cost, _)| *cost).unwrap_or_default();
                 from[k] = j as u8;
                 // Beyond a limit is bad, out of reach is worse.
-                let bad = if margins[k] >= margin {
+                let bad = if self.margin(station, k) >= margin {
                     0
-                } else if margins[k] > NOWHERE {
+                } else if self.margin(station, k) > NOWHERE {
                     BAD
                 } else {
                     2 * BAD
@@ -170,7 +168,7 @@ impl Steps<'_> {
 
     /// The best angle that is never changed, as a number of steps, and its least margin, °.
     fn single(&self) -> (usize, f32) {
-        let least = |k: usize| (0..self.rows.len()).map(|s| self.margins(s)[k]).fold(f32::INFINITY, f32::min);
+        let least = |k: usize| (0..self.rows.len()).map(|s| self.margin(s, k)).fold(f32::INFINITY, f32::min);
         (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE))
     }
 }
