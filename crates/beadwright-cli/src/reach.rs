@@ -74,13 +74,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "{:#}", json(&cell, &reach, suggestion))?;
     } else {
         print(&mut out, &plan.header.part, &cell, &track, &reach)?;
-        // Time belongs to people, not into files: these are the same on every run.
-        writeln!(
-            out,
-            "  poses computed         {} ({:.0} a second)",
-            reach.computed,
-            reach.computed as f64 / seconds.max(1e-9)
-        )?;
+        if reach.reached().next().is_some() {
+            let rate = reach.computed as f64 / seconds.max(1e-9);
+            writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
+        }
         // The first bad one is the error below.
         let told = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
         told.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;

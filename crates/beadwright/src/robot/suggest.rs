@@ -15,8 +15,10 @@ use serde::Serialize;
 const LAYERS: usize = 5;
 /// Horizontal directions in which the outermost points are taken, each above and below.
 const DIRECTIONS: usize = 8;
-/// Torch angles that are tried.
-const ANGLES: usize = 12;
+/// Torch angles that are tried on the grid.
+const COARSE: usize = 12;
+/// Torch angles that are tried from there on: those of the walk.
+const FINE: usize = super::turn::ANGLES;
 /// Less gain in margin than this is not worth moving a part, °.
 const WORTH_MOVING: f64 = 5.0;
 /// Steps of the refinement, mm and °; the last ones are the grain of the answer.
@@ -59,22 +61,23 @@ impl Suggestion {
 pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestion> {
     let points = outermost(track);
     let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
-    let judge = |place: PartPlace| judge(&arm, &tool_from_flange, place, &points);
+    let judge = |place: PartPlace, angles: usize| judge(&arm, &tool_from_flange, place, &points, angles);
+    let fine = |place: PartPlace| judge(place, FINE);
     let mut places = vec![start];
     places.extend(grid(&arm, start.rotation));
     // Collected in order: the first of equal ones wins, whatever the threads do.
-    let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(judge).collect();
-    let now = judged.first().copied().flatten().map(|s| s.margin);
-    let mut best = better(None, judged)?;
+    let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(|p| judge(p, COARSE)).collect();
+    let here = fine(start);
+    let mut best = better(None, judged).and_then(|found| better(here, vec![fine(found.place)]))?;
     for (mm, degrees) in STEPS {
         // Every step forward wins some margin, so this ends.
         loop {
-            let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(judge).collect();
+            let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(fine).collect();
             let Some(found) = better(Some(best), tried).filter(|f| f.margin > best.margin + 0.05) else { break };
             best = found;
         }
     }
-    Some(Suggestion { now, ..best })
+    Some(Suggestion { now: here.map(|s| s.margin), ..best })
 }
 
 fn better(best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
@@ -120,12 +123,14 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
 }
 
 /// The best least margin over branches and torch angles; none where a point is beyond reach or a limit in all of them.
-fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3]) -> Option<Suggestion> {
+fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3], angles: usize) -> Option<Suggestion> {
     let base_from_part = place.base_from_part();
-    let mut least = [[f64::INFINITY; ANGLES]; Branch::COUNT];
+    let angle = |k: usize| k as f64 * 360.0 / angles as f64;
+    let mut least = vec![[f64::INFINITY; Branch::COUNT]; angles];
     for &point in points {
-        for k in 0..ANGLES {
-            if least.iter().all(|margins| margins[k] < 0.0) {
+        for (k, least) in least.iter_mut().enumerate() {
+            // With this angle no branch has come so far.
+            if least.iter().all(|margin| *margin < 0.0) {
                 continue;
             }
             let tool = base_from_part.then(&part_from_tool(point, angle(k)));
@@ -133,24 +138,19 @@ fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3]
             for (branch, joints) in arm.inverse(&tool.then(tool_from_flange)) {
                 here[branch.index()] = arm.margins(&joints).least();
             }
-            for (margins, here) in least.iter_mut().zip(here) {
-                margins[k] = margins[k].min(here);
+            for (margin, here) in least.iter_mut().zip(here) {
+                *margin = margin.min(here);
             }
         }
         if least.as_flattened().iter().all(|m| *m < 0.0) {
             return None;
         }
     }
-    let found = least.iter().flat_map(|margins| margins.iter().enumerate()).filter(|(_, m)| m.is_finite());
-    let best = found.fold(None, |best: Option<(usize, f64)>, (k, &m)| match best {
-        Some(old) if old.1 >= m => Some(old),
-        _ => Some((k, m)),
-    });
+    let of_angle = |margins: &[f64; Branch::COUNT]| margins.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // The first of equal ones.
+    let best = least.iter().map(of_angle).enumerate().rev().max_by(|a, b| a.1.total_cmp(&b.1));
+    let best = best.filter(|(_, margin)| margin.is_finite());
     best.map(|(k, margin)| Suggestion { place, margin, torch_angle: angle(k), now: None })
-}
-
-fn angle(k: usize) -> f64 {
-    k as f64 * 360.0 / ANGLES as f64
 }
 
 /// The outermost stops of a few layers, in each direction upwards and downwards.
