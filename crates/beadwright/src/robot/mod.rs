@@ -9,7 +9,7 @@
 //!    the best least margin the one that turns least;
 //! 3. every point is walked with that course: angles, margins, speeds, [findings](finding) (`walk.rs`).
 //!
-//! [`suggest`] searches for a place of the part with more room.
+//! [`suggest()`] searches for a place of the part with more room.
 //!
 //! Not looked at: collisions of arm, torch and part, cables, and the load's dynamics.
 
