@@ -10,6 +10,7 @@ use beadwright::order::Method;
 use beadwright::order::tour::{Ends, Stop};
 use beadwright::plan;
 use beadwright::profile::Profile;
+use beadwright::robot::{self, Cell, Track};
 use beadwright::slice::{SliceOptions, Slicer};
 use beadwright::task::Task;
 use divan::{Bencher, black_box};
@@ -165,4 +166,50 @@ fn order_local_search(bencher: Bencher, count: usize) {
 fn order_ant_colony(bencher: Bencher, count: usize) {
     let stops = rings(count);
     bencher.bench_local(|| Method::AntColony.tour(black_box(&stops), Ends::Closed));
+}
+
+/// Joint angles and margins of all ways to stand at each stop of the propeller's program; items are poses.
+#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"], sample_count = 50)]
+fn solve_poses(bencher: Bencher, cell: &str) {
+    let (cell, track) = (Cell::built_in(cell).unwrap(), propeller_track());
+    let (arm, base_from_part) = (cell.arm(), cell.part.base_from_part());
+    let tool_from_flange = cell.flange_from_tool().inverse();
+    let flange = |at| base_from_part.then(&robot::part_from_tool(at, 100.0)).then(&tool_from_flange);
+    let poses: Vec<robot::Frame> = track.stops.iter().map(|stop| flange(stop.at)).collect();
+    let solve = |pose| arm.inverse(pose).iter().map(|(_, joints)| arm.margins(joints).least()).fold(0.0, f64::max);
+    let count = divan::counter::ItemsCount::new(poses.len());
+    bencher.counter(count).bench_local(|| poses.iter().map(solve).sum::<f64>());
+}
+
+/// The whole walk along the propeller's program with all its torch angles, on all threads; items are poses.
+#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"], sample_count = 20)]
+fn reach_propeller(bencher: Bencher, cell: &str) {
+    let (cell, track) = (Cell::built_in(cell).unwrap(), propeller_track());
+    let count = robot::reach(&cell, cell.part, &track).computed;
+    bencher.counter(divan::counter::ItemsCount::new(count)).bench(|| robot::reach(&cell, cell.part, &track));
+}
+
+/// FK(IK(pose)) of 100 000 random poses of each arm within its limits: panics where one comes back more than 1e-6 m away.
+#[divan::bench(args = ["kuka-kr20-r1810", "abb-irb1410"], sample_count = 5)]
+fn there_and_back(bencher: Bencher, cell: &str) {
+    const POSES: u64 = 100_000;
+    let arm = Cell::built_in(cell).unwrap().arm();
+    let noise = |k: u64| ((k + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1_u64 << 53) as f64;
+    let joints = |k: u64| {
+        std::array::from_fn(|j| arm.limits[j][0] + (arm.limits[j][1] - arm.limits[j][0]) * noise(6 * k + j as u64))
+    };
+    bencher.counter(divan::counter::ItemsCount::new(POSES)).bench(|| {
+        for k in 0..POSES {
+            let flange = arm.forward(&joints(k));
+            let solutions = arm.inverse(&flange);
+            let misses = |found: &robot::Joints| arm.forward(found).position.distance(flange.position) > 1e-3;
+            assert!(!solutions.is_empty() && !solutions.iter().any(|(_, found)| misses(found)));
+        }
+    });
+}
+
+fn propeller_track() -> Track {
+    let (mesh, profile) = propeller();
+    let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
+    Track::of(&plan.layers, profile.travel.clearance, profile.travel.speed)
 }

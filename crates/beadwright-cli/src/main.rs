@@ -13,6 +13,7 @@ mod plan;
 mod profile;
 mod program;
 mod progress;
+mod reach;
 mod reproduce;
 mod simulate;
 
@@ -40,6 +41,8 @@ enum Command {
     /// Width and height of measured beads, and the parameters of a wanted one.
     #[command(subcommand)]
     Bead(bead::Command),
+    /// Whether a robot can weld a plan: joint angles, margins, and a better place for the part.
+    Reach(reach::Arguments),
     /// Make the papers' experiments again: ours beside theirs.
     Reproduce(reproduce::Arguments),
     /// Tell what a model holds and what is wrong with it.
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
+        Command::Reach(arguments) => reach::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),

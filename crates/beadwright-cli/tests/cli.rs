@@ -335,3 +335,27 @@ fn curves_are_inspected_and_welded_as_walls() {
     assert!(refused(folder.path(), &["compare", "tian.igs"], 1).contains("here a solid is needed"));
     assert!(refused(folder.path(), &["example", "cross", "-o", "cross.igs"], 1).contains("no thin wall"));
 }
+
+#[test]
+fn reach_tells_margins_and_refuses_what_is_too_far() {
+    let folder = folder_with("cross");
+    ok(folder.path(), &["plan", "cross.stl", "-o", "out", "--no-deposit"]);
+    let reach = ["reach", "out/plan.json", "--cell", "kuka-kr20-r1810"];
+    let said = ok(folder.path(), &[&reach[..], &["-o", "reach.html", "--suggest"]].concat());
+    assert!(said.contains("least margin") && said.contains("The part lies well"), "{said}");
+    assert!(files(folder.path())["reach.html"].len() > 10_000);
+    let json = ok(folder.path(), &[&reach[..], &["--json"]].concat());
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(json["reachable"] == true && json["least_margin"].as_f64().unwrap() > 30.0, "{json}");
+    let error = refused(folder.path(), &[&reach[..], &["--at", "3000,0,500"]].concat(), 1);
+    assert!(error.contains("Layer 1, pass 1, point 1") && error.contains("out of reach"), "{error}");
+    let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "kuka"], 1);
+    assert!(error.contains("kuka-kr20-r1810"), "{error}");
+    refused(folder.path(), &["reach", "out/plan.json"], 2);
+    refused(folder.path(), &[&reach[..], &["--at", "3000"]].concat(), 2);
+    assert!(ok(folder.path(), &["reach", "--list"]).contains("abb-irb1410"));
+    let cell = ok(folder.path(), &["reach", "--show", "abb-irb1410"]);
+    fs::write(folder.path().join("mine.toml"), cell.replace("c2 = 600.0", "c2 = -1.0")).unwrap();
+    let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "mine.toml"], 1);
+    assert!(error.contains("line 12") && error.contains("arm.c2"), "{error}");
+}

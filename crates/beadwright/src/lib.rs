@@ -16,6 +16,7 @@
 //! | program | [`program`] |
 //! | post | [`post`] |
 //! | show | [`report`] |
+//! | reach | [`robot`] |
 //!
 //! Beside it stand [`task`] (progress and cancelling), [`warning`] (what was lost or mended), [`profile`] and
 //! [`example`] (parts to try). The library does no I/O and never panics on input.
@@ -51,6 +52,7 @@ pub mod program;
 pub mod readback;
 pub mod report;
 pub mod reproduce;
+pub mod robot;
 pub mod simulate;
 pub mod slice;
 pub mod task;

@@ -24,6 +24,8 @@ const ROWS: &[&[&str]] = &[
     &["plan_file", "program"],
     &["check", "post"],
     &["report"],
+    // Walks a program with an arm, and shows it.
+    &["robot"],
     &["simulate"],
     &["example"],
     &["compare"],

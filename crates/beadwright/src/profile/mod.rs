@@ -14,6 +14,7 @@ pub use fanuc::{Fanuc, FanucSpeed};
 pub use inform::{Inform, InformSpeed};
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
+pub(crate) use read::{explain, line_of, line_of_key, nearest};
 pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};

@@ -76,12 +76,13 @@ pub(super) fn unknown_name(name: &str) -> ProfileError {
     ProfileError::UnknownName { name: name.to_owned(), hint }
 }
 
-fn line_of(text: &str, byte: usize) -> usize {
+/// The line, from 1, on which a byte of a text stands.
+pub(crate) fn line_of(text: &str, byte: usize) -> usize {
     text[..byte.min(text.len())].matches('\n').count() + 1
 }
 
 /// The line on which a key such as `bead.width` stands.
-fn line_of_key(text: &str, key: &str) -> usize {
+pub(crate) fn line_of_key(text: &str, key: &str) -> usize {
     let Ok(root) = toml::de::DeTable::parse(text) else { return 1 };
     let (mut table, mut at) = (Some(root.get_ref()), 0);
     for part in key.split('.') {
@@ -93,7 +94,7 @@ fn line_of_key(text: &str, key: &str) -> usize {
 }
 
 /// Makes a sentence of the parser's message and finds the nearest word among those it expected.
-fn explain(message: &str) -> String {
+pub(crate) fn explain(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
         let (kind, got) =

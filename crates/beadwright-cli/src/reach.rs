@@ -1,0 +1,204 @@
+//! `beadwright reach`: whether a robot can weld a plan, and with what margins.
+
+use crate::output::write_file;
+use crate::profile;
+use anyhow::{Context, bail};
+use beadwright::plan_file::{self, PlanFile};
+use beadwright::profile::Profile;
+use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, Track, cell};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// plan.json, as `beadwright plan` writes it.
+    #[arg(required_unless_present_any = ["list", "show"])]
+    plan: Option<PathBuf>,
+    /// The cell: a built-in name or a TOML file.
+    #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["list", "show"])]
+    cell: Option<String>,
+    /// Where the part's origin lies, instead of the cell's place: x,y,z in mm and the turn about the vertical in °.
+    #[arg(long, value_name = "X,Y,Z[,TURN]", value_parser = parse_place, allow_hyphen_values = true)]
+    at: Option<PartPlace>,
+    /// Profile with travel speed and clearance, where the plan's is no built-in one.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    profile: Option<String>,
+    /// Search a place of the part with more margin.
+    #[arg(long)]
+    suggest: bool,
+    /// Page with joint angles and margins over the program.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print JSON for machines.
+    #[arg(long)]
+    json: bool,
+    /// List the built-in cells.
+    #[arg(long)]
+    list: bool,
+    /// Print a built-in cell, to be saved and edited.
+    #[arg(long, value_name = "NAME")]
+    show: Option<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    if arguments.list {
+        return cell::BUILT_IN
+            .iter()
+            .try_for_each(|(name, text)| Ok(writeln!(out, "{name:<18} {}", Cell::parse(text)?.description)?));
+    }
+    if let Some(name) = &arguments.show {
+        return Ok(write!(out, "{}", Cell::built_in_text(name)?)?);
+    }
+    let (Some(path), Some(name)) = (&arguments.plan, &arguments.cell) else { bail!("a plan and --cell are needed") };
+    let cell = load_cell(name)?;
+    let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
+    let plan = plan_file::read(&text).with_context(|| format!("{}", path.display()))?;
+    let profile = plan_profile(arguments, &plan)?;
+    let track = Track::of(&plan.layers, profile.travel.clearance, profile.travel.speed);
+    if track.stops.is_empty() {
+        bail!("{}: the plan has no passes.", path.display());
+    }
+    let place = arguments.at.unwrap_or(cell.part);
+    let start = Instant::now();
+    let reach = robot::reach(&cell, place, &track);
+    let seconds = start.elapsed().as_secs_f64();
+    let suggestion = arguments.suggest.then(|| robot::suggest(&cell, place, &track));
+    let better = suggestion.flatten();
+    if let Some(page) = &arguments.output {
+        let page_text = robot::page::page(&plan.header.part, &cell, &reach, better.as_ref()).html();
+        write_file(page, page_text.as_bytes())?;
+    }
+    if arguments.json {
+        writeln!(out, "{:#}", json(&cell, &reach, suggestion))?;
+    } else {
+        print(&mut out, &plan.header.part, &cell, &track, &reach)?;
+        if reach.reached().next().is_some() {
+            let rate = reach.computed as f64 / seconds.max(1e-9);
+            writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
+        }
+        // The first bad one is the error below.
+        let told = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
+        told.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;
+        match suggestion {
+            Some(Some(better)) => writeln!(out, "\n{}", better.sentence())?,
+            Some(None) => writeln!(
+                out,
+                "\nThe arm does not reach all of the part from any place that was tried: the part is too large."
+            )?,
+            None => {}
+        }
+        if let Some(page) = &arguments.output {
+            writeln!(out, "\nplots in {}", page.display())?;
+        }
+    }
+    match reach.first_bad() {
+        Some(bad) => bail!("{} cannot weld this plan. {}", cell.name, bad.sentence()),
+        None => Ok(()),
+    }
+}
+
+fn print(out: &mut impl Write, part: &str, cell: &Cell, track: &Track, reach: &Reach) -> std::io::Result<()> {
+    writeln!(out, "{part} on {}: {}", cell.name, cell.description)?;
+    writeln!(out, "origin of the part at {}\n", reach.place.sentence())?;
+    if reach.reached().next().is_none() {
+        return writeln!(out, "  no point of {} is reached", track.stops.len());
+    }
+    writeln!(out, "  joint      from       to    margin   speed with arc   on travel     limit")?;
+    for j in 0..6 {
+        let Some(r) = reach.joint(j) else { continue };
+        writeln!(
+            out,
+            "  J{}    {:8.1}° {:7.1}° {:8.1}° {:12.1} °/s {:7.1} °/s {:5.0} °/s",
+            j + 1,
+            r.low,
+            r.high,
+            r.margin,
+            r.arc_speed,
+            r.travel_speed,
+            cell.arm.speeds[j]
+        )?;
+    }
+    let least = |value: fn(&robot::Pose) -> f64| {
+        let least = reach.reached().map(|(_, pose)| value(pose)).min_by(f64::total_cmp);
+        least.map_or("-".to_owned(), |v| format!("{v:.1}°"))
+    };
+    let t = &reach.turning;
+    let turned = match t.range {
+        (low, high) if high - low < 0.5 => format!("{low:.0}° all the way"),
+        (low, high) => format!("{low:.0}° to {high:.0}°"),
+    };
+    let single = match t.single_margin {
+        m if m > -500.0 => format!("{:.0}°, least margin {m:.1}°", t.single),
+        _ => "none reaches all".to_owned(),
+    };
+    let rows = [
+        ("wrist singularity", least(|pose| pose.margins.wrist)),
+        ("straight arm", least(|pose| pose.margins.elbow)),
+        ("least margin", least(|pose| pose.margins.least())),
+        ("torch angle", turned),
+        ("best single angle", single),
+        ("posture", reach.branch.name()),
+        ("points", format!("{} on {:.2} m", track.stops.len(), track.length() / 1e3)),
+    ];
+    writeln!(out)?;
+    rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))
+}
+
+fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> serde_json::Value {
+    let findings: Vec<_> = reach
+        .findings
+        .iter()
+        .map(|f| serde_json::json!({ "fatal": f.trouble.is_fatal(), "sentence": f.sentence(), "finding": f }))
+        .collect();
+    let joints: Vec<_> = (0..6).map(|j| reach.joint(j)).collect();
+    let least = reach.least_margin();
+    let points = reach.poses.len();
+    let value = serde_json::json!({
+        "cell": cell.name, "place": reach.place, "reachable": reach.is_reachable(), "least_margin": least,
+        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "points": points,
+        "findings": findings,
+    });
+    match (value, suggestion) {
+        (serde_json::Value::Object(mut map), Some(suggestion)) => {
+            map.insert("suggestion".to_owned(), serde_json::json!(suggestion));
+            map.into()
+        }
+        (value, _) => value,
+    }
+}
+
+fn load_cell(name: &str) -> anyhow::Result<Cell> {
+    let path = Path::new(name);
+    let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
+    if !is_file {
+        return Ok(Cell::built_in(name)?);
+    }
+    let text = std::fs::read_to_string(path).with_context(|| name.to_owned())?;
+    Cell::parse(&text).with_context(|| name.to_owned())
+}
+
+/// The profile that was asked for, or the plan's own.
+fn plan_profile(arguments: &Arguments, plan: &PlanFile) -> anyhow::Result<Profile> {
+    match &arguments.profile {
+        Some(name) => profile::load(name, &[]),
+        None => Profile::built_in(&plan.header.profile).with_context(|| {
+            format!(
+                "the plan was made with the profile \"{}\", whose travel speed and clearance are needed: give its file with \
+                 --profile",
+                plan.header.profile
+            )
+        }),
+    }
+}
+
+fn parse_place(text: &str) -> Result<PartPlace, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|v| v.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(all) if all.iter().any(|v| v.is_nan() || v.abs() > 1e5) => Err("the place must lie within 100 m".to_owned()),
+        Ok(&[x, y, z]) => Ok(PartPlace { position: [x, y, z], rotation: 0.0 }),
+        Ok(&[x, y, z, rotation]) => Ok(PartPlace { position: [x, y, z], rotation }),
+        _ => Err("expected is x,y,z in mm, such as 1200,0,500, or x,y,z,turn with the turn in °".to_owned()),
+    }
+}

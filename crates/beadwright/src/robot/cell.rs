@@ -1,0 +1,210 @@
+//! Cells: an arm with its torch and the place of the part, as a TOML file people can edit.
+
+use super::arm::{Arm, Frame, Lengths};
+use crate::profile::{explain, line_of, line_of_key, nearest};
+use glam::{DQuat, DVec3, EulerRot};
+use serde::{Deserialize, Serialize};
+
+/// The built-in cells as (name, TOML text).
+pub const BUILT_IN: [(&str, &str); 2] = [
+    ("kuka-kr20-r1810", include_str!("../../../../cells/kuka-kr20-r1810.toml")),
+    ("abb-irb1410", include_str!("../../../../cells/abb-irb1410.toml")),
+];
+
+/// An arm, its torch and the place of the part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cell {
+    /// Name.
+    pub name: String,
+    /// One line for people.
+    pub description: String,
+    /// The robot.
+    pub arm: ArmTable,
+    /// Tool frame on the flange.
+    pub torch: Torch,
+    /// Frame of the part in the robot's.
+    pub part: PartPlace,
+}
+
+/// A six-axis arm with parallel base and spherical wrist. Lengths in mm, angles in °.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArmTable {
+    /// From axis 1 forward to axis 2, mm.
+    pub a1: f64,
+    /// From axis 3 to axis 4, mm; negative where axis 4 lies above.
+    pub a2: f64,
+    /// Sideways offset of the arm, mm.
+    pub b: f64,
+    /// From the foot up to axis 2, mm.
+    pub c1: f64,
+    /// Length of the upper arm, mm.
+    pub c2: f64,
+    /// Length of the forearm to the wrist, mm.
+    pub c3: f64,
+    /// From the wrist to the flange, mm.
+    pub c4: f64,
+    /// What each joint shows when the arm stands straight up, with its sign: model angle = sign × shown − offset, °.
+    pub offsets: [f64; 6],
+    /// 1 where the maker's positive direction is that of the model, −1 where not.
+    pub signs: [i8; 6],
+    /// Whether joint 3 is driven through a parallelogram, so that it tells the forearm's angle to the floor.
+    pub parallelogram: bool,
+    /// Least and greatest angle of each joint, °.
+    pub limits: [[f64; 2]; 6],
+    /// Greatest speed of each joint, °/s.
+    pub speeds: [f64; 6],
+}
+
+/// The torch: its tool frame on the flange, z along the wire.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Torch {
+    /// The wire's tip, mm.
+    pub position: [f64; 3],
+    /// Turns about z, the new y and the new x, °.
+    pub rotation: [f64; 3],
+}
+
+/// Where the origin of the part lies, seen from the foot of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartPlace {
+    /// Position, mm.
+    pub position: [f64; 3],
+    /// Turn about the vertical, °.
+    pub rotation: f64,
+}
+
+/// Why a cell was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CellError {
+    /// No built-in cell has that name.
+    #[error("there is no built-in cell \"{name}\". {hint}")]
+    UnknownName {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, or all of them.
+        hint: String,
+    },
+    /// The text is not TOML, a key is unknown or missing, or a value has the wrong type.
+    #[error("line {line} of the cell: {reason}")]
+    Text {
+        /// Line number, from 1.
+        line: usize,
+        /// What is wrong and what would be right.
+        reason: String,
+    },
+    /// A value that cannot be.
+    #[error("line {line} of the cell: {key} = {value} is impossible: {reason}")]
+    Value {
+        /// Line number, from 1.
+        line: usize,
+        /// Full key, such as `arm.c2`.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// The range and the unit.
+        reason: String,
+    },
+}
+
+impl Cell {
+    /// A built-in cell.
+    ///
+    /// # Errors
+    /// [`CellError::UnknownName`] with the nearest name.
+    pub fn built_in(name: &str) -> Result<Self, CellError> {
+        Self::parse(Self::built_in_text(name)?)
+    }
+
+    /// The text of a built-in cell, to be saved and edited.
+    ///
+    /// # Errors
+    /// [`CellError::UnknownName`] with the nearest name.
+    pub fn built_in_text(name: &str) -> Result<&'static str, CellError> {
+        let known = BUILT_IN.map(|(name, _)| name);
+        let found = BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text);
+        found.ok_or_else(|| CellError::UnknownName {
+            name: name.to_owned(),
+            hint: match nearest(name, known) {
+                Some(near) => format!("Did you mean \"{near}\"?"),
+                None => format!("Known: {}. A path to a TOML file is taken too.", known.join(", ")),
+            },
+        })
+    }
+
+    /// Reads a cell.
+    ///
+    /// # Errors
+    /// [`CellError`] with the line.
+    pub fn parse(text: &str) -> Result<Self, CellError> {
+        let cell: Self = toml::from_str(text).map_err(|e| {
+            let line = e.span().map_or(1, |span| line_of(text, span.start));
+            CellError::Text { line, reason: explain(e.message()) }
+        })?;
+        match cell.first_broken() {
+            None => Ok(cell),
+            Some((key, value, reason)) => Err(CellError::Value { line: line_of_key(text, key), key, value, reason }),
+        }
+    }
+
+    /// The arm, ready to be moved.
+    pub fn arm(&self) -> Arm {
+        let t = &self.arm;
+        let lengths = Lengths { a1: t.a1, a2: t.a2, b: t.b, c1: t.c1, c2: t.c2, c3: t.c3, c4: t.c4 };
+        Arm::new(lengths, t.offsets, t.signs, t.parallelogram, t.limits, t.speeds)
+    }
+
+    /// The torch's frame on the flange.
+    pub fn flange_from_tool(&self) -> Frame {
+        let [z, y, x] = self.torch.rotation.map(f64::to_radians);
+        Frame { position: self.torch.position.into(), rotation: DQuat::from_euler(EulerRot::ZYX, z, y, x) }
+    }
+
+    fn first_broken(&self) -> Option<(&'static str, String, String)> {
+        let a = &self.arm;
+        let mut ranges = vec![
+            ("arm.a1", a.a1, -5e3, 5e3, "mm"),
+            ("arm.a2", a.a2, -5e3, 5e3, "mm"),
+            ("arm.b", a.b, -5e3, 5e3, "mm"),
+            ("arm.c1", a.c1, 0.0, 5e3, "mm"),
+            ("arm.c2", a.c2, 1.0, 5e3, "mm"),
+            ("arm.c3", a.c3, 1.0, 5e3, "mm"),
+            ("arm.c4", a.c4, 0.0, 5e3, "mm"),
+            ("part.rotation", self.part.rotation, -360.0, 360.0, "°"),
+        ];
+        ranges.extend(a.offsets.map(|v| ("arm.offsets", v, -360.0, 360.0, "°")));
+        ranges.extend(a.limits.as_flattened().iter().map(|&v| ("arm.limits", v, -7200.0, 7200.0, "°")));
+        ranges.extend(a.speeds.map(|v| ("arm.speeds", v, 1e-3, 1e5, "°/s")));
+        ranges.extend(self.torch.position.map(|v| ("torch.position", v, -5e3, 5e3, "mm")));
+        ranges.extend(self.torch.rotation.map(|v| ("torch.rotation", v, -360.0, 360.0, "°")));
+        ranges.extend(self.part.position.map(|v| ("part.position", v, -1e5, 1e5, "mm")));
+        // Written so that NaN is out of range too.
+        if let Some((key, value, low, high, unit)) =
+            ranges.into_iter().find(|&(_, v, low, high, _)| !(v >= low && v <= high))
+        {
+            return Some((key, format!("{value}"), format!("it must lie between {low} and {high} {unit}.")));
+        }
+        if let Some(sign) = a.signs.iter().find(|s| s.abs() != 1) {
+            return Some(("arm.signs", sign.to_string(), "each sign is 1 or -1.".to_owned()));
+        }
+        let swapped = a.limits.iter().find(|[low, high]| low >= high);
+        swapped.map(|pair| {
+            ("arm.limits", format!("{pair:?}"), "the least angle comes first, then the greatest.".to_owned())
+        })
+    }
+}
+
+impl PartPlace {
+    /// The frame of the part in the robot's.
+    pub fn base_from_part(&self) -> Frame {
+        Frame { position: DVec3::from(self.position), rotation: DQuat::from_rotation_z(self.rotation.to_radians()) }
+    }
+    /// The place in words.
+    pub fn sentence(&self) -> String {
+        let [x, y, z] = self.position;
+        format!("x {x:.0} y {y:.0} z {z:.0} mm, turned by {:.0}°", self.rotation)
+    }
+}

@@ -1,0 +1,89 @@
+//! The way of the torch through a plan, travels included, in pieces short enough to be checked point by point.
+
+use crate::plan::Layer;
+use crate::program::{Instruction, Programmer};
+use glam::DVec3;
+use serde::Serialize;
+
+/// Longer moves are divided, mm: between two stops no joint may swing out unseen.
+pub const PIECE_MM: f64 = 20.0;
+
+/// A point of the way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Stop {
+    /// Layer, from 0.
+    pub layer: usize,
+    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to.
+    pub pass: usize,
+    /// Point of the pass as the program has it, from 0; on the way to a point, that point.
+    pub point: usize,
+    /// Tool point in the part's space, mm.
+    pub at: DVec3,
+    /// Time since the stop before, s, at the wanted speed.
+    pub seconds: f64,
+    /// Whether the arc burns on the way to this stop.
+    pub arc: bool,
+}
+
+/// The way of the torch.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Track {
+    /// Its stops.
+    pub stops: Vec<Stop>,
+}
+
+impl Track {
+    /// The way through a plan's layers, with travels `clearance` (mm) above them at `travel_speed` (mm/s).
+    pub fn of(layers: &[Layer], clearance: f64, travel_speed: f64) -> Self {
+        let mut track = Self::default();
+        let mut programmer = Programmer::new(clearance);
+        for layer in layers {
+            track.add(&programmer.layer(layer), layer.index, travel_speed);
+        }
+        if let (Some(Instruction::Travel { to }), Some(last)) = (programmer.leave(), track.stops.last().copied()) {
+            track.go(Stop { at: to, seconds: travel_speed, arc: false, ..last });
+        }
+        track
+    }
+
+    /// Length of the way, mm.
+    pub fn length(&self) -> f64 {
+        self.stops.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
+    }
+
+    fn add(&mut self, program: &crate::program::LayerProgram, layer: usize, travel_speed: f64) {
+        let (mut pass, mut point) = (0, 0);
+        for instruction in &program.instructions {
+            match *instruction {
+                Instruction::Travel { to } => {
+                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false });
+                }
+                Instruction::ArcOn { .. } => point = 0,
+                Instruction::Weld { to, speed, .. } => {
+                    point += 1;
+                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true });
+                }
+                // The number of the pass, from 1, is the next one's from 0.
+                Instruction::ArcOff { pass: number } => pass = number,
+            }
+        }
+    }
+
+    /// Goes straight to a stop, whose `seconds` still hold the speed (mm/s).
+    fn go(&mut self, stop: Stop) {
+        let speed = stop.seconds.max(1e-6);
+        let Some(from) = self.stops.last().map(|s| s.at) else {
+            self.stops.push(Stop { seconds: 0.0, ..stop });
+            return;
+        };
+        let length = from.distance(stop.at);
+        // No way is long enough to make that many stops needful.
+        let pieces = (length / PIECE_MM).ceil().clamp(1.0, 1e4);
+        let part = |k: usize| Stop {
+            at: from.lerp(stop.at, (k as f64 / pieces).min(1.0)),
+            seconds: length / pieces / speed,
+            ..stop
+        };
+        self.stops.extend((1..=pieces as usize).map(part));
+    }
+}

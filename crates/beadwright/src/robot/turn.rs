@@ -1,0 +1,194 @@
+//! The course of the torch angle: which way the torch is turned about its own axis, station by station.
+//!
+//! Two dynamic programs over a table of margins (station × branch × angle): the first finds the greatest least margin
+//! of any course, the second, of all courses that keep it, the one that turns least. A turn from one station to the
+//! next is at most one step of the table. Posts write one angle for the whole program, so one that does nearly as well
+//! is preferred.
+
+use super::arm::{Arm, Branch, Frame};
+use super::part_from_tool;
+use super::track::{PIECE_MM, Stop};
+use rayon::prelude::*;
+
+/// Torch angles that are tried.
+pub(super) const ANGLES: usize = 36;
+/// Between two of them, °.
+pub(super) const STEP: f64 = 360.0 / ANGLES as f64;
+/// The torch does not turn in less time than this from one station to the next, s.
+const TURNING_SECONDS: f64 = 0.2;
+/// Margin of a pose that no joint angles give, °.
+const NOWHERE: f32 = -1e3;
+/// Margin that is given up so that the torch need not turn at all, °.
+const WORTH_TURNING: f32 = 5.0;
+/// Margins that differ by less are the same, °.
+const SAME: f32 = 1e-2;
+/// What a station beyond a limit costs, in turns.
+const BAD: u64 = 1 << 12;
+
+/// Margins of one station: for each angle, those of all branches, °.
+type Row = [[f32; Branch::COUNT]; ANGLES];
+
+/// The chosen course.
+pub(super) struct Course {
+    /// The way the arm reaches.
+    pub(super) branch: Branch,
+    /// Torch angle at every stop, °.
+    pub(super) angles: Vec<f64>,
+    /// The best single angle, °, and its least margin, °.
+    pub(super) single: (f64, f64),
+    /// Poses that were computed.
+    pub(super) poses: usize,
+}
+
+/// Picks branch and angles.
+pub(super) fn course(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame, stops: &[Stop]) -> Course {
+    let stations = stations(stops);
+    let rows: Vec<Row> = stations.par_iter().map(|&s| row(arm, base_from_part, tool_from_flange, &stops[s])).collect();
+    let turnable = turnable(stops, &stations);
+    let steps = |branch: usize| Steps { rows: &rows, turnable: &turnable, branch };
+    let least: Vec<f32> = (0..Branch::COUNT).map(|b| steps(b).best_margin()).collect();
+    let greatest = (0..Branch::COUNT).rev().max_by(|&a, &b| least[a].total_cmp(&least[b])).unwrap_or(0);
+    let single = steps(greatest).single();
+    let (branch, chosen) = if single.1 >= (least[greatest] - WORTH_TURNING).max(0.0) {
+        (greatest, vec![single.0; stations.len()])
+    } else if least[greatest] >= 0.0 {
+        (greatest, steps(greatest).fewest_turns(least[greatest] - SAME).1)
+    } else {
+        // Nothing reaches all: the branch that reaches most.
+        let tried = (0..Branch::COUNT).map(|b| (b, steps(b).fewest_turns(0.0)));
+        tried.min_by_key(|(b, (cost, _))| (*cost, *b)).map_or((0, Vec::new()), |(b, (_, path))| (b, path))
+    };
+    let single_of = |(k, margin): (usize, f32)| (k as f64 * STEP, f64::from(margin));
+    Course {
+        branch: Branch::new(branch),
+        angles: spread(stops, &stations, &chosen),
+        single: single_of(steps(branch).single()),
+        poses: stations.len() * ANGLES,
+    }
+}
+
+/// Stops at which the angle is chosen: starts and ends of passes, and at least every [`PIECE_MM`] between.
+fn stations(stops: &[Stop]) -> Vec<usize> {
+    let mut found = Vec::new();
+    let mut way = f64::INFINITY;
+    for (i, stop) in stops.iter().enumerate() {
+        let next = stops.get(i + 1);
+        let length = if i > 0 { stops[i - 1].at.distance(stop.at) } else { 0.0 };
+        way += length;
+        if next.is_none_or(|n| n.arc != stop.arc || way + stop.at.distance(n.at) > PIECE_MM) {
+            found.push(i);
+            way = 0.0;
+        }
+    }
+    found
+}
+
+/// Whether there is time to turn the torch on the way to each station.
+fn turnable(stops: &[Stop], stations: &[usize]) -> Vec<bool> {
+    let mut from = 0;
+    let enough = |&station: &usize| {
+        let time: f64 = stops[from..=station].iter().skip(1).map(|s| s.seconds).sum();
+        from = station;
+        time >= TURNING_SECONDS
+    };
+    stations.iter().map(enough).collect()
+}
+
+fn row(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame, stop: &Stop) -> Row {
+    let mut row = [[NOWHERE; Branch::COUNT]; ANGLES];
+    for (k, margins) in row.iter_mut().enumerate() {
+        let tool = base_from_part.then(&part_from_tool(stop.at, k as f64 * STEP));
+        for (branch, joints) in arm.inverse(&tool.then(tool_from_flange)) {
+            let margin = &mut margins[branch.index()];
+            *margin = margin.max(arm.margins(&joints).least() as f32);
+        }
+    }
+    row
+}
+
+/// The table as one branch sees it.
+#[derive(Clone, Copy)]
+struct Steps<'a> {
+    rows: &'a [Row],
+    turnable: &'a [bool],
+    branch: usize,
+}
+
+impl Steps<'_> {
+    fn margin(&self, station: usize, k: usize) -> f32 {
+        self.rows[station][k][self.branch]
+    }
+
+    /// Angles from which the angle `k` of a station can be come to, the unturned one first.
+    fn before(&self, station: usize, k: usize) -> impl Iterator<Item = usize> + use<> {
+        let count = if self.turnable[station] { 3 } else { 1 };
+        [k, (k + 1) % ANGLES, (k + ANGLES - 1) % ANGLES].into_iter().take(count)
+    }
+
+    /// The greatest least margin of any course.
+    fn best_margin(&self) -> f32 {
+        let mut best = [f32::INFINITY; ANGLES];
+        for station in 0..self.rows.len() {
+            best = std::array::from_fn(|k| {
+                let before = self.before(station, k).map(|j| best[j]).fold(f32::NEG_INFINITY, f32::max);
+                before.min(self.margin(station, k))
+            });
+        }
+        best.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The course with the fewest stations below that margin, and then the fewest turns; with its cost.
+    fn fewest_turns(&self, margin: f32) -> (u64, Vec<usize>) {
+        let mut costs = [0_u64; ANGLES];
+        let mut came = Vec::with_capacity(self.rows.len());
+        for station in 0..self.rows.len() {
+            let mut from = [0_u8; ANGLES];
+            costs = std::array::from_fn(|k| {
+                let turned = |j: usize| (costs[j].saturating_add(u64::from(j != k)), j);
+                let (cost, j) = self.before(station, k).map(turned).min_by_key(|(cost, _)| *cost).unwrap_or_default();
+                from[k] = j as u8;
+                // Beyond a limit is bad, out of reach is worse.
+                let bad = if self.margin(station, k) >= margin {
+                    0
+                } else if self.margin(station, k) > NOWHERE {
+                    BAD
+                } else {
+                    2 * BAD
+                };
+                cost.saturating_add(bad)
+            });
+            came.push(from);
+        }
+        let end = (0..ANGLES).min_by_key(|&k| costs[k]).unwrap_or(0);
+        let mut path: Vec<usize> =
+            came.iter().rev().scan(end, |k, from| Some(std::mem::replace(k, from[*k].into()))).collect();
+        path.reverse();
+        (costs[end], path)
+    }
+
+    /// The best angle that is never changed, as a number of steps, and its least margin, °.
+    fn single(&self) -> (usize, f32) {
+        let least = |k: usize| (0..self.rows.len()).map(|s| self.margin(s, k)).fold(f32::INFINITY, f32::min);
+        (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE))
+    }
+}
+
+/// The angles of all stops: between stations the torch turns evenly with the way.
+fn spread(stops: &[Stop], stations: &[usize], chosen: &[usize]) -> Vec<f64> {
+    let mut angles = vec![0.0; stops.len()];
+    let mut last: Option<(usize, f64)> = None;
+    for (&station, &k) in stations.iter().zip(chosen) {
+        let (from, before) = last.unwrap_or((station, k as f64 * STEP));
+        let to = super::arm::turned_near(k as f64 * STEP, before);
+        let lengths = (from + 1..=station).map(|i| stops[i - 1].at.distance(stops[i].at));
+        let total: f64 = lengths.clone().sum::<f64>().max(1e-9);
+        let mut way = 0.0;
+        for (i, length) in (from + 1..=station).zip(lengths) {
+            way += length;
+            angles[i] = before + (to - before) * way / total;
+        }
+        angles[station] = to;
+        last = Some((station, to));
+    }
+    angles
+}

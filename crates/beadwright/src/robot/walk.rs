@@ -1,0 +1,191 @@
+//! The walk along the whole way: joint angles, margins, speeds, and what is wrong.
+
+use super::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
+use super::cell::{Cell, PartPlace};
+use super::finding::{Finding, Findings, Trouble};
+use super::track::{Stop, Track};
+use super::{part_from_tool, turn};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Below this distance of joint 5 from its singular angle a finding tells of it, °: |sin J5| = 0.087.
+pub(super) const WRIST_MARGIN: f64 = 5.0;
+
+/// The arm at one stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Turn of the torch about its axis, °.
+    pub torch_angle: f64,
+    /// Angles of the joints, °.
+    pub joints: Joints,
+    /// How far from trouble.
+    pub margins: Margins,
+    /// Speed of each joint on the way here, °/s.
+    pub speeds: [f64; 6],
+}
+
+/// How the torch is turned about its own axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Turning {
+    /// Least and greatest angle that was chosen, °.
+    pub range: (f64, f64),
+    /// The best single angle for the whole program, °.
+    pub single: f64,
+    /// Least margin with that single angle, °; far below 0 where some point is out of reach.
+    pub single_margin: f64,
+}
+
+/// What a walk has found.
+#[derive(Debug, Clone)]
+pub struct Reach {
+    /// Where the part lies.
+    pub place: PartPlace,
+    /// How the arm reaches.
+    pub branch: Branch,
+    /// The stops with the arm there; none where it cannot be.
+    pub poses: Vec<(Stop, Option<Pose>)>,
+    /// The torch angle.
+    pub turning: Turning,
+    /// What is wrong, the fatal first, one of each kind and joint.
+    pub findings: Vec<Finding>,
+    /// Poses whose joint angles were computed.
+    pub computed: usize,
+}
+
+/// Walks a track with the part at a place of the cell.
+pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
+    let arm = cell.arm();
+    let (base_from_part, tool_from_flange) = (place.base_from_part(), cell.flange_from_tool().inverse());
+    let course = turn::course(&arm, &base_from_part, &tool_from_flange, &track.stops);
+    let flange = |stop: &Stop, angle: f64| base_from_part.then(&part_from_tool(stop.at, angle)).then(&tool_from_flange);
+    let pairs: Vec<(&Stop, f64)> = track.stops.iter().zip(course.angles.iter().copied()).collect();
+    let solved: Vec<Option<Joints>> =
+        pairs.par_iter().map(|(stop, angle)| solve(&arm, &flange(stop, *angle), course.branch)).collect();
+    let mut walk = Walk { arm: &arm, before: None, findings: Findings::default() };
+    let step = |((stop, angle), joints): (&(&Stop, f64), Option<Joints>)| {
+        let pose = walk.step(stop, *angle, joints, || arm.beyond(&flange(stop, *angle)));
+        (**stop, pose)
+    };
+    let poses: Vec<(Stop, Option<Pose>)> = pairs.iter().zip(solved).map(step).collect();
+    let angles = || course.angles.iter().copied();
+    let turning = Turning {
+        range: (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)),
+        single: course.single.0,
+        single_margin: course.single.1,
+    };
+    let computed = course.poses + pairs.len();
+    Reach { place, branch: course.branch, poses, turning, findings: walk.findings.sorted(), computed }
+}
+
+fn solve(arm: &Arm, base_from_flange: &Frame, branch: Branch) -> Option<Joints> {
+    let solutions = arm.inverse(base_from_flange).into_iter();
+    solutions.filter(|(b, _)| *b == branch).map(|(_, joints)| joints).next()
+}
+
+struct Walk<'a> {
+    arm: &'a Arm,
+    before: Option<Joints>,
+    findings: Findings,
+}
+
+impl Walk<'_> {
+    /// Goes to one stop.
+    fn step(
+        &mut self,
+        stop: &Stop,
+        torch_angle: f64,
+        joints: Option<Joints>,
+        beyond: impl Fn() -> f64,
+    ) -> Option<Pose> {
+        let Some(mut joints) = joints else {
+            self.findings.add(stop, Trouble::OutOfReach { beyond: beyond(), reach: self.arm.reach() });
+            self.before = None;
+            return None;
+        };
+        // A joint goes on from where it is, and does not spring by a whole turn.
+        for (joint, before) in joints.iter_mut().zip(self.before.into_iter().flatten()) {
+            *joint = turned_near(*joint, before);
+        }
+        let from = self.before.unwrap_or(joints);
+        let seconds = stop.seconds.max(1e-6);
+        let speeds = std::array::from_fn(|j| (joints[j] - from[j]).abs() / seconds);
+        self.before = Some(joints);
+        let pose = Pose { torch_angle, joints, margins: self.arm.margins(&joints), speeds };
+        self.judge(stop, &pose);
+        Some(pose)
+    }
+
+    fn judge(&mut self, stop: &Stop, pose: &Pose) {
+        for joint in 0..6 {
+            let [low, high] = self.arm.limits[joint];
+            if pose.margins.limits[joint] < 0.0 {
+                self.findings.add(stop, Trouble::Limit { joint, angle: pose.joints[joint], low, high });
+            }
+            let limit = self.arm.speeds[joint];
+            if pose.speeds[joint] > limit {
+                self.findings.add(stop, Trouble::Speed { joint, speed: pose.speeds[joint], limit, arc: stop.arc });
+            }
+        }
+        if pose.margins.wrist < WRIST_MARGIN {
+            self.findings.add(stop, Trouble::Wrist { margin: pose.margins.wrist });
+        }
+    }
+}
+
+impl Reach {
+    /// Whether the robot can weld it all.
+    pub fn is_reachable(&self) -> bool {
+        self.findings.iter().all(|f| !f.trouble.is_fatal())
+    }
+
+    /// The finding that comes first on the way, of those that forbid the program.
+    pub fn first_bad(&self) -> Option<&Finding> {
+        self.findings.iter().filter(|f| f.trouble.is_fatal()).min_by_key(|f| (f.stop.layer, f.stop.pass, f.stop.point))
+    }
+
+    /// Least margin of all points that have joint angles, °.
+    pub fn least_margin(&self) -> Option<f64> {
+        self.reached().map(|(_, pose)| pose.margins.least()).min_by(f64::total_cmp)
+    }
+
+    /// Stops with the arm there.
+    pub fn reached(&self) -> impl Iterator<Item = (&Stop, &Pose)> {
+        self.poses.iter().filter_map(|(stop, pose)| Some((stop, pose.as_ref()?)))
+    }
+
+    /// Range of a joint (from 0), °, its least margin, °, and its greatest speed with and without arc, °/s; none
+    /// where nothing is reached.
+    pub fn joint(&self, joint: usize) -> Option<JointRange> {
+        let mut range: Option<JointRange> = None;
+        for (stop, pose) in self.reached() {
+            let (angle, speed) = (pose.joints[joint], pose.speeds[joint]);
+            let r = range.get_or_insert(JointRange {
+                low: angle,
+                high: angle,
+                margin: f64::INFINITY,
+                arc_speed: 0.0,
+                travel_speed: 0.0,
+            });
+            (r.low, r.high) = (r.low.min(angle), r.high.max(angle));
+            r.margin = r.margin.min(pose.margins.limits[joint]);
+            let fastest = if stop.arc { &mut r.arc_speed } else { &mut r.travel_speed };
+            *fastest = fastest.max(speed);
+        }
+        range
+    }
+}
+
+/// What one joint does over the program.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct JointRange {
+    /// Least angle, °.
+    pub low: f64,
+    /// Greatest angle, °.
+    pub high: f64,
+    /// Least distance to a limit, °.
+    pub margin: f64,
+    /// Greatest speed with the arc on, °/s.
+    pub arc_speed: f64,
+    /// Greatest speed on travels, °/s.
+    pub travel_speed: f64,
+}
