@@ -3,15 +3,25 @@
 //! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
+mod check;
 mod fanuc;
+mod gcode;
+mod hybrid;
 mod inform;
+mod krl;
 mod limits;
+mod marlin;
 mod rapid;
 mod read;
 mod urscript;
 
+pub use check::CheckLimits;
 pub use fanuc::{Fanuc, FanucSpeed};
+pub use gcode::{Gcode, GcodeComments};
+pub use hybrid::Hybrid;
 pub use inform::{Inform, InformSpeed};
+pub use krl::Krl;
+pub use marlin::Marlin;
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 pub(crate) use read::{explain, line_of, line_of_key, nearest};
@@ -19,7 +29,7 @@ pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance, Overlap};
-use crate::fill::hybrid::{HybridOrder, HybridSettings, ScanAlong};
+use crate::fill::hybrid::HybridSettings;
 use crate::fill::wall::WallSettings;
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
 use crate::motion::Motion;
@@ -241,63 +251,6 @@ fn three() -> u32 {
     3
 }
 
-/// Thresholds of the strategy `hybrid` (Zhao et al. 2023); every key has a default.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Hybrid {
-    /// Follow the paper to the letter; default false.
-    pub literal: bool,
-    /// How far a contour is moved in to find its pockets, in stepovers; default 1.5.
-    pub pocket_depth: f64,
-    /// What the backtracked contour is larger so that numerical slivers are no pockets (u), in stepovers; default 0.01.
-    pub tolerance: f64,
-    /// Smaller pockets are not kept, in squared bead widths; default 0.05.
-    pub min_pocket_area: f64,
-    /// Shorter corner pockets are not kept, in bead widths; default 3.
-    pub min_pocket_length: f64,
-    /// Distance between skeleton fill and contours (d2), in stepovers (d1); default 0.928: 5 mm to 5.39 mm.
-    pub skeleton_gap: f64,
-    /// Least distance between contours and beads along a medial axis, in stepovers; default 0.64.
-    pub least_gap: f64,
-    /// Skeleton regions narrower than this, in stepovers, are filled along their medial axis; default 12.
-    pub region_width: f64,
-    /// Scan lines of wide skeleton regions run along the `short` or the `long` side of their smallest rectangle, or
-    /// `auto`: with fewer arc starts, then fewer turns; default auto.
-    pub scan_along: ScanAlong,
-    /// What is laid first: `skeleton-first` or `contours-first`; default skeleton-first.
-    pub order: HybridOrder,
-    /// How far free ends of cut contours reach into the fill, in bead widths; default 0.5.
-    pub end_overlap: f64,
-    /// How far sharp corners of contours are drawn out into the void before them, 0 to 1; default 0.4.
-    pub tip_reach: f64,
-    /// The narrowest bead of the process, in bead widths; default 0.7.
-    pub min_width: f64,
-    /// The widest bead of the process, in bead widths; default 1.4.
-    pub max_width: f64,
-}
-
-impl Default for Hybrid {
-    fn default() -> Self {
-        Self {
-            literal: false,
-            pocket_depth: 1.5,
-            tolerance: 0.01,
-            min_pocket_area: 0.05,
-            min_pocket_length: 3.0,
-            skeleton_gap: 0.928,
-            least_gap: 0.64,
-            region_width: 12.0,
-            scan_along: ScanAlong::Auto,
-            order: HybridOrder::SkeletonFirst,
-            end_overlap: 0.5,
-            tip_reach: 0.4,
-            min_width: 0.7,
-            max_width: 1.4,
-        }
-    }
-}
-
 /// How the strategy `wall` lays (Li et al.); every key has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -360,50 +313,6 @@ impl Default for Slice {
     }
 }
 
-/// Limits of the checks; every key has a default.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CheckLimits {
-    /// Most void of a layer, % of its area; default 3.
-    pub max_void: f64,
-    /// Most overfill of a layer, % of its area; default 12.
-    pub max_overfill: f64,
-    /// Most metal outside the outline of a layer, % of its area; default 3.
-    pub max_outside: f64,
-    /// How far a layer may reach beyond the one below, in bead widths; default 0.5.
-    pub max_overhang: f64,
-    /// Lowest deposition speed of the process, mm/s; a quarter of the nominal one when left out.
-    pub min_speed: Option<f64>,
-    /// Highest deposition speed of the process, mm/s; four times the nominal one when left out.
-    pub max_speed: Option<f64>,
-    /// Most heat per length of bead, J/mm; not checked when left out.
-    pub max_heat_input: Option<f64>,
-    /// Least time of a layer, s; not checked when left out.
-    pub min_layer_time: Option<f64>,
-    /// Layers, one after another, on which arcs may not start at one place; default 12.
-    pub stacked_starts: u32,
-    /// Most points of a layer; default 20000.
-    pub max_points: u32,
-}
-
-impl Default for CheckLimits {
-    fn default() -> Self {
-        Self {
-            max_void: 3.0,
-            max_overfill: 12.0,
-            max_outside: 3.0,
-            max_overhang: 0.5,
-            min_speed: None,
-            max_speed: None,
-            max_heat_input: None,
-            min_layer_time: None,
-            stacked_starts: 12,
-            max_points: 20_000,
-        }
-    }
-}
-
 /// Moves without arc.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -428,107 +337,6 @@ pub struct Program {
     /// Speeds along a pass that differ by no more than this part become one, with the same time along it: fewer changes,
     /// longer moves; default 0.
     pub speed_tolerance: f64,
-}
-
-/// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Krl {
-    /// Index into TOOL_DATA, 1 to 16.
-    pub tool: u32,
-    /// Index into BASE_DATA, 1 to 32.
-    pub base: u32,
-    /// Axis position before and after the program, as in an E6AXIS: `A1 0.0,A2 -90.0,…`, °.
-    pub home: String,
-    /// Orientation of the tool, A, B and C, °.
-    pub orientation: [f64; 3],
-    /// Speed of point-to-point moves, %.
-    pub ptp_speed: f64,
-    /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
-    pub blend: f64,
-    /// Lines at the beginning of the main program.
-    pub start: Vec<String>,
-    /// Lines at the beginning of every layer.
-    pub layer_start: Vec<String>,
-    /// Lines that light the arc, at the start point of a pass.
-    pub arc_on: Vec<String>,
-    /// Lines that end the arc, at the end point of a pass.
-    pub arc_off: Vec<String>,
-    /// Lines at the end of the main program.
-    pub end: Vec<String>,
-}
-
-/// How comments are written in CNC G-code.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum GcodeComments {
-    /// `(LAYER 1)`
-    #[default]
-    Parentheses,
-    /// `; LAYER 1`
-    Semicolon,
-}
-
-fn yes() -> bool {
-    true
-}
-
-/// CNC G-code. Flavours of controllers differ in these keys and in the templates: a dwell of `{{gas_preflow}}` s is
-/// `G4 P{{gas_preflow}}` for LinuxCNC, `G4 P{{gas_preflow_ms}}` for Fanuc and `G4 F{{gas_preflow}}` for Siemens.
-/// Templates are blocks with `{{placeholders}}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Gcode {
-    /// File name extension without the dot.
-    pub extension: String,
-    /// Whether blocks carry N numbers.
-    pub block_numbers: bool,
-    /// Decimals of coordinates, 1 to 4.
-    pub decimals: usize,
-    /// Whether a `%` stands before and behind the program (LinuxCNC, Fanuc; not Siemens); default true.
-    #[serde(default = "yes")]
-    pub percent_signs: bool,
-    /// O number of the program (Fanuc); default none.
-    pub program_number: Option<u32>,
-    /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
-    #[serde(default)]
-    pub comments: GcodeComments,
-    /// Blocks at the beginning.
-    pub header: Vec<String>,
-    /// Blocks at the beginning of every layer.
-    pub layer_start: Vec<String>,
-    /// Blocks that light the arc, at the start point of a pass.
-    pub arc_on: Vec<String>,
-    /// Blocks that end the arc, at the end point of a pass.
-    pub arc_off: Vec<String>,
-    /// Blocks at the end.
-    pub footer: Vec<String>,
-}
-
-/// Printers' G-code (Marlin, Klipper). Templates are lines with `{{placeholders}}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Marlin {
-    /// File name extension without the dot.
-    pub extension: String,
-    /// Whether E counts from move to move (M83), which keeps small moves exact; else from layer to layer (M82).
-    pub relative_extrusion: bool,
-    /// Filament drawn back before a travel, mm; 0 for none.
-    pub retract_length: f64,
-    /// Speed at which it is drawn back and pushed forward again, mm/s.
-    pub retract_speed: f64,
-    /// Shorter travels are made without drawing it back, mm.
-    pub retract_from: f64,
-    /// Lines at the beginning: temperatures, homing.
-    pub header: Vec<String>,
-    /// Lines at the beginning of every layer: fan, temperatures.
-    pub layer_start: Vec<String>,
-    /// Lines at the end.
-    pub footer: Vec<String>,
 }
 
 impl Profile {
