@@ -359,3 +359,25 @@ fn reach_tells_margins_and_refuses_what_is_too_far() {
     let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "mine.toml"], 1);
     assert!(error.contains("line 12") && error.contains("arm.c2"), "{error}");
 }
+
+/// Runs only where LinuxCNC's stand-alone interpreter is installed (Debian: linuxcnc-uspace), and says so.
+#[test]
+fn linuxcnc_interprets_the_gcode() {
+    if Command::new("rs274").arg("-h").output().is_err() {
+        eprintln!("skipped: rs274 is not installed (apt-get install linuxcnc-uspace)");
+        return;
+    }
+    let folder = folder_with("cross");
+    for more in [&[][..], &["--set", "program.chord_tolerance=0.05", "--set", "program.arcs=true"]] {
+        let plan = ["plan", "cross.stl", "-p", "plasma-304-cnc", "--no-deposit", "-o", "out"];
+        ok(folder.path(), &[&plan[..], more].concat());
+        let metrics: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.path().join("out/metrics.json")).unwrap()).unwrap();
+        let run = Command::new("rs274").arg("-g").arg(folder.path().join("out/cross.nc")).output().unwrap();
+        let canon = String::from_utf8_lossy(&run.stdout);
+        assert!(run.status.success(), "{canon}");
+
+        let starts = canon.matches("START_SPINDLE_CLOCKWISE").count();
+        assert_eq!(starts as u64, metrics["arc_starts"].as_u64().unwrap());
+    }
+}

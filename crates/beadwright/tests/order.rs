@@ -4,7 +4,7 @@
 mod solids;
 
 use beadwright::fill::{Fill, FillSettings, Pass, PassKind, STRATEGIES};
-use beadwright::order::{Method, order};
+use beadwright::order::{OrderSettings, Seam, order};
 use beadwright::pass::Along;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
@@ -60,7 +60,7 @@ fn same(laid: &Pass, pass: &Pass) -> bool {
 /// Orders the islands and returns, for each pass laid, its island and stage. Every pass must come once.
 fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Pass>, Vec<(usize, usize)>) {
     let mut at = torch;
-    let laid = order(islands.to_vec(), Method::default(), &mut at);
+    let laid = order(islands.to_vec(), &OrderSettings::default(), &mut at);
     assert_eq!(at, laid.last().map(end).or(torch), "the torch ends where the last pass ends");
     let mut left: Vec<(usize, usize, &Pass)> = Vec::new();
     for (i, fill) in islands.iter().enumerate() {
@@ -183,4 +183,42 @@ fn travel_is_not_longer_than_in_the_order_of_the_input() {
             Ok(())
         })
         .unwrap();
+}
+
+/// Starts of a ring of 120 mm on successive layers, as lengths along it from the rear.
+fn seams(seam: Seam, fixed_order: bool, layers: usize) -> Vec<f64> {
+    let ring = closed(&[(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)]);
+    let fill = Fill { stages: vec![vec![ring.clone()]], fixed_order };
+    let start = |layer: usize| {
+        let settings = OrderSettings { seam, layer, bead_width: 5.0, ..OrderSettings::default() };
+        let laid = order(vec![fill.clone()], &settings, &mut Some(DVec2::new(7.0, -9.0)));
+        assert!(same(&laid[0], &ring), "{laid:?}");
+        let path = Pass {
+            points: vec![(0.0, 30.0).into(), (0.0, 0.0).into(), (30.0, 0.0).into(), (30.0, 30.0).into()],
+            ..ring.clone()
+        }
+        .path();
+        let at = |k: u32| beadwright::planar::polyline::point_at(&path, f64::from(k) * 0.01).unwrap();
+        let near = (0..12_000)
+            .min_by(|&a, &b| at(a).distance(laid[0].points[0]).total_cmp(&at(b).distance(laid[0].points[0])));
+        f64::from(near.unwrap()) * 0.01
+    };
+    (0..layers).map(start).collect()
+}
+
+#[test]
+fn seams_lie_where_they_are_wanted() {
+    for fixed_order in [false, true] {
+        let aligned = seams(Seam::Aligned, fixed_order, 4);
+        assert!(aligned.iter().all(|&at| at == aligned[0]), "{aligned:?}");
+        let rotated = seams(Seam::Rotate, fixed_order, 8);
+        assert!(rotated.windows(2).all(|w| ((w[1] - w[0]).rem_euclid(120.0) - 10.0).abs() < 0.02), "{rotated:?}");
+        // Of eight layers, no two begin nearer than a twentieth of the way round.
+        let spread = seams(Seam::Spread, fixed_order, 8);
+        for (i, a) in spread.iter().enumerate() {
+            let gap = |b: &f64| (a - b).abs().min(120.0 - (a - b).abs());
+            assert!(spread[..i].iter().all(|b| gap(b) > 6.0), "{spread:?}");
+        }
+    }
+    assert_eq!(seams(Seam::Nearest, false, 2), [37.0, 37.0], "below the torch at x 7");
 }

@@ -56,13 +56,72 @@ impl Method {
     }
 }
 
+/// Where closed passes begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Seam {
+    /// Wherever the way there is short, or where the strategy put it.
+    #[default]
+    Nearest,
+    /// On every layer at the same place, the rearmost (greatest y), where it can be dressed.
+    Aligned,
+    /// Two bead widths further on every layer.
+    Rotate,
+    /// As far as can be from the seams of the layers below: by the golden section of the length on every layer.
+    Spread,
+}
+
+/// How the passes of a layer are put in order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OrderSettings {
+    /// How order and start points are found.
+    pub method: Method,
+    /// Where closed passes begin.
+    pub seam: Seam,
+    /// Index of the layer, from 0.
+    pub layer: usize,
+    /// Bead width, mm.
+    pub bead_width: f64,
+}
+
+impl OrderSettings {
+    /// Where a closed pass must begin; `None` where the order may choose.
+    fn seam_of(&self, pass: &Pass) -> Option<DVec2> {
+        /// What remains of 1 after the golden section: multiples of it spread evenly.
+        const GOLDEN: f64 = 0.381_966_011_250_105;
+        if !pass.closed || self.seam == Seam::Nearest {
+            return None;
+        }
+        let (path, length) = (pass.path(), pass.length());
+        let rear = (0..pass.points.len()).max_by(|&a, &b| pass.points[a].y.total_cmp(&pass.points[b].y))?;
+        let layer = self.layer as f64;
+        let further = match self.seam {
+            Seam::Nearest | Seam::Aligned => 0.0,
+            Seam::Rotate => 2.0 * self.bead_width * layer,
+            Seam::Spread => GOLDEN * length * layer,
+        };
+        let at = planar::polyline::length(&path[..=rear]) + further;
+        planar::polyline::point_at(&path, at.rem_euclid(length.max(f64::MIN_POSITIVE)))
+    }
+
+    /// The stop that a pass is, with its seam where it must be.
+    fn stop(&self, pass: &Pass) -> Stop {
+        self.seam_of(pass).map_or_else(|| Stop::of(pass), |seam| Stop::anywhere([seam]))
+    }
+}
+
 /// Puts the passes of a layer in order. `torch` is where the torch stands before and after; without one it counts as
 /// standing in the origin.
-pub fn order(islands: Vec<Fill>, method: Method, torch: &mut Option<DVec2>) -> Vec<Pass> {
+pub fn order(islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Pass> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
-    for fill in islands_in_order(islands, method, torch.unwrap_or_default()) {
+    for fill in islands_in_order(islands, settings, torch.unwrap_or_default()) {
         for stage in fill.stages {
-            let stage = if fill.fixed_order { stage } else { stage_in_order(stage, method, torch.unwrap_or_default()) };
+            let stage = if fill.fixed_order {
+                stage.into_iter().map(|pass| begin_at_seam(pass, settings)).collect()
+            } else {
+                stage_in_order(stage, settings, torch.unwrap_or_default())
+            };
             *torch = stage.last().and_then(last_point).or(*torch);
             ordered.extend(stage);
         }
@@ -71,7 +130,7 @@ pub fn order(islands: Vec<Fill>, method: Method, torch: &mut Option<DVec2>) -> V
 }
 
 /// Islands are visited like closed passes: wherever a pass of their first stage may begin.
-fn islands_in_order(mut islands: Vec<Fill>, method: Method, from: DVec2) -> Vec<Fill> {
+fn islands_in_order(mut islands: Vec<Fill>, settings: &OrderSettings, from: DVec2) -> Vec<Fill> {
     for fill in &mut islands {
         fill.stages.retain(|stage| !stage.is_empty());
     }
@@ -79,19 +138,26 @@ fn islands_in_order(mut islands: Vec<Fill>, method: Method, from: DVec2) -> Vec<
     let first = |fill: &Fill| if fill.fixed_order { 1 } else { usize::MAX };
     let starts = |fill: &Fill| {
         let passes = fill.stages.iter().take(1).flatten().take(first(fill));
-        Stop::anywhere(passes.flat_map(|pass| Stop::of(pass).gates().map(|gate| gate.enter).collect::<Vec<_>>()))
+        Stop::anywhere(passes.flat_map(|pass| settings.stop(pass).gates().map(|gate| gate.enter).collect::<Vec<_>>()))
     };
     let stops: Vec<Stop> = islands.iter().map(starts).collect();
-    let tour = method.tour(&stops, Ends::From(from));
+    let tour = settings.method.tour(&stops, Ends::From(from));
     let mut islands: Vec<Option<Fill>> = islands.into_iter().map(Some).collect();
     tour.iter().filter_map(|visit| islands.get_mut(visit.stop)?.take()).collect()
 }
 
-fn stage_in_order(stage: Vec<Pass>, method: Method, from: DVec2) -> Vec<Pass> {
-    let stops: Vec<Stop> = stage.iter().map(Stop::of).collect();
-    let tour = method.tour(&stops, Ends::From(from));
+fn stage_in_order(stage: Vec<Pass>, settings: &OrderSettings, from: DVec2) -> Vec<Pass> {
+    let stops: Vec<Stop> = stage.iter().map(|pass| settings.stop(pass)).collect();
+    let tour = settings.method.tour(&stops, Ends::From(from));
     let mut stage: Vec<Option<Pass>> = stage.into_iter().map(Some).collect();
     tour.iter().filter_map(|visit| Some(begin_at(stage.get_mut(visit.stop)?.take()?, visit.enter))).collect()
+}
+
+fn begin_at_seam(pass: Pass, settings: &OrderSettings) -> Pass {
+    match settings.seam_of(&pass) {
+        Some(seam) => begin_at(pass, seam),
+        None => pass,
+    }
 }
 
 /// The pass, begun at that point of it.

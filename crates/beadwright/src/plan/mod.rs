@@ -427,7 +427,8 @@ impl<S: Sink> Emitter<'_, S> {
             speed: path.width.map(|width| speed * nominal / width),
             width: path.width,
         };
-        let passes = order::order(fills, self.profile.order.method, &mut self.torch).into_iter().map(lift).collect();
+        let passes =
+            order::order(fills, &self.profile.order_settings(index), &mut self.torch).into_iter().map(lift).collect();
         warnings.iter().for_each(|w| self.warnings.add(*w));
         let layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
         self.metrics.add(&layer);

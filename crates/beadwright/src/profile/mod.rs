@@ -33,7 +33,7 @@ use crate::fill::hybrid::HybridSettings;
 use crate::fill::wall::WallSettings;
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
 use crate::motion::Motion;
-use crate::order::Method;
+use crate::order::{Method, OrderSettings, Seam};
 use crate::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
@@ -294,6 +294,9 @@ pub struct Order {
     /// How order and start points are found: `nearest`, `improved-nearest`, `ant-colony`, `local-search` or `exact`;
     /// default local-search.
     pub method: Method,
+    /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further on every layer) or `spread` (as far
+    /// as can be from the seams below); default nearest.
+    pub seam: Seam,
 }
 
 /// Tolerances of slicing.
@@ -452,6 +455,12 @@ impl Profile {
             end_gap: wall.end_gap,
             width_limits: (wall.min_width * w, wall.max_width * w),
         }
+    }
+
+    /// How the passes of a layer are put in order.
+    pub fn order_settings(&self, layer: usize) -> OrderSettings {
+        let Order { method, seam } = self.order;
+        OrderSettings { method, seam, layer, bead_width: self.bead.width }
     }
 
     fn hybrid_settings(&self) -> HybridSettings {
