@@ -1,8 +1,11 @@
 //! `beadwright check`.
 
 use crate::output::write_file;
-use crate::{profile, program, progress};
+use crate::{profile, program, progress, reach};
 use beadwright::check::{self, CHECKS, Finding};
+use beadwright::plan::Layer;
+use beadwright::profile::Profile;
+use beadwright::robot::{self, Cell, Track};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -16,6 +19,9 @@ pub(crate) struct Arguments {
     /// A value of the profile, such as check.max_void=1; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Also check whether the robot of this cell can weld the plan: a built-in name or a TOML file.
+    #[arg(long, value_name = "NAME|FILE")]
+    cell: Option<String>,
     /// Write the findings as JSON into this file.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -47,7 +53,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "{}: plans are checked; give the plan.json of the program",
         plan.display()
     );
-    let findings = check::check(&loaded.layers, &profile, loaded.settings, &task)?;
+    let mut findings = check::check(&loaded.layers, &profile, loaded.settings, &task)?;
+    if let Some(cell) = &arguments.cell {
+        findings.extend(reach(&reach::load_cell(cell)?, &loaded.layers, &profile));
+    }
     bar.finish_and_clear();
     let json = serde_json::to_string_pretty(&findings)?;
     if let Some(path) = &arguments.output {
@@ -62,6 +71,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What the robot cannot do, as findings.
+fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
+    let track = Track::of(layers, profile.travel.clearance, profile.travel.speed);
+    let found = robot::reach(cell, cell.part, &track).findings;
+    let finding =
+        |f: &robot::Finding| Finding { check: REACH, layer: None, pass: None, place: None, text: f.sentence() };
+    found.iter().map(finding).collect()
+}
+
+/// Name of what the robot is asked.
+const REACH: &str = "reach";
+
 fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
     for check in &CHECKS {
         let found: Vec<&Finding> = findings.iter().filter(|f| f.check == check.name).collect();
@@ -74,6 +95,11 @@ fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
             writeln!(out, "  … and {} more", found.len() - PRINTED)?;
         }
         writeln!(out, "  Remedy: {}.", check.remedy)?;
+    }
+    let reach: Vec<&Finding> = findings.iter().filter(|f| f.check == REACH).collect();
+    if !reach.is_empty() {
+        writeln!(out, "{REACH} ({}): the robot stops, or turns faster than it can.", reach.len())?;
+        reach.iter().try_for_each(|finding| writeln!(out, "  {}", finding.text))?;
     }
     if findings.is_empty() {
         writeln!(out, "{} checks, nothing found.", CHECKS.len())?;

@@ -169,7 +169,7 @@ fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> s
     }
 }
 
-fn load_cell(name: &str) -> anyhow::Result<Cell> {
+pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     let path = Path::new(name);
     let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
     if !is_file {

@@ -381,3 +381,23 @@ fn linuxcnc_interprets_the_gcode() {
         assert_eq!(starts as u64, metrics["arc_starts"].as_u64().unwrap());
     }
 }
+
+#[test]
+fn plans_are_checked() {
+    let folder = folder_with("cross");
+    ok(folder.path(), &["plan", "cross.stl", "-s", "hybrid", "--no-deposit", "-o", "out"]);
+    let check = ["check", "out/plan.json", "--cell", "kuka-kr20-r1810"];
+    assert!(ok(folder.path(), &check).contains("nothing found"));
+    assert!(ok(folder.path(), &["check"]).contains("stacked-starts: "));
+    // Half the wire does not fill the beads.
+    let output = beadwright(folder.path(), &[&check[..], &["--set", "process.wire_feed_speed=3"]].concat());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.code() == Some(1) && said.contains("wire-balance (1)") && said.contains("Remedy"), "{said}");
+    // A cell with the part far away.
+    let cell = ok(folder.path(), &["reach", "--show", "kuka-kr20-r1810"]);
+    fs::write(folder.path().join("far.toml"), cell.replace("[1200.0, 0.0, 500.0]", "[4200.0, 0.0, 500.0]")).unwrap();
+    let output = beadwright(folder.path(), &["check", "out/plan.json", "--cell", "far.toml"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.code() == Some(1) && said.contains("out of reach"), "{said}");
+    assert!(refused(folder.path(), &["check", "cross.stl"], 1).contains("cross.stl"));
+}
