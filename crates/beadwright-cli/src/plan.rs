@@ -40,6 +40,10 @@ pub(crate) struct Arguments {
     /// A value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Write the programs from this layer on, counted from 1, to go on with a build that was stopped; plan.json and the
+    /// report keep all layers.
+    #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    from_layer: u32,
     /// Folder for the files.
     #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]
     output: PathBuf,
@@ -98,7 +102,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();
-    let mut files = Files { output, posts, programmer, pictures, settings, judge, report: None, first: true };
+    let from_layer = arguments.from_layer as usize - 1;
+    let mut files =
+        Files { output, posts, programmer, pictures, settings, judge, report: None, first: true, from_layer };
     let planned = match &model {
         Part::Mesh(import) => plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files),
         Part::Curves { curves, height, .. } => plan::plan_curves(&part, curves, *height, &profile, &task, &mut files),
@@ -109,6 +115,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
         other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
     })?;
+    anyhow::ensure!(
+        from_layer < summary.metrics.layers,
+        "--from-layer {} lies above the part, which has {} layers",
+        arguments.from_layer,
+        summary.metrics.layers
+    );
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let names = files.finish(&summary, &profile, &model.repair())?;
 
@@ -137,6 +149,8 @@ struct Files {
     judge: Option<Judge>,
     report: Option<Report>,
     first: bool,
+    /// Index of the first layer of the programs.
+    from_layer: usize,
 }
 
 impl Files {
@@ -178,8 +192,10 @@ impl Sink for Files {
     fn layer(&mut self, layer: Layer) -> anyhow::Result<()> {
         self.output.append("plan.json", &plan_file::layer(&layer, self.first))?;
         self.first = false;
-        let program = self.programmer.layer(&layer);
-        self.each_post(|post| post.layer(&program))?;
+        if layer.index >= self.from_layer {
+            let program = self.programmer.layer(&layer);
+            self.each_post(|post| post.layer(&program))?;
+        }
         if self.pictures.contains(&(layer.index + 1)) {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;

@@ -401,3 +401,22 @@ fn plans_are_checked() {
     assert!(output.status.code() == Some(1) && said.contains("out of reach"), "{said}");
     assert!(refused(folder.path(), &["check", "cross.stl"], 1).contains("cross.stl"));
 }
+
+#[test]
+fn a_build_is_resumed_at_a_layer() {
+    let folder = folder_with("cross");
+    let plan = ["plan", "cross.stl", "--post", "krl", "--no-deposit"];
+    ok(folder.path(), &[&plan[..], &["-o", "all"]].concat());
+    ok(folder.path(), &[&plan[..], &["-o", "rest", "--from-layer", "4"]].concat());
+    let (all, rest) = (files(&folder.path().join("all")), files(&folder.path().join("rest")));
+    assert_eq!(all["plan.json"], rest["plan.json"]);
+    let modules = |files: &BTreeMap<String, Vec<u8>>| files.keys().filter(|name| name.contains("_L0")).count();
+    assert_eq!(modules(&rest) + 3, modules(&all));
+    let main = String::from_utf8(rest["CROSS.src"].clone()).unwrap();
+    assert!(!main.contains("CROSS_L003( )") && main.contains("CROSS_L004( )"), "{main}");
+    // All but the way to the first pass is the same.
+    let tail = |files: &BTreeMap<String, Vec<u8>>| String::from_utf8(files["CROSS_L005.src"].clone()).unwrap();
+    assert_eq!(tail(&all), tail(&rest));
+    let said = refused(folder.path(), &[&plan[..], &["-o", "none", "--from-layer", "99"]].concat(), 1);
+    assert!(said.contains("lies above the part") && !folder.path().join("none").join("plan.json").exists(), "{said}");
+}
