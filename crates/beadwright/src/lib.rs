@@ -1,17 +1,19 @@
 //! Beadwright turns a part into a weld-deposition program, and tells beforehand what that program would build.
 //!
-//! A file's bytes become a [`Mesh`](model::Mesh) ([`model::import`]), the mesh is cut into [layers](slice), every
-//! island of a layer is [filled](fill) with passes, the passes are put in [order](order), and a [`plan`](plan::plan)
+//! A file's bytes become a [`Mesh`](model::Mesh) ([`model::import`]), the mesh is cut into [layers](mod@slice), every
+//! island of a layer is [filled](fill) with passes, the passes are put in [`order`], and a [plan](plan::plan)
 //! holds the result. A plan becomes a neutral [`program`], and a [`post`] writes that in a robot's language. All
 //! values of the process come from a [`profile`]. Data goes down this table only:
 //!
 //! | stage | module |
 //! | --- | --- |
 //! | import | [`model`] |
-//! | slice | [`slice`] |
+//! | slice | [`slice`](mod@slice) |
 //! | bead | [`bead`] |
 //! | fill | [`fill`] |
 //! | order | [`order`] |
+//! | judge | [`deposit`], [`simulate`], [`compare`] |
+//! | check | [`check`](mod@check) |
 //! | plan | [`plan`], [`metrics`], [`plan_file`] |
 //! | program | [`program`] |
 //! | post | [`post`] |

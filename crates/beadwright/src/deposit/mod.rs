@@ -1,7 +1,7 @@
 //! The deposit model: what a layer's passes would build, as a height field, and what is wrong with it.
 //!
 //! Our plans and anyone's programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their
-//! heights ([`stroke`]: the closed form) add up on a [`Grid`](field::Grid) ([`field`]). Nothing but one layer is held.
+//! heights ([`stroke`]: the closed form) add up on a [grid](field::Grid) ([`field`]). Nothing but one layer is held.
 //!
 //! Inside the outline less a quarter of a bead width, a point is a *void* below [`VOID`] of the nominal bead height,
 //! *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than [`OUTSIDE`] of the

@@ -1,7 +1,7 @@
 //! The front door: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
 //!
 //! [`plan_layers`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
-//! needs the memory of the mesh plus [`BATCH`](crate::slice::BATCH) layers. [`plan`] collects the layers. A wall may
+//! needs the memory of the mesh plus [`BATCH`] layers. [`plan`] collects the layers. A wall may
 //! be given by its centre-lines instead ([`plan_curves`]).
 //!
 //! | file | what it does |

@@ -85,7 +85,7 @@ pub struct BeadLibrary {
     pub remarks: Vec<String>,
     /// What the fit had to leave out, as sentences.
     pub notes: Vec<String>,
-    /// Terms of the polynomial as numbers of inputs: [] is the constant, [0] the first input, [0, 0] its square. Inputs
+    /// Terms of the polynomial as numbers of inputs: `[]` is the constant, `[0]` the first input, `[0, 0]` its square. Inputs
     /// are coded: −1 at the least measured value, 1 at the greatest.
     pub terms: Vec<Vec<usize>>,
     /// The upper triangle R of the measurements' terms, by columns: it gives the leverage.
