@@ -7,7 +7,6 @@ use beadwright::fill::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::plan::{self, Layer};
 use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, Profile, RapidArc};
-use beadwright::program::Programmer;
 use beadwright::readback::{ArcCodes, Options, read};
 use beadwright::task::Task;
 use beadwright::{example, post};
@@ -15,7 +14,6 @@ use glam::{DVec2, DVec3};
 use readers::{Motion, Point, Weld, distance};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 type Files = BTreeMap<String, String>;
 
@@ -60,18 +58,7 @@ fn job() -> Vec<Layer> {
 }
 
 fn written(name: &str, part: &str, layers: &[Layer], profile: &Profile) -> Files {
-    let mut files = Files::new();
-    let mut post = post::post(name, part, profile).unwrap();
-    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
-    let mut chunks = post.begin(layers.len());
-    for layer in layers {
-        chunks.extend(post.layer(&programmer.layer(layer)));
-    }
-    chunks.extend(post.end(programmer.leave()));
-    for chunk in chunks {
-        files.entry(chunk.file).or_default().push_str(&chunk.text);
-    }
-    files
+    post::write(name, part, layers, profile).unwrap()
 }
 
 /// The flavours of G-code.
@@ -132,28 +119,9 @@ fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
     all
 }
 
-/// Compares with the folder `tests/golden/NAME`; `BEADWRIGHT_GOLDEN=write` writes it instead.
-fn golden(name: &str, files: &Files) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
-    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
-        std::fs::create_dir_all(&folder).unwrap();
-        files.iter().for_each(|(file, text)| std::fs::write(folder.join(file), text).unwrap());
-    }
-    let mut found: Vec<String> =
-        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    found.sort();
-    assert_eq!(found, files.keys().cloned().collect::<Vec<_>>());
-    for (file, text) in files {
-        let expected = std::fs::read_to_string(folder.join(file)).unwrap();
-        let differs = text.lines().zip(expected.lines()).find(|(a, b)| a != b);
-        assert_eq!(differs, None, "{name}/{file}");
-        assert!(*text == expected, "{name}/{file} differs in length or line ends");
-    }
-}
-
 #[test]
 fn the_job_is_written_as_before() {
-    all().iter().for_each(|(name, files, _)| golden(name, files));
+    all().iter().for_each(|(name, files, _)| readers::golden(name, files));
 }
 
 #[test]

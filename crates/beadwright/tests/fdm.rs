@@ -14,7 +14,6 @@ use beadwright::planar::turns::ends_at;
 use beadwright::planar::{DVec2, FillRule, Join, Polygon, Region, Ring};
 use beadwright::post;
 use beadwright::profile::Profile;
-use beadwright::program::Programmer;
 use beadwright::readback::{self, Options};
 use beadwright::task::Task;
 use proptest::prelude::*;
@@ -33,12 +32,7 @@ fn plan_of(part: &str, profile: &Profile) -> Plan {
 }
 
 fn gcode(plan: &Plan, profile: &Profile) -> String {
-    let mut post = post::post("marlin", "part", profile).unwrap();
-    let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(plan.layers.len());
-    plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
-    chunks.extend(post.end(programmer.leave()));
-    chunks.into_iter().map(|c| c.text).collect()
+    post::write("marlin", "part", &plan.layers, profile).unwrap().into_values().collect()
 }
 
 #[test]

@@ -10,7 +10,6 @@ use beadwright::plan::{self, Layer, Plan};
 use beadwright::planar::DVec2;
 use beadwright::post;
 use beadwright::profile::{Profile, RapidArc};
-use beadwright::program::Programmer;
 use beadwright::task::Task;
 use beadwright::{example, plan_file};
 use readers::{Motion, distance};
@@ -165,18 +164,7 @@ fn dense_strategies_lay_about_the_volume_of_the_part() {
 
 /// Writes the plan with a post and returns its files.
 fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
-    let mut files = BTreeMap::new();
-    let mut post = post::post(name, "Test part-1", profile).unwrap();
-    let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(plan.layers.len());
-    for layer in &plan.layers {
-        chunks.extend(post.layer(&programmer.layer(layer)));
-    }
-    chunks.extend(post.end(programmer.leave()));
-    for chunk in chunks {
-        files.entry(chunk.file).or_insert_with(String::new).push_str(&chunk.text);
-    }
-    files
+    post::write(name, "Test part-1", &plan.layers, profile).unwrap()
 }
 
 fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {

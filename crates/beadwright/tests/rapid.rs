@@ -13,7 +13,6 @@ use beadwright::{post, readback};
 use glam::DVec3;
 use readers::distance;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 type Files = BTreeMap<String, String>;
 
@@ -76,29 +75,10 @@ fn written(part: &str, layers: &[Layer], count: usize, profile: &Profile) -> Fil
     files
 }
 
-/// Compares with the folder `tests/golden/NAME`; `BEADWRIGHT_GOLDEN=write` writes it instead.
-fn golden(name: &str, files: &Files) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
-    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
-        std::fs::create_dir_all(&folder).unwrap();
-        files.iter().for_each(|(file, text)| std::fs::write(folder.join(file), text).unwrap());
-    }
-    let mut found: Vec<String> =
-        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    found.sort();
-    assert_eq!(found, files.keys().cloned().collect::<Vec<_>>());
-    for (file, text) in files {
-        let expected = std::fs::read_to_string(folder.join(file)).unwrap();
-        let differs = text.lines().zip(expected.lines()).find(|(a, b)| a != b);
-        assert_eq!(differs, None, "{name}/{file}");
-        assert!(*text == expected, "{name}/{file} differs in length or line ends");
-    }
-}
-
 #[test]
 fn the_job_is_written_as_before() {
-    golden("rapid", &written("frame", &job(), 2, &profile()));
-    golden("rapid-plain", &written("frame", &job(), 2, &plain()));
+    readers::golden("rapid", &written("frame", &job(), 2, &profile()));
+    readers::golden("rapid-plain", &written("frame", &job(), 2, &plain()));
 }
 
 #[test]

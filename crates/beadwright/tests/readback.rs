@@ -3,7 +3,6 @@
 
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
-use beadwright::program::Programmer;
 use beadwright::readback::{ArcCodes, CHORD_MM, Dialect, Metal, Options, Program, ReadError, Totals, read};
 use beadwright::task::Task;
 use beadwright::{example, post};
@@ -473,18 +472,7 @@ fn broken_texts_never_panic() {
 
 /// Writes a plan with a post.
 fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
-    let mut files = BTreeMap::new();
-    let mut post = post::post(name, "PART", profile).unwrap();
-    let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(plan.layers.len());
-    for layer in &plan.layers {
-        chunks.extend(post.layer(&programmer.layer(layer)));
-    }
-    chunks.extend(post.end(programmer.leave()));
-    for chunk in chunks {
-        files.entry(chunk.file).or_insert_with(String::new).push_str(&chunk.text);
-    }
-    files
+    post::write(name, "PART", &plan.layers, profile).unwrap()
 }
 
 #[test]

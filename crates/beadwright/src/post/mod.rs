@@ -21,9 +21,11 @@ pub mod rapid;
 mod split;
 pub mod urscript;
 
+use crate::plan::Layer;
 use crate::profile::{BUILT_IN, Profile, ProfileError};
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, Programmer};
 use crate::template;
+use std::collections::BTreeMap;
 
 /// The posts by name.
 pub const NAMES: [&str; 7] = ["krl", "gcode", "marlin", "rapid", "fanuc", "inform", "urscript"];
@@ -96,6 +98,29 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
         }
         _ => Err(PostError::Unknown(name.to_owned())),
     }
+}
+
+/// The whole program of some layers in one dialect: the text of each file by its name. Long programs are better written
+/// layer by layer.
+///
+/// # Errors
+/// [`PostError`].
+pub fn write(
+    name: &str,
+    part: &str,
+    layers: &[Layer],
+    profile: &Profile,
+) -> Result<BTreeMap<String, String>, PostError> {
+    let mut post = post(name, part, profile)?;
+    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
+    let mut chunks = post.begin(layers.len());
+    layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
+    chunks.extend(post.end(programmer.leave()));
+    let mut files = BTreeMap::<String, String>::new();
+    for chunk in chunks {
+        files.entry(chunk.file).or_default().push_str(&chunk.text);
+    }
+    Ok(files)
 }
 
 fn no_section(profile: &Profile, section: &'static str) -> PostError {

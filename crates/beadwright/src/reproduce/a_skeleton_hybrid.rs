@@ -1,11 +1,12 @@
 //! Zhao et al. 2023: the contour-skeleton hybrid on a propeller of 260 × 260 × 20 mm with the values of their table 1.
 
-use super::{ReproduceError, Reproduced, program};
+use super::{ReproduceError, Reproduced};
 use crate::bead::MassBalance;
 use crate::compare::{self, Chosen, Entry};
 use crate::example;
 use crate::model::Mesh;
 use crate::plan;
+use crate::post;
 use crate::profile::Profile;
 use crate::report::sheet::Sheet;
 use crate::task::Task;
@@ -46,7 +47,8 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let mut lines: Vec<String> = entries.iter().map(line).collect();
     lines.push(finding);
     let plan = plan::plan("propeller", &mesh, &profile, task).map_err(|e| wrong(&e))?;
-    let files = program("krl", &plan, &profile)?;
+    let files: Vec<_> =
+        post::write("krl", "propeller", &plan.layers, &profile).map_err(|e| wrong(&e))?.into_iter().collect();
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
     lines.push(format!("KRL of the default hybrid: {} files beside the page", names.len()));
     Ok(Reproduced { page, lines, files })

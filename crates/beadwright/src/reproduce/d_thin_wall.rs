@@ -1,7 +1,7 @@
 //! Li et al.: four thin-walled parts, the heights foretold for their layers, and the frame whose junctions must not pile
 //! up.
 
-use super::{ReproduceError, Reproduced, program};
+use super::{ReproduceError, Reproduced};
 use crate::bead::wall::WallBead;
 use crate::compare::MAP_PIXELS;
 use crate::deposit::{Judge, Picture};
@@ -9,6 +9,7 @@ use crate::example;
 use crate::fill::PassKind;
 use crate::pass::{Along, Pass};
 use crate::plan::{self, Layer, Plan};
+use crate::post;
 use crate::profile::Profile;
 use crate::report::sheet::Sheet;
 use crate::report::svg;
@@ -65,7 +66,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         let layer = &plan.layers[plan.layers.len() / 3];
         page.text(&format!("{}, layer {} at z {:.2} mm", plan.header.part, layer.index + 1, layer.z));
         page.svg(&svg::layer(layer, &plan.header.part));
-        files.extend(program("rapid", plan, profile)?);
+        files.extend(post::write("rapid", &plan.header.part, &plan.layers, profile).map_err(|e| wrong(&e))?);
     }
     let (frame, profile) = &plans[0];
     page.heading("Junctions of the frame after eight layers");

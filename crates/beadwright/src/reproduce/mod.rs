@@ -5,10 +5,6 @@ pub mod b_fdm_order;
 pub mod c_compound;
 pub mod d_thin_wall;
 
-use crate::plan::Plan;
-use crate::post;
-use crate::profile::Profile;
-use crate::program::Programmer;
 use crate::report::sheet::Sheet;
 use crate::task::Task;
 
@@ -55,16 +51,6 @@ pub const PAPERS: [Paper; 4] = [
         run: d_thin_wall::run,
     },
 ];
-
-/// The program of a plan in one dialect, as texts to be appended to named files.
-fn program(dialect: &str, plan: &Plan, profile: &Profile) -> Result<Vec<(String, String)>, ReproduceError> {
-    let mut post = post::post(dialect, &plan.header.part, profile).map_err(|e| ReproduceError(e.to_string()))?;
-    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
-    let mut chunks = post.begin(plan.layers.len());
-    plan.layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
-    chunks.extend(post.end(programmer.leave()));
-    Ok(chunks.into_iter().map(|chunk| (chunk.file, chunk.text)).collect())
-}
 
 /// Why an experiment could not be made.
 #[derive(Debug, thiserror::Error)]

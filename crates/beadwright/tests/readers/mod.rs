@@ -9,6 +9,9 @@ pub mod marlin;
 pub mod rapid;
 pub mod urscript;
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 /// A point, mm.
 pub type Point = [f64; 3];
 
@@ -140,5 +143,24 @@ impl Machine {
     pub fn finish(self) -> Motion {
         assert!(self.weld.is_none(), "the program ends with the arc on");
         self.motion
+    }
+}
+
+/// Compares with the folder `tests/golden/NAME`; `BEADWRIGHT_GOLDEN=write` writes it instead.
+pub fn golden(name: &str, files: &BTreeMap<String, String>) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
+        std::fs::create_dir_all(&folder).unwrap();
+        files.iter().for_each(|(file, text)| std::fs::write(folder.join(file), text).unwrap());
+    }
+    let mut found: Vec<String> =
+        std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    found.sort();
+    assert_eq!(found, files.keys().cloned().collect::<Vec<_>>());
+    for (file, text) in files {
+        let expected = std::fs::read_to_string(folder.join(file)).unwrap();
+        let differs = text.lines().zip(expected.lines()).find(|(a, b)| a != b);
+        assert_eq!(differs, None, "{name}/{file}");
+        assert!(*text == expected, "{name}/{file} differs in length or line ends");
     }
 }
