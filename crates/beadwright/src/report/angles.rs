@@ -3,9 +3,9 @@
 
 use super::plot::{Curve, Plot};
 use crate::fill::angle::{self, Curves};
-use crate::fill::{self, FillSettings};
-use crate::profile::{Profile, RasterTurn};
-use planar::Polygon;
+use crate::fill::{self, PassKind};
+use crate::plan::Layer;
+use crate::profile::Profile;
 
 /// The plots; each has the angle in degrees below. `mark` is the angle that is laid, °.
 pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
@@ -26,22 +26,24 @@ pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
 }
 
 /// The plots of one layer as a section of the report; nothing for strategies without scan lines.
-pub(super) fn section(middle: &(usize, Vec<Polygon>), profile: &Profile) -> String {
-    let (layer, islands) = middle;
+pub(super) fn section(layer: &Layer, profile: &Profile) -> String {
     let Some(strategy) = fill::strategy(&profile.fill.strategy) else { return String::new() };
-    let settings: FillSettings = profile.fill_settings(*layer);
-    let curves = angle::curves(strategy, islands, &settings);
+    let curves = angle::curves(strategy, &layer.islands, &profile.fill_settings(layer.index));
     if curves.turns.is_empty() {
         return String::new();
     }
-    let laid = match profile.fill.raster_turn {
-        RasterTurn::Best => angle::best(strategy, &[&islands[..]], &settings),
-        _ => Some(settings.raster_angle),
-    };
-    let plots = plots(&curves, laid.map(|a| a.to_degrees().rem_euclid(180.0)));
-    let pictures: String = plots.iter().map(Plot::svg).collect();
+    let pictures: String = plots(&curves, laid(layer)).iter().map(Plot::svg).collect();
     format!(
         "<section class=\"card\"><h2>Raster angle, layer {}</h2>\n<div class=\"plots\">{pictures}</div>\n</section>",
-        layer + 1
+        layer.index + 1
     )
+}
+
+/// The angle at which the scan lines of a layer were laid, °: that of the longest piece of infill.
+fn laid(layer: &Layer) -> Option<f64> {
+    let infill = layer.passes.iter().filter(|pass| pass.kind == PassKind::Infill);
+    let longest = infill.flat_map(|pass| pass.segments()).max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let degrees = (longest.to - longest.from).truncate().to_angle().to_degrees().rem_euclid(180.0);
+    // Rounding must not turn 0° into 180°.
+    Some(if degrees > 179.95 { 0.0 } else { degrees })
 }

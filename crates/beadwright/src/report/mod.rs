@@ -28,7 +28,6 @@ use crate::plan::{Header, Layer, Pass, Summary};
 use crate::profile::Profile;
 use crate::template;
 use glam::DVec2;
-use planar::Polygon;
 use serde_json::json;
 
 /// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
@@ -38,20 +37,20 @@ pub struct Report {
     layers: Vec<String>,
     maps: Vec<String>,
     figures: Option<Figures>,
-    /// Index and islands of the layer in the middle, for plots over the raster angle.
-    middle: (usize, Vec<Polygon>),
+    /// The layer in the middle, for plots over the raster angle.
+    middle: Layer,
 }
 
 impl Report {
     /// A report without layers yet.
     pub fn new(header: &Header) -> Self {
-        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None, middle: (0, Vec::new()) }
+        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None, middle: Layer::default() }
     }
 
     /// Takes the next layer, and what the deposit model says of it.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) {
         if layer.index == self.header.layers / 2 {
-            self.middle = (layer.index, layer.islands.clone());
+            self.middle = layer.clone();
         }
         self.layers.push(encode::layer(layer, judgement.map(|j| &j.figures)));
         if let Some(judgement) = judgement {
