@@ -2,11 +2,9 @@
 
 use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
-use beadwright::model::wall_curves::WallCurves;
-use beadwright::model::{self, Import, RepairReport, Units, units};
-use beadwright::planar::Bounds;
+use beadwright::model::{self, Import, Part, Placement, Units};
 use beadwright::task::Task;
-use glam::{DAffine3, DQuat, DVec2, DVec3};
+use glam::DVec3;
 use memmap2::Mmap;
 use std::fs::File;
 use std::io::Read;
@@ -26,6 +24,9 @@ pub(crate) struct Model {
     /// Turns the part about x, then y, then z, in degrees: --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
     pub(crate) turn: DVec3,
+    /// Moves the middle of the part to x = y = 0.
+    #[arg(long)]
+    pub(crate) centre: bool,
 }
 
 pub(crate) fn parse_units(text: &str) -> Result<Units, String> {
@@ -68,73 +69,35 @@ pub(crate) fn read_iges(path: &Path) -> anyhow::Result<Option<IgesFile>> {
     iges::read(&bytes).map(Some).with_context(context)
 }
 
-/// A model read from a file.
+/// A solid read from a file.
 pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
+    with_bytes(path, |bytes| model::import(bytes, task))?.with_context(|| format!("{}", path.display()))
+}
+
+/// Hands the bytes of a file to a reader; large files are not copied.
+fn with_bytes<R>(path: &Path, read: impl FnOnce(&[u8]) -> R) -> anyhow::Result<R> {
     let context = || format!("{}", path.display());
     let file = open(path)?;
-    let import = if file.metadata().with_context(context)?.len() == 0 {
-        model::import(&[], task)
-    } else {
-        // SAFETY: the mapping is read only and lives shorter than this function; a file that another program cuts
-        // off meanwhile ends this process, as it would end any reader of mapped files.
-        #[allow(unsafe_code)]
-        let bytes = unsafe { Mmap::map(&file) }.with_context(context)?;
-        model::import(&bytes, task)
-    };
-    import.with_context(context)
-}
-
-/// What is planned.
-pub(crate) enum Part {
-    /// A solid.
-    Mesh(Import),
-    /// The centre-lines of a wall, up to a height, mm, and what was wrong with the file.
-    Curves { curves: WallCurves, height: f64, warnings: Vec<String> },
-}
-
-impl Part {
-    /// Lowest and highest coordinates, mm.
-    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
-        match self {
-            Self::Mesh(import) => import.mesh.bounds(),
-            Self::Curves { curves, height, .. } => {
-                let sections = [0.0, *height].into_iter().flat_map(|z| curves.at(z, 1.0));
-                let points = sections.flat_map(|section| section.points);
-                let bounds = Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
-                (bounds.min.extend(0.0), bounds.max.extend(*height))
-            }
-        }
+    if file.metadata().with_context(context)?.len() == 0 {
+        return Ok(read(&[]));
     }
-
-    /// What was mended; nothing for curves.
-    pub(crate) fn repair(&self) -> RepairReport {
-        match self {
-            Self::Mesh(import) => import.repair.clone(),
-            Self::Curves { .. } => RepairReport::default(),
-        }
-    }
+    // SAFETY: the mapping is read only and lives shorter than this function; a file that another program cuts
+    // off meanwhile ends this process, as it would end any reader of mapped files.
+    #[allow(unsafe_code)]
+    let bytes = unsafe { Mmap::map(&file) }.with_context(context)?;
+    Ok(read(&bytes))
 }
 
 impl Model {
     /// The solid or the curves, placed. Curves of one height need one to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
-        let Some(file) = read_iges(&self.model)? else {
-            anyhow::ensure!(height.is_none(), "--height belongs to walls given by curves (IGES), not to a solid");
-            return Ok(Part::Mesh(self.placed(bead_width, task)?));
-        };
-        let unit = self.units.map_or(1.0, |units| units.in_mm() / file.unit_mm);
-        let turn = self.turn * std::f64::consts::PI / 180.0;
-        let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
-        let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
-        let curves = WallCurves::of_iges(&file, &place).with_context(|| format!("{}", self.model.display()))?;
-        let height = height.or(Some(curves.height()).filter(|height| *height > 0.0));
-        let height = height.with_context(|| {
-            format!("{}: the curves lie at one height; --height says how high the wall grows, mm", self.model.display())
-        })?;
-        let unread = file.entities.iter().filter(|e| e.unread > 0);
-        let unread = unread.map(|e| format!("{} of entity {} ({}) not read.", e.unread, e.entity, e.name));
-        let warnings = file.warnings.iter().cloned().chain(unread).collect();
-        Ok(Part::Curves { curves, height, warnings })
+        let context = || format!("{}", self.model.display());
+        let model = with_bytes(&self.model, |bytes| model::Model::read(bytes, task))?.with_context(context)?;
+        model.place(&self.placement(), height, bead_width).with_context(context)
+    }
+
+    fn placement(&self) -> Placement {
+        Placement { units: self.units, scale: self.scale, turn: self.turn, centre: self.centre }
     }
 
     /// The part's name: the file name without its extension.
@@ -144,14 +107,7 @@ impl Model {
 
     /// The model, scaled to mm, turned, and set onto z = 0.
     pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
-        let mut import = read(&self.model, task)?;
-        let units = match self.units {
-            Some(units) => units,
-            None => units::guess(import.mesh.size() * self.scale, bead_width)
-                .with_context(|| format!("{}", self.model.display()))?,
-        };
-        import.mesh.place(units.in_mm() * self.scale, self.turn);
-        import.mesh.check_reach()?;
-        Ok(import)
+        let import = read(&self.model, task)?;
+        self.placement().solid(import, bead_width).with_context(|| format!("{}", self.model.display()))
     }
 }

@@ -1,18 +1,17 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
-use crate::model::Part;
 use crate::output::Output;
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::metrics::Metrics;
+use beadwright::model::{Part, RepairReport};
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
-use beadwright::planar::Bounds;
+use beadwright::plan_file;
 use beadwright::post::{self, Chunk, Post};
 use beadwright::profile::Profile;
 use beadwright::program::Programmer;
 use beadwright::report::{self, Report};
-use beadwright::{model::RepairReport, plan_file};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
@@ -92,11 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
-    let profile = if let Part::Curves { .. } = model {
-        profile::load(&arguments.profile, &with_wall(settings))?
-    } else {
-        profile
-    };
+    let profile = plan::profile_for(&model, &profile);
     let output = Output::new(&arguments.output)?;
     let programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
@@ -105,10 +100,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let from_layer = arguments.from_layer as usize - 1;
     let mut files =
         Files { output, posts, programmer, pictures, settings, judge, report: None, first: true, from_layer };
-    let planned = match &model {
-        Part::Mesh(import) => plan::plan_layers(&part, &import.mesh, &profile, &task, &mut files),
-        Part::Curves { curves, height, .. } => plan::plan_curves(&part, curves, *height, &profile, &task, &mut files),
-    };
+    let planned = plan::plan_part(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
     let summary = planned.map_err(|error| match error {
         PlanError::Sink(error) => error,
@@ -126,17 +118,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        writeln!(out, "{}", serde_json::to_string_pretty(&metrics_json(&summary, figures.as_ref()))?)?;
+        writeln!(out, "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
     } else {
         print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &names)?;
     }
     Ok(())
-}
-
-/// Curves are welded by the strategy for walls.
-fn with_wall(mut settings: Vec<String>) -> Vec<String> {
-    settings.push("fill.strategy=\"wall\"".to_owned());
-    settings
 }
 
 /// Where the layers go.
@@ -168,8 +154,7 @@ impl Files {
         let leave = self.programmer.leave();
         self.each_post(|post| post.end(leave))?;
         self.output.append("plan.json", plan_file::tail())?;
-        self.output
-            .append("metrics.json", &format!("{:#}\n", metrics_json(summary, self.judge.as_ref().map(Judge::total))))?;
+        self.output.append("metrics.json", &format!("{:#}\n", summary.json(self.judge.as_ref().map(Judge::total))))?;
         let mut names = self.output.names();
         names.push("report.html".to_owned());
         if let Some(report) = self.report.take() {
@@ -209,23 +194,11 @@ impl Sink for Files {
 }
 
 /// How the layers of a part are judged: the grid as asked for, or one that fits the part.
-pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, (low, high): (DVec3, DVec3)) -> DepositSettings {
-    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
-    let settings = plan::deposit_settings(profile);
+pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, bounds: (DVec3, DVec3)) -> DepositSettings {
     match grid {
-        Some(step) => DepositSettings { step, ..settings },
-        None => settings.fitted_to(&bounds, (high.z / profile.layers.height) as usize),
+        Some(step) => DepositSettings { step, ..plan::deposit_settings(profile) },
+        None => plan::deposit_settings_over(profile, bounds),
     }
-}
-
-fn metrics_json(summary: &Summary, figures: Option<&Figures>) -> serde_json::Value {
-    let warnings: Vec<_> = summary.warnings.summaries().collect();
-    let mut value = serde_json::json!(summary.metrics);
-    value["coverage"] = summary.metrics.coverage().into();
-    value["warnings"] = serde_json::json!(warnings);
-    value["notes"] = serde_json::json!(summary.notes);
-    value["deposit"] = serde_json::json!(figures.map(Figures::summary));
-    value
 }
 
 fn print_summary(
@@ -239,9 +212,9 @@ fn print_summary(
 ) -> std::io::Result<()> {
     let (part, (low, high), m) = (arguments.model.part(), model.bounds(), &summary.metrics);
     let (size, repair) = (high - low, model.repair());
-    let (of, told) = match model {
-        Part::Mesh(_) => (format!("{} triangles", repair.triangles), &[][..]),
-        Part::Curves { curves, warnings, .. } => (format!("{} centre-lines", curves.count()), &warnings[..]),
+    let of = match model {
+        Part::Mesh(_) => format!("{} triangles", repair.triangles),
+        Part::Curves { curves, .. } => format!("{} centre-lines", curves.count()),
     };
     writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
@@ -250,9 +223,8 @@ fn print_summary(
         writeln!(out, "  {name:<22} {value}")?;
     }
     writeln!(out)?;
-    let repairs = repair.sentences().into_iter().chain(told.iter().cloned());
     let events = summary.warnings.summaries().map(|w| w.sentence());
-    for line in repairs.chain(events).chain(summary.notes.iter().cloned()) {
+    for line in model.warnings().into_iter().chain(events).chain(summary.notes.iter().cloned()) {
         writeln!(out, "warning: {line}")?;
     }
     writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))

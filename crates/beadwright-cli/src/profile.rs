@@ -1,7 +1,7 @@
 //! `beadwright profile`, and how `--profile` and `--set` are read.
 
 use anyhow::Context;
-use beadwright::profile::{BUILT_IN, Profile, ProfileError};
+use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
 use std::io::Write;
 use std::path::Path;
 
@@ -58,41 +58,19 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
     if settings.is_empty() {
         return Ok(parsed);
     }
-    let mut document: toml_edit::DocumentMut = text.parse()?;
+    let mut edited = text;
     for setting in settings {
-        set(&mut document, setting).with_context(|| format!("--set {setting}"))?;
+        let lay = || -> anyhow::Result<String> {
+            let (key, value) =
+                setting.split_once('=').context("expected is key=value, such as fill.raster_angle=45")?;
+            Ok(edit::with_value(&edited, key, value)?)
+        };
+        edited = lay().with_context(|| format!("--set {setting}"))?;
     }
     // The text with the settings is not the user's: a line number would mislead.
-    Profile::parse(&document.to_string()).map_err(|error| match error {
+    Profile::parse(&edited).map_err(|error| match error {
         ProfileError::Text { reason, .. } => anyhow::anyhow!("--set {}: {reason}", settings.join(" --set ")),
         ProfileError::Value { key, value, reason, .. } => anyhow::anyhow!("{key} = {value} is impossible: {reason}"),
         other => other.into(),
     })
-}
-
-/// Lays one `section.key=value` over a profile; a value that is no TOML is taken as text.
-fn set(document: &mut toml_edit::DocumentMut, setting: &str) -> anyhow::Result<()> {
-    let (key, value) = setting.split_once('=').context("expected is key=value, such as fill.raster_angle=45")?;
-    let value = value.trim();
-    let value: toml_edit::Value = value.parse().unwrap_or_else(|_| value.into());
-    // A whole number will do where a fraction is meant.
-    let value = match value.as_integer() {
-        Some(whole) if expects_float(document, key.trim()) => (whole as f64).into(),
-        _ => value,
-    };
-    let parts: Vec<&str> = key.trim().split('.').collect();
-    let mut item = document.as_item_mut();
-    for (i, part) in parts.iter().enumerate() {
-        let table = item.as_table_like_mut().with_context(|| format!("{key} is not a key of a profile"))?;
-        // A section whose keys all have defaults may be missing.
-        let missing = if i + 1 < parts.len() { toml_edit::table() } else { toml_edit::Item::None };
-        item = table.entry(part).or_insert(missing);
-    }
-    *item = toml_edit::value(value);
-    Ok(())
-}
-
-fn expects_float(document: &toml_edit::DocumentMut, key: &str) -> bool {
-    let found = key.split('.').try_fold(document.as_item(), |item, part| item.get(part));
-    found.is_none_or(|item| item.as_float().is_some())
 }

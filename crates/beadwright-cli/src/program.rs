@@ -134,7 +134,7 @@ pub(crate) fn part(
     task: &Task,
 ) -> anyhow::Result<Option<Import>> {
     let place = |path: &Path| {
-        let model = model::Model { model: path.to_owned(), units, scale: 1.0, turn: glam::DVec3::ZERO };
+        let model = model::Model { model: path.to_owned(), units, scale: 1.0, turn: glam::DVec3::ZERO, centre: false };
         model.placed(profile.bead.width, task)
     };
     path.map(place).transpose()

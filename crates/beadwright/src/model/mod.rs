@@ -8,16 +8,19 @@
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | [`units`] | millimetres or inches? |
+//! | `part` | a model is placed, and becomes what is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
 pub(crate) mod adjacency;
 pub mod iges;
+mod part;
 pub mod repair;
 pub mod stl;
 pub mod units;
 pub mod wall_curves;
 pub(crate) mod weld;
 
+pub use part::{Model, Part, PartError, Placement};
 pub use repair::RepairReport;
 pub use units::Units;
 

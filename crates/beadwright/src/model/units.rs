@@ -1,17 +1,22 @@
 //! STL has no units. Millimetres are assumed unless the part would then be smaller than a few beads.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// The unit of a model's coordinates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Units {
     /// Millimetres.
+    #[serde(rename = "mm")]
     Millimetre,
     /// Centimetres.
+    #[serde(rename = "cm")]
     Centimetre,
     /// Metres.
+    #[serde(rename = "m")]
     Metre,
     /// Inches.
+    #[serde(rename = "in")]
     Inch,
 }
 

@@ -7,28 +7,33 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `levels` | where the layers of a wall lie |
+//! | [`preview`] | one layer before the others |
 //! | `scan_lines` | best raster angles, and what of a sparse infill is solid |
 
 mod levels;
+mod preview;
 mod scan_lines;
 
+pub use preview::preview;
+
 use crate::bead::wall::{WallBead, WallError};
-use crate::deposit::{DepositSettings, Nominal, Subject};
+use crate::deposit::{DepositSettings, Figures, Nominal, Subject};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, FillSettings, Pass as Path, Strategy};
 use crate::metrics::Metrics;
-use crate::model::Mesh;
 use crate::model::wall_curves::{Section, WallCurves};
+use crate::model::{Mesh, Part};
 use crate::order;
 pub use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
 use crate::slice::{self, BATCH, Layer as Slice, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use planar::medial::Node;
-use planar::{Join, Polygon, Region};
+use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
+use scan_lines::Planned;
 use serde::Serialize;
 
 /// One layer, ready to be deposited.
@@ -66,6 +71,12 @@ pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     DepositSettings::new(nominal, profile.fill.machining_allowance)
 }
 
+/// As [`deposit_settings`], with a grid that fits a part of that extent, mm.
+pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> DepositSettings {
+    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
+    deposit_settings(profile).fitted_to(&bounds, (high.z / profile.layers.height) as usize)
+}
+
 /// What is the same for all layers of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Header {
@@ -99,6 +110,19 @@ pub struct Summary {
     pub warnings: Warnings,
     /// What does not fit in the profile, as sentences.
     pub notes: Vec<String>,
+}
+
+impl Summary {
+    /// The totals, warnings and notes, and what the deposit model says: the content of `metrics.json`.
+    pub fn json(&self, figures: Option<&Figures>) -> serde_json::Value {
+        let warnings: Vec<_> = self.warnings.summaries().collect();
+        let mut value = serde_json::json!(self.metrics);
+        value["coverage"] = self.metrics.coverage().into();
+        value["warnings"] = serde_json::json!(warnings);
+        value["notes"] = serde_json::json!(self.notes);
+        value["deposit"] = serde_json::json!(figures.map(Figures::summary));
+        value
+    }
 }
 
 /// Why a plan could not be made. `E` is the error of the sink.
@@ -184,6 +208,32 @@ pub fn plan(
     Ok(Plan { header, layers: collect.1, summary })
 }
 
+/// Plans a part, solid or given by curves, and hands every layer to `sink`.
+///
+/// # Errors
+/// [`PlanError`], with what the sink failed with among them.
+pub fn plan_part<S: Sink + Send>(
+    name: &str,
+    part: &Part,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    match part {
+        Part::Mesh(import) => plan_layers(name, &import.mesh, profile, task, sink),
+        Part::Curves { curves, height, .. } => plan_curves(name, curves, *height, profile, task, sink),
+    }
+}
+
+/// The profile that a part is planned with: curves are welded by the strategy for walls.
+pub fn profile_for(part: &Part, profile: &Profile) -> Profile {
+    let mut profile = profile.clone();
+    if let Part::Curves { .. } = part {
+        "wall".clone_into(&mut profile.fill.strategy);
+    }
+    profile
+}
+
 /// Plans a mesh that stands on z = 0 and hands every layer to `sink`. The result does not depend on the number of
 /// threads: layers are filled in parallel, but ordered and handed over one after another.
 ///
@@ -205,17 +255,12 @@ pub fn plan_layers<S: Sink + Send>(
     };
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
-        let slices = slicer.batch(batch, task)?;
-        let angles = scan_lines::raster_angles(&slices, strategy, profile);
-        let solid = scan_lines::solid_regions(batch, &slices, &slicer, profile, task)?;
-        let fill = |(slice, (angle, solid)): (Slice, (Option<f64>, &Option<Region>))| {
+        let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
+        let fill = |layer: Planned| {
             task.check()?;
-            let mut settings = profile.fill_settings(slice.index);
-            settings.raster_angle = angle.unwrap_or(settings.raster_angle);
-            settings.solid = solid.as_ref();
-            Ok(fill_layer(slice, strategy, &settings))
+            Ok(fill_planned(layer, strategy, profile))
         };
-        slices.into_par_iter().zip(angles.into_par_iter().zip(&solid)).map(fill).collect()
+        planned.into_par_iter().map(fill).collect()
     };
     let summary = run(part, slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
@@ -333,6 +378,13 @@ struct Filled {
     planned_area: f64,
 }
 
+fn fill_planned(layer: Planned, strategy: &dyn Strategy, profile: &Profile) -> Filled {
+    let mut settings = profile.fill_settings(layer.slice.index);
+    settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
+    settings.solid = layer.solid.as_ref();
+    fill_layer(layer.slice, strategy, &settings)
+}
+
 fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings) -> Filled {
     let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
     for island in &slice.islands {
@@ -379,7 +431,7 @@ fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>
     let area = island.area();
     let centre = island.offset(-r, Join::ROUND);
     if centre.is_empty() {
-        let place = planar::Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
+        let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
         warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
         return 0.0;
     }

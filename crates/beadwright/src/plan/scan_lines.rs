@@ -9,8 +9,32 @@ use planar::{Join, Polygon, Region};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
+/// A slice, and what its fill depends on beside it.
+pub(super) struct Planned {
+    pub(super) slice: Slice,
+    /// The best raster angle, radians, where the profile asks for it.
+    pub(super) raster_angle: Option<f64>,
+    /// Where the infill is solid; `None` where all of it is.
+    pub(super) solid: Option<Region>,
+}
+
+/// A batch of slices, ready to be filled.
+pub(super) fn planned(
+    batch: usize,
+    slicer: &Slicer,
+    strategy: &dyn Strategy,
+    profile: &Profile,
+    task: &Task,
+) -> Result<Vec<Planned>, Cancelled> {
+    let slices = slicer.batch(batch, task)?;
+    let angles = raster_angles(&slices, strategy, profile);
+    let solid = solid_regions(batch, &slices, slicer, profile, task)?;
+    let planned = slices.into_iter().zip(angles.into_iter().zip(solid));
+    Ok(planned.map(|(slice, (raster_angle, solid))| Planned { slice, raster_angle, solid }).collect())
+}
+
 /// The best raster angle of each layer, where the profile asks for it.
-pub(super) fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: &Profile) -> Vec<Option<f64>> {
+fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: &Profile) -> Vec<Option<f64>> {
     // Batches are even, so pairs of layers do not straddle them.
     const { assert!(BATCH.is_multiple_of(2)) };
     if profile.fill.raster_turn != RasterTurn::Best {
@@ -26,7 +50,7 @@ pub(super) fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: 
 
 /// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
 /// layers above or below does not cover the layer.
-pub(super) fn solid_regions(
+fn solid_regions(
     batch: usize,
     slices: &[Slice],
     slicer: &Slicer,

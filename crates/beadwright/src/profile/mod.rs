@@ -4,6 +4,7 @@
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
 mod check;
+pub mod edit;
 mod fanuc;
 mod gcode;
 mod hybrid;

@@ -34,6 +34,12 @@ pub enum ProfileError {
         /// The range, the unit and why.
         reason: String,
     },
+    /// A key that no profile has.
+    #[error("{key} is not a key of a profile")]
+    Key {
+        /// The key.
+        key: String,
+    },
     /// The profile lacks the section of a dialect that was asked for.
     #[error("profile \"{profile}\" has no [{section}] section, which the post \"{section}\" needs. {hint}")]
     NoSection {

@@ -1,0 +1,223 @@
+//! A model file becomes a part: a solid or the centre-lines of a wall, in mm, turned, and set onto z = 0.
+
+use super::iges::{self, IgesError, IgesFile};
+use super::units::{self, UnitsUnclear};
+use super::wall_curves::{WallCurves, WallCurvesError};
+use super::{Import, ImportError, Mesh, RepairReport, Units, import, is_iges};
+use crate::task::Task;
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
+use planar::Bounds;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// A model as it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// A solid, in the units of the file.
+    Mesh(Import),
+    /// Curves.
+    Curves(IgesFile),
+}
+
+/// How a model is placed. The default leaves it as it is, and guesses the unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Placement {
+    /// Unit of the coordinates; guessed where it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub units: Option<Units>,
+    /// Enlarges the part.
+    pub scale: f64,
+    /// Turns the part about x, then y, then z, °.
+    pub turn: DVec3,
+    /// Moves the middle of the part's extent to x = y = 0.
+    pub centre: bool,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { units: None, scale: 1.0, turn: DVec3::ZERO, centre: false }
+    }
+}
+
+/// What is planned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// A solid that stands on z = 0.
+    Mesh(Import),
+    /// The centre-lines of a wall.
+    Curves {
+        /// The curves.
+        curves: WallCurves,
+        /// Where the wall ends, mm.
+        height: f64,
+        /// What was wrong with the file, as sentences.
+        warnings: Vec<String>,
+    },
+}
+
+/// Why a model gives no part.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PartError {
+    /// The file holds no solid.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// The IGES file cannot be read.
+    #[error(transparent)]
+    Iges(#[from] IgesError),
+    /// The curves are not those of a wall.
+    #[error(transparent)]
+    Curves(#[from] WallCurvesError),
+    /// The unit must be told.
+    #[error(transparent)]
+    Units(#[from] UnitsUnclear),
+    /// A height for a solid.
+    #[error("--height belongs to walls given by curves (IGES), not to a solid")]
+    HeightOfSolid,
+    /// Curves of one height, and none to end at.
+    #[error("the curves lie at one height; --height says how high the wall grows, mm")]
+    NoHeight,
+}
+
+impl Model {
+    /// Reads a solid, or curves. The content decides, never a name.
+    ///
+    /// # Errors
+    /// [`PartError`].
+    pub fn read(bytes: &[u8], task: &Task) -> Result<Self, PartError> {
+        Ok(if is_iges(bytes) { Self::Curves(iges::read(bytes)?) } else { Self::Mesh(import(bytes, task)?) })
+    }
+
+    /// The part. Curves of one height need one to end at, mm.
+    ///
+    /// # Errors
+    /// [`PartError`].
+    pub fn place(self, placement: &Placement, height: Option<f64>, bead_width: f64) -> Result<Part, PartError> {
+        match self {
+            Self::Mesh(_) if height.is_some() => Err(PartError::HeightOfSolid),
+            Self::Mesh(import) => Ok(Part::Mesh(placement.solid(import, bead_width)?)),
+            Self::Curves(file) => placement.wall(&file, height),
+        }
+    }
+}
+
+impl Placement {
+    /// A placed solid.
+    ///
+    /// # Errors
+    /// [`PartError::Units`] where the unit must be told, [`ImportError::TooFar`].
+    pub fn solid(&self, mut import: Import, bead_width: f64) -> Result<Import, PartError> {
+        let units = match self.units {
+            Some(units) => units,
+            None => units::guess(import.mesh.size() * self.scale, bead_width)?,
+        };
+        let mesh = &mut import.mesh;
+        mesh.place(units.in_mm() * self.scale, self.turn);
+        if self.centre {
+            let (low, high) = mesh.bounds();
+            let middle = ((low + high) / 2.0).with_z(0.0);
+            mesh.vertices.iter_mut().for_each(|vertex| *vertex -= middle);
+        }
+        mesh.check_reach()?;
+        Ok(import)
+    }
+
+    fn wall(&self, file: &IgesFile, height: Option<f64>) -> Result<Part, PartError> {
+        let unit = self.units.map_or(1.0, |units| units.in_mm() / file.unit_mm);
+        let turn = self.turn * std::f64::consts::PI / 180.0;
+        let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
+        let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
+        let mut curves = WallCurves::of_iges(file, &place)?;
+        let height = height.or(Some(curves.height()).filter(|height| *height > 0.0)).ok_or(PartError::NoHeight)?;
+        if self.centre {
+            let middle = curve_bounds(&curves, height).center();
+            curves = WallCurves::of_iges(file, &(DAffine3::from_translation(-middle.extend(0.0)) * place))?;
+        }
+        let unread = file.entities.iter().filter(|e| e.unread > 0);
+        let unread = unread.map(|e| format!("{} of entity {} ({}) not read.", e.unread, e.entity, e.name));
+        let warnings = file.warnings.iter().cloned().chain(unread).collect();
+        Ok(Part::Curves { curves, height, warnings })
+    }
+
+    /// The turn that lays the model flat: the largest flat face on which it can stand comes to lie at z = 0. The turn as
+    /// it is where there is no such face.
+    pub fn laid_flat(&self, mesh: &Mesh) -> DVec3 {
+        let Some(normal) = base_normal(mesh) else { return self.turn };
+        let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z));
+        // R = Rz Ry Rx, as `Mesh::place` turns.
+        let (z, y, x) = turn.to_euler(EulerRot::ZYX);
+        // Angles that are whole but for rounding are meant whole.
+        DVec3::new(x, y, z).map(|angle| (angle.to_degrees() * 1e9).round() / 1e9)
+    }
+}
+
+impl Part {
+    /// Lowest and highest coordinates, mm.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        match self {
+            Self::Mesh(import) => import.mesh.bounds(),
+            Self::Curves { curves, height, .. } => {
+                let bounds = curve_bounds(curves, *height);
+                (bounds.min.extend(0.0), bounds.max.extend(*height))
+            }
+        }
+    }
+
+    /// What was mended; nothing for curves.
+    pub fn repair(&self) -> RepairReport {
+        match self {
+            Self::Mesh(import) => import.repair.clone(),
+            Self::Curves { .. } => RepairReport::default(),
+        }
+    }
+
+    /// What was mended or is not read, as sentences.
+    pub fn warnings(&self) -> Vec<String> {
+        match self {
+            Self::Mesh(import) => import.repair.sentences(),
+            Self::Curves { warnings, .. } => warnings.clone(),
+        }
+    }
+}
+
+fn curve_bounds(curves: &WallCurves, height: f64) -> Bounds {
+    let sections = [0.0, height].into_iter().flat_map(|z| curves.at(z, 1.0));
+    let points = sections.flat_map(|section| section.points);
+    Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
+}
+
+/// Faces whose normals differ by less are one, as the length of the difference.
+const SAME_NORMAL: f64 = 1e-3;
+
+/// Points this far below a face, in extents of the part, still let it stand on it.
+const STANDING: f64 = 1e-3;
+
+/// Faces that are looked at, largest first.
+const CANDIDATES: usize = 64;
+
+/// Outward normal of the largest flat face with the whole part on one side.
+fn base_normal(mesh: &Mesh) -> Option<DVec3> {
+    let extent = mesh.size().max_element();
+    let mut faces: HashMap<[i64; 4], (f64, DVec3, f64)> = HashMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        let [a, b, c] = [a, b, c].map(|i| mesh.vertices[i as usize]);
+        let doubled = (b - a).cross(c - a);
+        let Some(normal) = doubled.try_normalize() else { continue };
+        let height = normal.dot(a);
+        let key =
+            [normal.x / SAME_NORMAL, normal.y / SAME_NORMAL, normal.z / SAME_NORMAL, height / (STANDING * extent)];
+        let face = faces.entry(key.map(|v| v.round() as i64)).or_insert((0.0, normal, height));
+        face.0 += doubled.length() / 2.0;
+    }
+    let mut faces: Vec<_> = faces.into_values().collect();
+    // Equal faces in an order of their own: hash maps have none.
+    let order = |face: &(f64, DVec3, f64)| (face.1.z, face.1.y, face.1.x, face.2);
+    faces.sort_by(|a, b| {
+        let tie = || order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal);
+        b.0.total_cmp(&a.0).then_with(tie)
+    });
+    let stands = |&&(_, normal, height): &&(f64, DVec3, f64)| {
+        mesh.vertices.iter().all(|v| normal.dot(*v) <= height + STANDING * extent)
+    };
+    faces.iter().take(CANDIDATES).find(stands).map(|face| face.1)
+}

@@ -1,0 +1,94 @@
+//! One layer before the others: what a person looks at while the rest is planned.
+
+use super::{Emitter, Layer, PlanError, Sink, check_layer_count, fill_planned, levels, scan_lines, weld_curves};
+use crate::bead::wall::WallBead;
+use crate::fill;
+use crate::metrics::Metrics;
+use crate::model::{Mesh, Part};
+use crate::profile::{Profile, RasterTurn};
+use crate::slice::{self, BATCH, Slab, Slicer};
+use crate::task::Task;
+use crate::warning::Warnings;
+use std::convert::Infallible;
+
+/// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. Only
+/// start points and order may differ from those in the whole plan.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn preview(
+    part: &Part,
+    profile: &Profile,
+    index: usize,
+    task: &Task,
+) -> Result<Option<Layer>, PlanError<Infallible>> {
+    let filled = match part {
+        Part::Mesh(import) => of_mesh(&import.mesh, profile, index, task)?,
+        Part::Curves { curves, height, .. } => {
+            let slabs = levels::of_curves(curves, *height, &WallBead::new(profile.bead.width, profile.bead.height)?);
+            let index = index.min(slabs.len().saturating_sub(1));
+            slabs.get(index).map(|slab| weld_curves(curves, index, *slab, profile))
+        }
+    };
+    let mut last = Last(None);
+    let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
+    let mut emitter = Emitter { profile, sink: &mut last, torch: None, metrics, warnings };
+    filled.map(|filled| emitter.emit(filled)).transpose().map_err(PlanError::Sink)?;
+    Ok(last.0)
+}
+
+fn of_mesh(
+    mesh: &Mesh,
+    profile: &Profile,
+    index: usize,
+    task: &Task,
+) -> Result<Option<super::Filled>, PlanError<Infallible>> {
+    let name = &profile.fill.strategy;
+    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
+    check_layer_count(mesh, profile)?;
+    let slabs = match profile.wall_bead()? {
+        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
+        None => slice::even_slabs(mesh, profile.layers.height),
+    };
+    let index = index.min(slabs.len().saturating_sub(1));
+    let window = window(&slabs, index, profile);
+    let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;
+    // Slices are numbered in the window; a sparse infill looks at its neighbours there.
+    let planned = scan_lines::planned(0, &slicer, strategy, profile, task)?;
+    let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
+        layer.slice.index = index;
+        layer.slice.warnings.iter_mut().for_each(|warning| warning.layer = index);
+        fill_planned(layer, strategy, profile)
+    });
+    Ok(layer)
+}
+
+struct Window<'a> {
+    first: usize,
+    slabs: &'a [Slab],
+}
+
+/// The layers that a layer's fill depends on. It begins at an even layer, since best angles belong to pairs.
+fn window<'a>(slabs: &'a [Slab], index: usize, profile: &Profile) -> Window<'a> {
+    let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best);
+    let solid = if profile.fill.infill_density < 1.0 { profile.fill.solid_layers as usize } else { 0 };
+    let reach = solid.min(BATCH / 2 - 1);
+    let first = index.saturating_sub(reach) & !1;
+    let last = (index + reach.max(pair)).min(slabs.len().saturating_sub(1));
+    Window { first, slabs: slabs.get(first..=last).unwrap_or_default() }
+}
+
+struct Last(Option<Layer>);
+
+impl Sink for Last {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: &super::Header) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.0 = Some(layer);
+        Ok(())
+    }
+}

@@ -1,0 +1,50 @@
+//! Values laid over the text of a profile; comments and order of the text stay.
+
+use super::{Profile, ProfileError};
+use toml_edit::{DocumentMut, Item, Table, Value};
+
+/// The text of a profile with one more value, such as `45` for `fill.raster_angle`; a value that is no TOML is taken as text.
+/// Nothing is checked but that the key can stand there: [`Profile::parse`] does that.
+///
+/// # Errors
+/// [`ProfileError::Key`] for a key within a value, [`ProfileError::Text`] when the text is no TOML.
+pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileError> {
+    let mut document = document(text)?;
+    let mut value: Value = value.trim().parse().unwrap_or_else(|_| value.trim().into());
+    let parts: Vec<&str> = key.trim().split('.').collect();
+    let mut item = document.as_item_mut();
+    for (i, part) in parts.iter().enumerate() {
+        let table = item.as_table_like_mut().ok_or_else(|| ProfileError::Key { key: key.to_owned() })?;
+        // A section whose keys all have defaults may be missing.
+        let missing = if i + 1 < parts.len() { Item::Table(Table::new()) } else { Item::None };
+        item = table.entry(part).or_insert(missing);
+    }
+    // What stands behind the old value, a comment as a rule, stays behind the new one.
+    if let Some(old) = item.as_value() {
+        *value.decor_mut() = old.decor().clone();
+    }
+    *item = Item::Value(value);
+    Ok(document.to_string())
+}
+
+/// The text of a profile without a value, so that its default holds.
+///
+/// # Errors
+/// [`ProfileError::Text`] when the text is no TOML.
+pub fn without_value(text: &str, key: &str) -> Result<String, ProfileError> {
+    let mut document = document(text)?;
+    let (section, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let mut sections = section.split('.').filter(|part| !part.is_empty());
+    let holder = sections.try_fold(document.as_item_mut(), |item, part| item.get_mut(part));
+    if let Some(table) = holder.and_then(Item::as_table_like_mut) {
+        table.remove(name);
+    }
+    Ok(document.to_string())
+}
+
+fn document(text: &str) -> Result<DocumentMut, ProfileError> {
+    text.parse().map_err(|_| match Profile::parse(text) {
+        Err(error) => error,
+        Ok(_) => ProfileError::Text { line: 1, reason: "the text cannot be edited.".to_owned() },
+    })
+}

@@ -1,0 +1,119 @@
+//! A model becomes a part, and a layer can be seen before the others.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use beadwright::example;
+use beadwright::model::{Import, Model, Part, PartError, Placement, Units};
+use beadwright::plan::{self, Layer};
+use beadwright::profile::{Profile, edit};
+use beadwright::task::Task;
+use glam::{DMat3, DVec3};
+
+fn solid(name: &str) -> Import {
+    match Model::read(&example::find(name).unwrap().stl(), &Task::new()).unwrap() {
+        Model::Mesh(import) => import,
+        Model::Curves(_) => panic!("{name} is a solid"),
+    }
+}
+
+fn with(profile: &str, values: &[(&str, &str)]) -> Profile {
+    let text = Profile::built_in_text(profile).unwrap().to_owned();
+    Profile::parse(&values.iter().fold(text, |text, (k, v)| edit::with_value(&text, k, v).unwrap())).unwrap()
+}
+
+/// Points of a layer's passes in an order that does not depend on theirs.
+fn points(layer: &Layer) -> Vec<[i64; 3]> {
+    let all = layer.passes.iter().flat_map(|p| &p.points);
+    let mut points: Vec<_> = all.map(|p| p.to_array().map(|v| (v * 1e6).round() as i64)).collect();
+    points.sort_unstable();
+    points
+}
+
+#[test]
+fn a_preview_shows_the_layer_of_the_plan() {
+    let part = Part::Mesh(Placement::default().solid(solid("propeller"), 7.54).unwrap());
+    let (even, best) = (("fill.raster_turn", "alternate"), ("fill.raster_turn", "best"));
+    let sparse = ("fill.infill_density", "0.3");
+    for values in [
+        &[("fill.strategy", "raster"), even][..],
+        &[("fill.strategy", "zigzag"), best],
+        &[("fill.strategy", "compound"), even, sparse, ("fill.solid_layers", "2")],
+        &[("fill.strategy", "wall")],
+    ] {
+        let profile = with("cmt-al2319-kuka", values);
+        let Part::Mesh(import) = &part else { panic!("a solid") };
+        let plan = plan::plan("propeller", &import.mesh, &profile, &Task::new()).unwrap();
+        for index in [0, 1, 4, plan.layers.len() / 2 + 1, plan.layers.len() - 1] {
+            let seen = plan::preview(&part, &profile, index, &Task::new()).unwrap().unwrap();
+            let planned = &plan.layers[index];
+            assert_eq!((seen.index, seen.z, seen.height), (planned.index, planned.z, planned.height), "{values:?}");
+            assert_eq!(seen.islands, planned.islands);
+            assert_eq!(points(&seen).len(), points(planned).len(), "{values:?}, layer {index}");
+            let apart = points(&seen).iter().zip(&points(planned)).any(|(a, b)| a != b);
+            // Where wall trails and closed passes begin may repeat a point; the metal is the same.
+            let length = |layer: &Layer| layer.passes.iter().map(|p| p.length()).sum::<f64>();
+            assert!(!apart || (length(&seen) - length(planned)).abs() < 1e-6, "{values:?}, layer {index}");
+        }
+        let beyond = plan::preview(&part, &profile, 10_000, &Task::new()).unwrap().unwrap();
+        assert_eq!(beyond.index, plan.layers.len() - 1);
+    }
+}
+
+#[test]
+fn a_part_that_was_turned_is_laid_flat_again() {
+    let flat = Placement::default().solid(solid("plate"), 7.54).unwrap();
+    let height = flat.mesh.size().z;
+    for turn in [DVec3::new(90.0, 0.0, 0.0), DVec3::new(-37.0, 61.0, 12.0), DVec3::new(0.0, 90.0, 45.0), DVec3::ZERO] {
+        let mut model = solid("plate");
+        model.mesh.place(1.0, turn);
+        let laid = Placement { turn: Placement::default().laid_flat(&model.mesh), ..Placement::default() };
+        let size = laid.solid(model, 7.54).unwrap().mesh.size();
+        assert!((size.z - height).abs() < 1e-6, "turned by {turn}: {size}");
+    }
+}
+
+#[test]
+fn the_turn_that_lays_flat_is_one_about_x_then_y_then_z() {
+    let mut model = solid("propeller");
+    model.mesh.place(1.0, DVec3::new(90.0, 0.0, 0.0));
+    let turn = Placement::default().laid_flat(&model.mesh) * std::f64::consts::PI / 180.0;
+    let matrix = DMat3::from_rotation_z(turn.z) * DMat3::from_rotation_y(turn.y) * DMat3::from_rotation_x(turn.x);
+    // The bottom of the propeller looks along +y after that turn.
+    let down = matrix * DVec3::Y;
+    assert!(down.abs_diff_eq(DVec3::NEG_Z, 1e-9) || (matrix * DVec3::NEG_Y).abs_diff_eq(DVec3::NEG_Z, 1e-9), "{down}");
+}
+
+#[test]
+fn placements_scale_centre_and_ask_for_units() {
+    let placed = |placement: Placement| placement.solid(solid("cross"), 7.54);
+    let plain = placed(Placement::default()).unwrap().mesh;
+    let inches = placed(Placement { units: Some(Units::Inch), centre: true, ..Placement::default() }).unwrap().mesh;
+    assert!((inches.volume() / plain.volume() - 25.4_f64.powi(3)).abs() < 1e-6);
+    let (low, high) = inches.bounds();
+    assert!((low + high).truncate().length() < 1e-9 && low.z == 0.0);
+    let tiny = Placement { scale: 0.01, ..Placement::default() };
+    assert!(matches!(placed(tiny), Err(PartError::Units(_))));
+}
+
+#[test]
+fn placements_survive_a_file() {
+    let placement =
+        Placement { units: Some(Units::Inch), scale: 0.1, turn: DVec3::new(0.1, 1.0 / 3.0, -90.0), centre: true };
+    for placement in [placement, Placement::default()] {
+        let text = serde_json::to_string(&placement).unwrap();
+        assert_eq!(serde_json::from_str::<Placement>(&text).unwrap(), placement, "{text}");
+    }
+}
+
+#[test]
+fn an_edit_keeps_the_comments() {
+    let text = Profile::built_in_text("cmt-al2319-kuka").unwrap();
+    let edited = edit::with_value(text, "fill.raster_angle", "45").unwrap();
+    assert!(edited.contains("raster_angle = 45        # °"), "{edited}");
+    assert_eq!(Profile::parse(&edited).unwrap().fill.raster_angle, 45.0);
+    assert_eq!(edit::with_value(&edited, "fill.raster_angle", "0.0").unwrap(), text);
+    let added = edit::with_value(text, "wall.corner_radius", "0.7").unwrap();
+    assert_eq!(Profile::parse(&added).unwrap().wall.corner_radius, 0.7);
+    let removed = edit::without_value(&added, "wall.corner_radius").unwrap();
+    assert_eq!(Profile::parse(&removed).unwrap(), Profile::parse(text).unwrap());
+    assert!(edit::with_value(text, "name.x", "1").is_err());
+}
