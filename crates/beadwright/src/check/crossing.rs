@@ -18,7 +18,7 @@ pub(super) const CHECK: Check = Check {
 type Piece = GeomWithData<Line<[f64; 2]>, (usize, usize)>;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    subject.layers.iter().flat_map(in_layer).collect()
+    subject.layers.iter().copied().flat_map(in_layer).collect()
 }
 
 fn in_layer(layer: &Layer) -> Vec<Finding> {

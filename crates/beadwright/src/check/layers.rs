@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 0.25;
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut below = 0.0;
-    for layer in subject.layers {
+    for layer in &subject.layers {
         let gap = layer.z - layer.height - below;
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
             let way = if gap < 0.0 { "inside" } else { "above" };

@@ -20,13 +20,14 @@ mod towers;
 mod void;
 mod wire_balance;
 
-use crate::deposit::{DepositSettings, Figures, Judge, stack::Growth};
+use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
 use crate::plan::Layer;
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
 use glam::DVec3;
 use planar::Bounds;
 use serde::Serialize;
+use std::borrow::Borrow;
 
 /// The checks.
 pub const CHECKS: [Check; 16] = [
@@ -81,7 +82,7 @@ pub struct Finding {
 
 /// What is checked.
 pub struct Subject<'a> {
-    layers: &'a [Layer],
+    layers: Vec<&'a Layer>,
     profile: &'a Profile,
     /// Nominal rise of a layer in the deposit model, mm.
     rise: f64,
@@ -91,31 +92,65 @@ pub struct Subject<'a> {
     growth: Vec<Growth>,
 }
 
-/// Runs all checks on a plan.
+/// What the deposit model says of a plan.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Judged {
+    /// Of each layer.
+    pub figures: Vec<Figures>,
+    /// Of all layers.
+    pub total: Figures,
+    /// How the stack grows.
+    pub growth: Vec<Growth>,
+}
+
+/// Judges a plan layer by layer and shows `each` what is found.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn check(
-    layers: &[Layer],
-    profile: &Profile,
-    settings: DepositSettings,
+pub fn judge<L: Borrow<Layer>>(
+    layers: &[L],
+    mut judge: Judge,
     task: &Task,
-) -> Result<Vec<Finding>, Cancelled> {
-    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).filter(|p| p.is_finite());
-    let mut judge = Judge::new(settings);
+    mut each: impl FnMut(usize, Judgement),
+) -> Result<Judged, Cancelled> {
+    let passes = || layers.iter().flat_map(|l| &l.borrow().passes);
+    let points = passes().flat_map(|p| &p.points).filter(|p| p.is_finite());
     if let Some(bounds) = Bounds::of(points.map(|p| p.truncate())) {
         judge = judge.with_stack(&bounds);
     }
     let mut figures = Vec::with_capacity(layers.len());
-    for (i, layer) in layers.iter().enumerate() {
+    for (i, layer) in layers.iter().map(L::borrow).enumerate() {
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
         // Points that are no numbers are found by a check of their own; nothing can be built from them.
         let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-        figures.push(if sound { judge.layer(layer.subject()).figures } else { Figures::default() });
+        let judgement = sound.then(|| judge.layer(layer.subject()));
+        figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
+        judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
     let growth = judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
-    let subject = Subject { layers, profile, rise: settings.nominal.rise, figures, growth };
-    Ok(CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect())
+    Ok(Judged { figures, total: *judge.total(), growth })
+}
+
+/// Runs all checks on a plan.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn check<L: Borrow<Layer>>(
+    layers: &[L],
+    profile: &Profile,
+    settings: DepositSettings,
+    task: &Task,
+) -> Result<Vec<Finding>, Cancelled> {
+    let judged = judge(layers, Judge::new(settings), task, |_, _| ())?;
+    Ok(check_judged(layers, profile, settings.nominal.rise, judged))
+}
+
+/// Runs all checks on a plan that was judged; `rise` is the nominal one of a layer, mm.
+pub fn check_judged<L: Borrow<Layer>>(layers: &[L], profile: &Profile, rise: f64, judged: Judged) -> Vec<Finding> {
+    let Judged { figures, growth, .. } = judged;
+    let layers = layers.iter().map(L::borrow).collect();
+    let subject = Subject { layers, profile, rise, figures, growth };
+    CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
 }
 
 impl Finding {
@@ -144,7 +179,7 @@ impl Finding {
 impl Subject<'_> {
     /// Every pass with its layer and its index in it.
     fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
-        self.layers.iter().flat_map(|layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+        self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
     }
 
     /// Layers of which a figure is above a limit, as findings.

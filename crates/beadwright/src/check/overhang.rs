@@ -19,7 +19,7 @@ const SMALLEST: f64 = 0.5;
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
-    let hanging = |pair: &[Layer]| {
+    let hanging = |pair: &[&Layer]| {
         let [below, above] = [0, 1].map(|i| Region::from_normalised(pair[i].islands.clone()));
         let free = above.difference(&below.offset(reach, Join::ROUND));
         let large = free.polygons().iter().filter(|p| p.area() > SMALLEST * width * width);

@@ -21,7 +21,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     // How many layers, down from this one, have a start at each start of the layer.
     let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
     let mut findings = Vec::new();
-    for layer in subject.layers {
+    for layer in &subject.layers {
         let mut here = Vec::with_capacity(layer.passes.len());
         for (i, start) in starts(layer) {
             let under = below.iter().filter(|(at, _)| at.distance(start.truncate()) < NEAR * width);

@@ -17,7 +17,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let mut mean = 0.0;
-    for (i, (growth, layer)) in subject.growth.iter().zip(subject.layers).enumerate() {
+    for (i, (growth, layer)) in subject.growth.iter().zip(&subject.layers).enumerate() {
         mean += subject.figures[i].mean();
         let above = subject.rise * (i + 1) as f64 + growth.peak - mean;
         if above > clearance {

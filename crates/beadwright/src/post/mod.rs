@@ -25,6 +25,7 @@ use crate::plan::Layer;
 use crate::profile::{BUILT_IN, Profile, ProfileError};
 use crate::program::{Instruction, LayerProgram, Programmer};
 use crate::template;
+use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
 /// The posts by name.
@@ -105,16 +106,16 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
 ///
 /// # Errors
 /// [`PostError`].
-pub fn write(
+pub fn write<L: Borrow<Layer>>(
     name: &str,
     part: &str,
-    layers: &[Layer],
+    layers: &[L],
     profile: &Profile,
 ) -> Result<BTreeMap<String, String>, PostError> {
     let mut post = post(name, part, profile)?;
     let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
     let mut chunks = post.begin(layers.len());
-    layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer))));
+    layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer.borrow()))));
     chunks.extend(post.end(programmer.leave()));
     let mut files = BTreeMap::<String, String>::new();
     for chunk in chunks {

@@ -3,6 +3,7 @@
 use crate::plan::Layer;
 use crate::program::{Instruction, Programmer};
 use glam::DVec3;
+use std::borrow::Borrow;
 use serde::Serialize;
 
 /// Longer moves are divided, mm: between two stops no joint may swing out unseen.
@@ -34,10 +35,10 @@ pub struct Track {
 
 impl Track {
     /// The way through a plan's layers, with travels `clearance` (mm) above them at `travel_speed` (mm/s).
-    pub fn of(layers: &[Layer], clearance: f64, travel_speed: f64) -> Self {
+    pub fn of<L: Borrow<Layer>>(layers: &[L], clearance: f64, travel_speed: f64) -> Self {
         let mut track = Self::default();
         let mut programmer = Programmer::new(clearance);
-        for layer in layers {
+        for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
         }
         if let (Some(Instruction::Travel { to }), Some(last)) = (programmer.leave(), track.stops.last().copied()) {
