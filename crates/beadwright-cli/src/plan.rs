@@ -4,14 +4,13 @@ use crate::output::Output;
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::metrics::Metrics;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
 use beadwright::plan_file;
 use beadwright::post::{self, Chunk, Post};
 use beadwright::profile::Profile;
 use beadwright::program::Programmer;
-use beadwright::report::{self, Report};
+use beadwright::report::{self, Report, rows};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
@@ -219,7 +218,7 @@ fn print_summary(
     writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
     writeln!(out)?;
-    for (name, value) in totals(m).into_iter().chain(figures.map(deposit_rows).into_iter().flatten()) {
+    for (name, value) in rows::totals(m).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;
     }
     writeln!(out)?;
@@ -228,36 +227,6 @@ fn print_summary(
         writeln!(out, "warning: {line}")?;
     }
     writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))
-}
-
-/// The totals as people read them.
-fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
-    let mut rows = vec![
-        ("layers", format!("{}", m.layers)),
-        ("passes (arc starts)", format!("{}", m.passes)),
-        ("deposited length", format!("{:.2} m", m.deposited_length_mm / 1000.0)),
-        ("travel length", format!("{:.2} m", m.travel_length_mm / 1000.0)),
-        ("arc time", hours(m.arc_time_s)),
-        ("total time", hours(m.total_time_s)),
-        ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
-        ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
-        ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
-    ];
-    rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
-    rows
-}
-
-/// What the deposit model says, as people read it.
-pub(crate) fn deposit_rows(f: &Figures) -> [(&'static str, String); 2] {
-    [
-        ("void / low area", format!("{:.2} / {:.2} %", f.void_percent(), f.low_percent())),
-        ("overfill / outside", format!("{:.2} / {:.2} %", f.overfill_percent(), f.outside_percent())),
-    ]
-}
-
-fn hours(seconds: f64) -> String {
-    let s = seconds.round() as u64;
-    format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)
 }
 
 /// All names, or the first and the last of many.

@@ -1,11 +1,12 @@
 //! `beadwright simulate`: what a plan or anyone's program would build.
 
 use crate::output::write_file;
-use crate::plan::{deposit_rows, parse_grid};
+use crate::plan::parse_grid;
 use crate::{model, profile, program, progress};
 use beadwright::compare::{self, Entry};
 use beadwright::deposit::DepositSettings;
 use beadwright::model::Units;
+use beadwright::report::rows;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::PathBuf;
@@ -78,7 +79,7 @@ fn print(out: &mut impl Write, loaded: &program::Loaded, entry: &Entry) -> std::
         ("metal", format!("{:.2} cm³", t.metal_volume_mm3 / 1e3)),
     ];
     if f.area > 0.0 {
-        rows.extend(deposit_rows(f));
+        rows.extend(rows::deposit(f));
         rows.push((
             "height a layer",
             format!("{:.2} ± {:.2} mm, {:.2} to {:.2} mm", f.mean(), f.deviation(), f.min, f.max),

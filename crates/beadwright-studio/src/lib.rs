@@ -1,1 +1,37 @@
-//! x
+//! The desktop program of Beadwright: see the part, the beads and the voids, change a parameter, export.
+//!
+//! It has no logic of planning: a [`project`](project::Project) goes to the [`planner`], a thread that calls the library, and
+//! what comes back is put together in a [`state`](state::PlanState) that the views and panels show.
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`app`] | the window: where everything is put together |
+//! | [`project`], [`history`] | what is worked on; undo and redo |
+//! | [`planner`], [`state`] | planning in the background, and what it has told |
+//! | [`jobs`] | other work in the background: layers looked at closely, reach, file dialogs |
+//! | [`form`] | the profile as a form |
+//! | [`view`] | what is shown, and how |
+//! | [`view3d`], [`view2d`] | part and beads; one layer |
+//! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
+//! | [`export`] | what is written |
+//! | [`actions`] | menus and keys |
+//! | [`settings`], [`text`], [`fonts`] | what is remembered; words; letters |
+
+pub mod actions;
+pub mod app;
+pub mod export;
+pub mod fonts;
+pub mod form;
+pub mod history;
+pub mod jobs;
+mod panels;
+pub mod planner;
+pub mod project;
+pub mod settings;
+pub mod state;
+pub mod text;
+pub mod view;
+pub mod view2d;
+pub mod view3d;
+
+pub use app::Studio;

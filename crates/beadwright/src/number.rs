@@ -36,3 +36,9 @@ fn push_digits(text: &mut String, mut value: u64, width: usize) {
     }
     text.extend(digits[start..].iter().map(|&d| char::from(d)));
 }
+
+/// Seconds as `1 h 02 min 03 s`.
+pub fn hours(seconds: f64) -> String {
+    let s = seconds.round() as u64;
+    format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)
+}

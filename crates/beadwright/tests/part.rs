@@ -65,6 +65,11 @@ fn a_part_that_was_turned_is_laid_flat_again() {
     for turn in [DVec3::new(90.0, 0.0, 0.0), DVec3::new(-37.0, 61.0, 12.0), DVec3::new(0.0, 90.0, 45.0), DVec3::ZERO] {
         let mut model = solid("plate");
         model.mesh.place(1.0, turn);
+        // The same from the part as it is placed.
+        let placed = Placement { turn, ..Placement::default() };
+        let again = placed.laid_flat(&placed.solid(solid("plate"), 7.54).unwrap().mesh);
+        let again = Placement { turn: again, ..placed }.solid(solid("plate"), 7.54).unwrap().mesh.size();
+        assert!((again.z - height).abs() < 1e-6, "turned by {turn}, again: {again}");
         let laid = Placement { turn: Placement::default().laid_flat(&model.mesh), ..Placement::default() };
         let size = laid.solid(model, 7.54).unwrap().mesh.size();
         assert!((size.z - height).abs() < 1e-6, "turned by {turn}: {size}");

@@ -139,11 +139,13 @@ impl Placement {
         Ok(Part::Curves { curves, height, warnings })
     }
 
-    /// The turn that lays the model flat: the largest flat face on which it can stand comes to lie at z = 0. The turn as
-    /// it is where there is no such face.
+    /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is the
+    /// part as this placement has it. The turn stays where there is no such face.
     pub fn laid_flat(&self, mesh: &Mesh) -> DVec3 {
         let Some(normal) = base_normal(mesh) else { return self.turn };
-        let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z));
+        let [x, y, z] = self.turn.map(f64::to_radians).to_array();
+        let now = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z)) * now;
         // R = Rz Ry Rx, as `Mesh::place` turns.
         let (z, y, x) = turn.to_euler(EulerRot::ZYX);
         // Angles that are whole but for rounding are meant whole.

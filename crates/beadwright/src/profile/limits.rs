@@ -41,6 +41,17 @@ pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
 pub(super) type Range = (&'static str, f64, f64, f64, &'static str);
 
 fn out_of_range(p: &Profile) -> Option<Broken> {
+    // Written so that NaN is out of range too.
+    let broken = ranges(p).into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
+    broken.map(|(key, value, low, high, unit)| Broken {
+        key: key.to_owned(),
+        value: format!("{value}"),
+        reason: format!("it must lie between {low} and {high} {unit}."),
+    })
+}
+
+/// The range of every number that is given.
+pub(super) fn ranges(p: &Profile) -> Vec<Range> {
     const TINY: f64 = 1e-3;
     let (w, process, fill) = (p.bead.width, &p.process, &p.fill);
     let mut ranges: Vec<Range> = vec![
@@ -131,13 +142,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
     ranges.extend(p.fanuc.iter().flat_map(|fanuc| fanuc.ranges()));
     ranges.extend(p.inform.iter().flat_map(|inform| inform.ranges()));
     ranges.extend(p.urscript.iter().flat_map(|urscript| urscript.ranges()));
-    // Written so that NaN is out of range too.
-    let broken = ranges.into_iter().find(|&(_, value, low, high, _)| !(value >= low && value <= high));
-    broken.map(|(key, value, low, high, unit)| Broken {
-        key: key.to_owned(),
-        value: format!("{value}"),
-        reason: format!("it must lie between {low} and {high} {unit}."),
-    })
+    ranges
 }
 
 fn contradiction(p: &Profile) -> Option<Broken> {

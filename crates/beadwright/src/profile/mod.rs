@@ -343,6 +343,19 @@ pub struct Program {
     pub speed_tolerance: f64,
 }
 
+/// What a number of a profile can be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Full key, such as `bead.width`.
+    pub key: &'static str,
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub greatest: f64,
+    /// The unit, and what the range depends on.
+    pub unit: &'static str,
+}
+
 impl Profile {
     /// Reads and checks a profile from TOML text.
     ///
@@ -373,6 +386,12 @@ impl Profile {
     #[cfg(feature = "schema")]
     pub fn schema() -> serde_json::Value {
         schemars::schema_for!(Self).to_value()
+    }
+
+    /// What the numbers of this profile can be, for forms.
+    pub fn limits(&self) -> Vec<Limit> {
+        let limit = |(key, _, least, greatest, unit): limits::Range| Limit { key, least, greatest, unit };
+        limits::ranges(self).into_iter().map(limit).collect()
     }
 
     /// The single bead.

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
+//! | [`rows`] | totals as people read them |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | what depends on the raster angle |
@@ -16,6 +17,7 @@ pub mod angles;
 pub mod bead_window;
 pub mod encode;
 pub mod plot;
+pub mod rows;
 pub mod sheet;
 pub mod sketch;
 pub mod steps;

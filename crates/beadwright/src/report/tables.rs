@@ -6,6 +6,7 @@ use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
+use crate::number::hours;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
 
@@ -182,9 +183,4 @@ fn mass(kg: f64) -> String {
 
 fn volume(mm3: f64) -> String {
     format!("{:.2} cm³", mm3 / 1000.0)
-}
-
-fn hours(seconds: f64) -> String {
-    let s = seconds.round() as u64;
-    format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)
 }

@@ -3,8 +3,8 @@
 use crate::plan::Layer;
 use crate::program::{Instruction, Programmer};
 use glam::DVec3;
-use std::borrow::Borrow;
 use serde::Serialize;
+use std::borrow::Borrow;
 
 /// Longer moves are divided, mm: between two stops no joint may swing out unseen.
 pub const PIECE_MM: f64 = 20.0;

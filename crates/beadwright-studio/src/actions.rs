@@ -1,0 +1,108 @@
+//! What a person can do, with its key: menus, keys and the list of keys are made from one table.
+
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+/// Something that is done at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    /// Asks for a model or a project.
+    Open,
+    /// Writes the project where it lies.
+    Save,
+    /// Asks where to write the project.
+    SaveAs,
+    /// Asks for a folder, and writes the program into it.
+    ExportProgram,
+    /// Takes the last change back.
+    Undo,
+    /// Takes the last undo back.
+    Redo,
+    /// Plans anew.
+    Plan,
+    /// Stops planning.
+    Stop,
+    /// Part and beads.
+    Solid,
+    /// One layer.
+    Layer,
+    /// Two strategies side by side.
+    Compare,
+    /// Shows everything.
+    Fit,
+    /// From above.
+    Top,
+    /// From the front.
+    Front,
+    /// From the right.
+    Right,
+    /// From a corner.
+    Corner,
+    /// One layer up.
+    Up,
+    /// One layer down.
+    Down,
+    /// Lets the torch run, or stops it.
+    Play,
+    /// Light or dark.
+    Theme,
+    /// The keys.
+    Keys,
+    /// Ends the program.
+    Quit,
+}
+
+/// An action, its text and its key.
+pub struct Entry {
+    /// What is done.
+    pub action: Action,
+    /// Key of its text.
+    pub text: &'static str,
+    /// Its key on the keyboard.
+    pub key: Option<KeyboardShortcut>,
+}
+
+const fn entry(action: Action, text: &'static str, modifiers: Modifiers, key: Key) -> Entry {
+    Entry { action, text, key: Some(KeyboardShortcut::new(modifiers, key)) }
+}
+
+/// All of them.
+pub const ENTRIES: [Entry; 22] = [
+    entry(Action::Open, "open", Modifiers::COMMAND, Key::O),
+    entry(Action::SaveAs, "save-as", Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
+    entry(Action::Save, "save", Modifiers::COMMAND, Key::S),
+    entry(Action::ExportProgram, "export-program", Modifiers::COMMAND, Key::E),
+    entry(Action::Redo, "redo", Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
+    entry(Action::Undo, "undo", Modifiers::COMMAND, Key::Z),
+    entry(Action::Plan, "plan", Modifiers::NONE, Key::F5),
+    entry(Action::Stop, "stop", Modifiers::NONE, Key::Escape),
+    entry(Action::Solid, "view-solid", Modifiers::NONE, Key::F2),
+    entry(Action::Layer, "view-layer", Modifiers::NONE, Key::F3),
+    entry(Action::Compare, "view-compare", Modifiers::NONE, Key::F4),
+    entry(Action::Fit, "fit", Modifiers::NONE, Key::F),
+    entry(Action::Top, "view-top", Modifiers::NONE, Key::Num7),
+    entry(Action::Front, "view-front", Modifiers::NONE, Key::Num1),
+    entry(Action::Right, "view-right", Modifiers::NONE, Key::Num3),
+    entry(Action::Corner, "view-corner", Modifiers::NONE, Key::Num0),
+    entry(Action::Up, "layer-up", Modifiers::NONE, Key::PageUp),
+    entry(Action::Down, "layer-down", Modifiers::NONE, Key::PageDown),
+    entry(Action::Play, "play", Modifiers::NONE, Key::Space),
+    entry(Action::Theme, "theme", Modifiers::COMMAND, Key::T),
+    entry(Action::Keys, "keys", Modifiers::NONE, Key::F1),
+    entry(Action::Quit, "quit", Modifiers::COMMAND, Key::Q),
+];
+
+/// The entry of an action.
+pub fn find(action: Action) -> Option<&'static Entry> {
+    ENTRIES.iter().find(|entry| entry.action == action)
+}
+
+/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited.
+pub fn pressed(ctx: &Context) -> Vec<Action> {
+    let typing = ctx.egui_wants_keyboard_input();
+    let meant = |entry: &&Entry| {
+        let Some(key) = entry.key else { return false };
+        let free = !typing || key.modifiers.command || key.logical_key == Key::Escape;
+        free && ctx.input_mut(|input| input.consume_shortcut(&key))
+    };
+    ENTRIES.iter().filter(meant).map(|entry| entry.action).collect()
+}

@@ -1,0 +1,472 @@
+//! The window: where project, planner, views and panels are put together.
+
+use crate::actions::{self, Action};
+use crate::export::{self, Paper};
+use crate::history::History;
+use crate::jobs::{self, Ask, Job};
+use crate::panels;
+use crate::planner::Planner;
+use crate::project::{Project, Source};
+use crate::settings::{Settings, Store, write_whole};
+use crate::state::PlanState;
+use crate::text::Language;
+use crate::view::{Mode, ViewState};
+use crate::view2d::View2d;
+use crate::view3d::View3d;
+use beadwright::fill::hybrid::Steps;
+use beadwright::profile::{Profile, edit};
+use beadwright::robot::Reach;
+use eframe::egui::{self, Context, ViewportCommand};
+use eframe::egui_wgpu::RenderState;
+use std::path::{Path, PathBuf};
+
+/// A second plan of the same part, with another strategy.
+pub struct Other {
+    /// The strategy.
+    pub strategy: String,
+    /// Its planner.
+    pub planner: Planner,
+    /// Its plan.
+    pub plan: PlanState,
+    /// Its view.
+    pub flat: View2d,
+}
+
+/// The program.
+pub struct Studio {
+    pub(crate) ctx: Context,
+    pub(crate) render_state: Option<RenderState>,
+    pub(crate) store: Store,
+    pub(crate) settings: Settings,
+    pub(crate) project: History<Project>,
+    /// Where the project lies.
+    pub(crate) file: Option<PathBuf>,
+    pub(crate) planner: Planner,
+    pub(crate) plan: PlanState,
+    pub(crate) other: Option<Other>,
+    pub(crate) view: ViewState,
+    pub(crate) solid: View3d,
+    pub(crate) flat: View2d,
+    /// What went wrong or was done, as sentences, the newest last.
+    pub(crate) messages: Vec<Message>,
+    /// What is wrong with the value of a key that was typed.
+    pub(crate) refused: Option<(String, String)>,
+    pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
+    /// The dialect that a folder is asked for.
+    pub(crate) exporting: panels::export::What,
+    pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
+    pub(crate) steps: Option<(usize, Vec<Steps>)>,
+    pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
+    pub(crate) reach: Option<Reach>,
+    /// The project of a run that did not end well.
+    pub(crate) lost: Option<Project>,
+    pub(crate) chinese: bool,
+    /// The project as it was kept aside last.
+    kept: Project,
+}
+
+/// A sentence in the window.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Whether something went wrong.
+    pub error: bool,
+    /// The sentence.
+    pub text: String,
+}
+
+impl Studio {
+    /// The program in a window; `store` remembers things, `open` is shown first.
+    pub fn new(cc: &eframe::CreationContext<'_>, store: Store, open: Option<&Path>) -> Self {
+        let ctx = cc.egui_ctx.clone();
+        let bell = ctx.clone();
+        let settings = store.settings();
+        let mut studio = Self {
+            chinese: crate::fonts::add_chinese(&ctx),
+            render_state: cc.wgpu_render_state.clone(),
+            planner: Planner::new(move || bell.request_repaint()),
+            lost: store.lost_project().filter(|_| open.is_none()),
+            ctx,
+            settings,
+            store,
+            project: History::new(Project::default()),
+            file: None,
+            plan: PlanState::default(),
+            other: None,
+            view: ViewState::default(),
+            solid: View3d::default(),
+            flat: View2d::default(),
+            messages: Vec::new(),
+            refused: None,
+            dialog: None,
+            exporting: panels::export::What::default(),
+            steps_job: None,
+            steps: None,
+            reach_job: None,
+            reach: None,
+            kept: Project::default(),
+        };
+        studio.apply_theme();
+        if let Some(path) = open {
+            studio.open(path);
+        }
+        studio
+    }
+
+    /// The text of a key in the language of the window.
+    pub(crate) fn t(&self, key: &'static str) -> &'static str {
+        self.language().text(key)
+    }
+
+    pub(crate) fn language(&self) -> Language {
+        if self.chinese { self.settings.language } else { Language::English }
+    }
+
+    /// The project.
+    pub fn project(&self) -> &Project {
+        self.project.now()
+    }
+
+    /// The plan, as far as it has come.
+    pub fn plan(&self) -> &PlanState {
+        &self.plan
+    }
+
+    /// The sentences in the window.
+    pub fn messages(&self) -> &[Message] {
+        &self.messages
+    }
+
+    /// What is shown.
+    pub fn view(&mut self) -> &mut ViewState {
+        &mut self.view
+    }
+
+    /// Whether nothing is under way.
+    pub fn is_idle(&self) -> bool {
+        let other = self.other.as_ref().is_some_and(|other| other.plan.is_busy());
+        !self.plan.is_busy() && !other && self.reach_job.is_none() && self.steps_job.is_none()
+    }
+
+    pub(crate) fn say(&mut self, text: impl Into<String>) {
+        self.messages.push(Message { error: false, text: text.into() });
+    }
+
+    pub(crate) fn complain(&mut self, text: impl Into<String>) {
+        self.messages.push(Message { error: true, text: text.into() });
+    }
+
+    /// Opens a model or a project.
+    pub fn open(&mut self, path: &Path) {
+        let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
+        if is_project {
+            self.open_project(path);
+        } else {
+            self.file = None;
+            self.open_model(Source::File(path.to_owned()));
+        }
+        self.settings.remember(path);
+        self.store.keep_settings(&self.settings);
+    }
+
+    /// Opens one of the example parts.
+    pub fn open_example(&mut self, name: &str) {
+        self.file = None;
+        self.open_model(Source::Example(name.to_owned()));
+    }
+
+    fn open_model(&mut self, source: Source) {
+        let profile = self.project().profile.clone();
+        let project = Project { source: Some(source), profile, ..Project::default() };
+        self.begin(project);
+    }
+
+    fn open_project(&mut self, path: &Path) {
+        let read = std::fs::read_to_string(path).map_err(|error| error.to_string());
+        let project = read.and_then(|text| Project::read(&text, path.parent()).map_err(|error| error.to_string()));
+        match project {
+            Ok(project) => {
+                self.file = Some(path.to_owned());
+                self.begin(project);
+            }
+            Err(error) => self.complain(format!("{}: {error}", path.display())),
+        }
+    }
+
+    /// Works on another project from now on.
+    pub(crate) fn begin(&mut self, project: Project) {
+        self.project.seal();
+        self.project.set("open", project);
+        self.project.seal();
+        self.view.reset();
+        self.flat.fit();
+        self.solid.fit_next();
+        self.replan();
+    }
+
+    /// Changes the project, and plans anew if it differs.
+    pub(crate) fn change(&mut self, about: &str, change: impl FnOnce(&mut Project)) {
+        let mut next = self.project().clone();
+        change(&mut next);
+        if self.project.set(about, next) {
+            self.replan();
+        }
+    }
+
+    /// Lays a value over the profile, given as in TOML; what cannot be is told at the field.
+    pub fn set_value(&mut self, key: &str, value: &str) {
+        let text = edit::with_value(&self.project().profile, key, value);
+        self.set_profile(key, text.map_err(|error| error.to_string()));
+    }
+
+    /// Takes a value out of the profile, so that its default holds.
+    pub(crate) fn reset_value(&mut self, key: &str) {
+        let text = edit::without_value(&self.project().profile, key);
+        self.set_profile(key, text.map_err(|error| error.to_string()));
+    }
+
+    /// Takes the text of a profile if it can be.
+    pub(crate) fn set_profile(&mut self, about: &str, text: Result<String, String>) {
+        let checked = text.and_then(|text| match Profile::parse(&text) {
+            Ok(_) => Ok(text),
+            Err(error) => Err(error.to_string()),
+        });
+        match checked {
+            Ok(text) => {
+                self.refused = None;
+                self.change(about, |project| project.profile = text);
+            }
+            Err(reason) => self.refused = Some((about.to_owned(), reason)),
+        }
+    }
+
+    /// Plans the project anew, the layer in view first.
+    pub fn replan(&mut self) {
+        self.view.playing = false;
+        self.view.chosen = None;
+        self.reach = None;
+        self.steps = None;
+        if self.project().source.is_none() {
+            return;
+        }
+        self.plan.restart();
+        self.planner.plan(self.project.now(), self.view.last);
+        let project = self.project.now().clone();
+        if let Some(other) = &mut self.other {
+            other.plan.restart();
+            other.planner.plan(&with_strategy(project, &other.strategy), self.view.last);
+        }
+    }
+
+    /// Plans the part with a second strategy too, to be seen beside the first; none for no second plan.
+    pub fn compare_with(&mut self, strategy: Option<&str>) {
+        let Some(strategy) = strategy else {
+            self.other = None;
+            return;
+        };
+        let bell = self.ctx.clone();
+        let mut other = Other {
+            strategy: strategy.to_owned(),
+            planner: Planner::new(move || bell.request_repaint()),
+            plan: PlanState::default(),
+            flat: View2d::default(),
+        };
+        if self.project().source.is_some() {
+            other.plan.restart();
+            other.planner.plan(&with_strategy(self.project().clone(), strategy), self.view.last);
+        }
+        self.other = Some(other);
+    }
+
+    /// Writes the project file.
+    pub fn save_to(&mut self, path: &Path) {
+        let written = self.project().write(path.parent());
+        let written = written
+            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|e| format!("{}: {e}.", path.display())));
+        match written {
+            Ok(()) => {
+                self.file = Some(path.to_owned());
+                self.settings.remember(path);
+                self.store.keep_settings(&self.settings);
+                self.say(format!("{} {}", self.t("written"), path.display()));
+            }
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Writes the program in a dialect into a folder.
+    pub fn export_program(&mut self, dialect: &str, folder: &Path) {
+        let done = export::program(&self.plan, dialect).and_then(|files| {
+            export::write(folder, &files)?;
+            Ok(files.into_keys().collect())
+        });
+        self.told(folder, done);
+    }
+
+    /// Writes plan, report or metrics into a folder.
+    pub fn export_paper(&mut self, paper: Paper, folder: &Path) {
+        let names = [paper.file().to_owned()];
+        let done = export::paper(&self.plan, paper, &names).and_then(|text| {
+            export::write(folder, &[(paper.file().to_owned(), text)].into())?;
+            Ok(names.to_vec())
+        });
+        self.told(folder, done);
+    }
+
+    fn told(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
+        const SHOWN: usize = 4;
+        match done {
+            Ok(names) => {
+                let more = if names.len() > SHOWN { ", …" } else { "" };
+                let names = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+                self.say(format!("{} {}: {names}{more}", self.t("written"), folder.display()));
+            }
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Asks for a file or a folder.
+    pub(crate) fn ask(&mut self, what: Ask) {
+        let name = self.project().part();
+        self.dialog = Some(jobs::ask(&self.ctx, what, &name));
+    }
+
+    fn answered(&mut self, what: Ask, path: &Path) {
+        match what {
+            Ask::Open => self.open(path),
+            Ask::SaveProject => self.save_to(path),
+            Ask::SavePicture => self.save_picture(path),
+            Ask::OpenProfile => {
+                let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()));
+                let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
+                match checked {
+                    Ok(text) => self.set_profile("profile", Ok(text)),
+                    Err(error) => self.complain(error),
+                }
+            }
+            Ask::Folder => match self.exporting.clone() {
+                panels::export::What::Program(dialect) => self.export_program(&dialect, path),
+                panels::export::What::Paper(paper) => self.export_paper(paper, path),
+            },
+        }
+    }
+
+    /// Does what was asked for.
+    pub fn act(&mut self, action: Action) {
+        match action {
+            Action::Open => self.ask(Ask::Open),
+            Action::Save => match self.file.clone() {
+                Some(path) => self.save_to(&path),
+                None => self.ask(Ask::SaveProject),
+            },
+            Action::SaveAs => self.ask(Ask::SaveProject),
+            Action::ExportProgram => {
+                let dialect = self.view.dialect.clone();
+                self.exporting = panels::export::What::Program(dialect);
+                self.ask(Ask::Folder);
+            }
+            Action::Undo => {
+                if self.project.undo() {
+                    self.replan();
+                }
+            }
+            Action::Redo => {
+                if self.project.redo() {
+                    self.replan();
+                }
+            }
+            Action::Plan => self.replan(),
+            Action::Stop => {
+                self.planner.cancel();
+                self.plan.progress = None;
+                self.view.playing = false;
+            }
+            Action::Solid => self.view.mode = Mode::Solid,
+            Action::Layer => self.view.mode = Mode::Layer,
+            Action::Compare => self.view.mode = Mode::Compare,
+            Action::Fit => {
+                self.flat.fit();
+                self.solid.fit_next();
+            }
+            Action::Top | Action::Front | Action::Right | Action::Corner => self.solid.look(action),
+            Action::Up => self.view.step_layer(1, self.plan.layer_count()),
+            Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
+            Action::Play => self.view.playing = !self.view.playing && self.plan.summary.is_some(),
+            Action::Theme => {
+                self.settings.light = !self.settings.light;
+                self.apply_theme();
+                self.store.keep_settings(&self.settings);
+            }
+            Action::Keys => self.view.keys = !self.view.keys,
+            Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    pub(crate) fn apply_theme(&self) {
+        self.ctx.set_theme(if self.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
+    }
+
+    /// Takes in what has happened in the background.
+    fn hear(&mut self) {
+        for event in self.planner.events() {
+            self.plan.take(event);
+        }
+        if let Some(other) = &mut self.other {
+            for event in other.planner.events() {
+                other.plan.take(event);
+            }
+        }
+        self.view.follow(self.plan.layer_count());
+        if let Some((what, Some(path))) = jobs::take(&mut self.dialog) {
+            self.answered(what, &path);
+        }
+        if let Some(steps) = jobs::take(&mut self.steps_job) {
+            self.steps = Some(steps);
+        }
+        match jobs::take(&mut self.reach_job) {
+            Some(Ok(reach)) => self.reach = Some(reach),
+            Some(Err(error)) => self.complain(error),
+            None => {}
+        }
+    }
+
+    /// Keeps the project aside when it has changed.
+    fn keep(&mut self) {
+        if *self.project.now() != self.kept {
+            self.kept = self.project.now().clone();
+            if let Err(error) = self.store.keep_project(&self.kept) {
+                self.complain(error);
+            }
+        }
+    }
+}
+
+/// A project with another strategy.
+fn with_strategy(mut project: Project, strategy: &str) -> Project {
+    if let Ok(text) = edit::with_value(&project.profile, "fill.strategy", &format!("\"{strategy}\"")) {
+        project.profile = text;
+    }
+    project
+}
+
+impl eframe::App for Studio {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        self.hear();
+        for action in actions::pressed(&self.ctx) {
+            self.act(action);
+        }
+        let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
+        for path in dropped.iter().map(|file| file.path()) {
+            self.open(path);
+        }
+        panels::show(self, ui);
+        if self.ctx.input(|input| input.pointer.any_released()) {
+            self.project.seal();
+        }
+        self.keep();
+    }
+
+    fn on_exit(&mut self) {
+        self.store.keep_settings(&self.settings);
+        self.store.forget_project();
+    }
+}

@@ -1,0 +1,86 @@
+//! What is written: programs, plan, report. The bytes are those of `beadwright plan`, since the library makes them.
+
+use crate::settings::write_whole;
+use crate::state::PlanState;
+use beadwright::plan::deposit_settings_over;
+use beadwright::report::Report;
+use beadwright::{plan_file, post};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A file that belongs to a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paper {
+    /// `plan.json`.
+    Plan,
+    /// `report.html`.
+    Report,
+    /// `metrics.json`.
+    Metrics,
+}
+
+impl Paper {
+    /// Its file name.
+    pub fn file(self) -> &'static str {
+        match self {
+            Self::Plan => "plan.json",
+            Self::Report => "report.html",
+            Self::Metrics => "metrics.json",
+        }
+    }
+}
+
+const NOT_YET: &str = "The plan is not complete yet.";
+
+/// The program in a dialect: text by file name.
+///
+/// # Errors
+/// A sentence: the plan is not complete, or the profile lacks the dialect's section.
+pub fn program(state: &PlanState, dialect: &str) -> Result<BTreeMap<String, String>, String> {
+    let (Some(header), Some(profile), Some(_)) = (&state.header, &state.profile, &state.summary) else {
+        return Err(NOT_YET.to_owned());
+    };
+    post::write(dialect, &header.part, &state.layers, profile).map_err(|error| error.to_string())
+}
+
+/// The text of a file that belongs to the plan; `files` are named in the report.
+///
+/// # Errors
+/// A sentence: the plan is not complete.
+pub fn paper(state: &PlanState, paper: Paper, files: &[String]) -> Result<String, String> {
+    let PlanState { header: Some(header), profile: Some(profile), summary: Some(summary), total: Some(total), .. } =
+        state
+    else {
+        return Err(NOT_YET.to_owned());
+    };
+    let Some(part) = &state.part else { return Err(NOT_YET.to_owned()) };
+    Ok(match paper {
+        Paper::Plan => {
+            let settings = deposit_settings_over(profile, part.bounds());
+            let mut text = plan_file::head(header, &settings);
+            state.layers.iter().enumerate().for_each(|(i, layer)| text.push_str(&plan_file::layer(layer, i == 0)));
+            text.push_str(plan_file::tail());
+            text
+        }
+        Paper::Metrics => format!("{:#}\n", summary.json(Some(total))),
+        Paper::Report => {
+            let mut report = Report::new(header);
+            for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
+                report.layer(layer, Some(judgement));
+            }
+            report.finish(summary, profile, &part.repair(), files)
+        }
+    })
+}
+
+/// Writes files into a folder, each whole or not at all.
+///
+/// # Errors
+/// A sentence that names the file.
+pub fn write(folder: &Path, files: &BTreeMap<String, String>) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}.", folder.display()))?;
+    files.iter().try_for_each(|(name, text)| {
+        let path = folder.join(name);
+        write_whole(&path, text.as_bytes()).map_err(|error| format!("{}: {error}.", path.display()))
+    })
+}

@@ -1,0 +1,177 @@
+//! The profile as a form: fields from the schema, so that a new key of the library appears by itself.
+
+use beadwright::profile::{Limit, Profile};
+use serde_json::Value;
+use std::sync::OnceLock;
+
+/// What a field holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kind {
+    /// A number; whole or not.
+    Number {
+        /// Whether it is a whole number.
+        whole: bool,
+    },
+    /// A line of text.
+    Text,
+    /// Lines of a template.
+    Lines,
+    /// Yes or no.
+    Switch,
+    /// One of some words, each with what it means.
+    Choice(Vec<(String, String)>),
+    /// A fixed number of numbers.
+    Numbers(usize),
+}
+
+/// A key of the profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Full key: `fill.raster_angle`.
+    pub key: String,
+    /// Its last part, with blanks: `raster angle`.
+    pub name: String,
+    /// What it is, with its unit.
+    pub about: String,
+    /// What it holds.
+    pub kind: Kind,
+    /// Whether it may be left out.
+    pub optional: bool,
+}
+
+/// A section of the profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// `fill`; empty for keys at the top.
+    pub key: String,
+    /// What it is.
+    pub about: String,
+    /// Its keys.
+    pub fields: Vec<Field>,
+}
+
+/// All sections, those that are changed most often first.
+pub fn sections() -> &'static [Section] {
+    static SECTIONS: OnceLock<Vec<Section>> = OnceLock::new();
+    SECTIONS.get_or_init(|| read(&Profile::schema()))
+}
+
+/// The sections that come first; the others follow by name.
+const FIRST: [&str; 12] = [
+    "fill",
+    "bead",
+    "layers",
+    "process",
+    "wire",
+    "order",
+    "hybrid",
+    "wall",
+    "travel",
+    "program",
+    "start_stop",
+    "check",
+];
+
+fn read(schema: &Value) -> Vec<Section> {
+    let defs = &schema["$defs"];
+    let mut top = Section { key: String::new(), about: String::new(), fields: Vec::new() };
+    let mut sections = Vec::new();
+    for (key, property) in schema["properties"].as_object().into_iter().flatten() {
+        match definition(property, defs) {
+            Some(definition) if definition["properties"].is_object() => {
+                sections.extend(section(key, definition, text(property, "description"), defs));
+            }
+            _ => top.fields.extend(field(key, key, property, false, defs)),
+        }
+    }
+    let rank = |section: &Section| FIRST.iter().position(|f| *f == section.key).unwrap_or(FIRST.len());
+    sections.sort_by_key(rank);
+    sections.push(top);
+    sections
+}
+
+/// A section, and those within it.
+fn section(key: &str, definition: &Value, about: String, defs: &Value) -> Vec<Section> {
+    let (mut fields, mut inner) = (Vec::new(), Vec::new());
+    let required: Vec<&str> =
+        definition["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let place = |name: &str| required.iter().position(|r| *r == name).unwrap_or(required.len());
+    let mut properties: Vec<_> = definition["properties"].as_object().into_iter().flatten().collect();
+    properties.sort_by_key(|(name, _)| place(name));
+    for (name, property) in properties {
+        let full = format!("{key}.{name}");
+        match self::definition(property, defs) {
+            Some(found) if found["properties"].is_object() => {
+                inner.extend(section(&full, found, text(property, "description"), defs));
+            }
+            _ => fields.extend(field(&full, name, property, !required.contains(&name.as_str()), defs)),
+        }
+    }
+    [vec![Section { key: key.to_owned(), about, fields }], inner].concat()
+}
+
+fn field(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) -> Option<Field> {
+    let kind = words(key).map(Kind::Choice).or_else(|| kind(property, defs))?;
+    Some(Field {
+        key: key.to_owned(),
+        name: name.replace('_', " "),
+        about: text(property, "description").replace('`', ""),
+        kind,
+        optional,
+    })
+}
+
+/// Words that the schema does not list.
+fn words(key: &str) -> Option<Vec<(String, String)>> {
+    (key == "fill.strategy")
+        .then(|| beadwright::fill::STRATEGIES.map(|strategy| (strategy.name().to_owned(), String::new())).to_vec())
+}
+
+fn kind(property: &Value, defs: &Value) -> Option<Kind> {
+    if let Some(definition) = definition(property, defs) {
+        let choices = definition["oneOf"].as_array()?.iter();
+        let word = |c: &Value| Some((c["const"].as_str()?.to_owned(), text(c, "description").replace('`', "")));
+        return Some(Kind::Choice(choices.filter_map(word).collect()));
+    }
+    if let Some(words) = property["enum"].as_array() {
+        return Some(Kind::Choice(
+            words.iter().filter_map(|w| Some((w.as_str()?.to_owned(), String::new()))).collect(),
+        ));
+    }
+    let kinds = match &property["type"] {
+        Value::Array(kinds) => kinds.iter().filter_map(Value::as_str).collect(),
+        kind => Vec::from_iter(kind.as_str()),
+    };
+    match kinds.first().copied()? {
+        "number" => Some(Kind::Number { whole: false }),
+        "integer" => Some(Kind::Number { whole: true }),
+        "boolean" => Some(Kind::Switch),
+        "string" => Some(Kind::Text),
+        "array" if property["items"]["type"] == "string" => Some(Kind::Lines),
+        "array" => Some(Kind::Numbers(property["maxItems"].as_u64()? as usize)),
+        _ => None,
+    }
+}
+
+/// What a property refers to, also where it may be left out.
+fn definition<'a>(property: &Value, defs: &'a Value) -> Option<&'a Value> {
+    let any = property["anyOf"].as_array().and_then(|any| any.first()).unwrap_or(property);
+    let name = any["$ref"].as_str()?.rsplit('/').next()?;
+    defs.get(name)
+}
+
+fn text(value: &Value, key: &str) -> String {
+    value[key].as_str().unwrap_or_default().to_owned()
+}
+
+/// The value of a key, as it holds with all defaults; none where it is left out.
+pub fn value(profile: &toml::Table, key: &str) -> Option<toml::Value> {
+    let mut parts = key.split('.');
+    let first = profile.get(parts.next()?)?;
+    parts.try_fold(first, |value, part| value.get(part)).cloned()
+}
+
+/// The limit of a key.
+pub fn limit<'a>(limits: &'a [Limit], key: &str) -> Option<&'a Limit> {
+    limits.iter().find(|limit| limit.key == key)
+}

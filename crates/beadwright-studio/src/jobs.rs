@@ -1,0 +1,95 @@
+//! Small work in the background: one answer, to be fetched when it is there.
+
+use beadwright::fill::hybrid::Steps;
+use beadwright::plan::Layer;
+use beadwright::profile::Profile;
+use beadwright::robot::{self, Cell, Reach, Track};
+use eframe::egui::Context;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+/// Work that gives one answer.
+pub struct Job<T>(Receiver<T>);
+
+impl<T: Send + 'static> Job<T> {
+    /// Starts work on a thread of its own; the window is drawn again when it is done.
+    pub fn start(ctx: &Context, work: impl FnOnce() -> T + Send + 'static) -> Self {
+        let (sender, receiver) = channel();
+        let ctx = ctx.clone();
+        std::thread::spawn(move || {
+            if sender.send(work()).is_ok() {
+                ctx.request_repaint();
+            }
+        });
+        Self(receiver)
+    }
+}
+
+/// Takes the answer of a job that is done, and forgets the job.
+pub fn take<T>(job: &mut Option<Job<T>>) -> Option<T> {
+    match job.as_ref()?.0.try_recv() {
+        Ok(answer) => {
+            *job = None;
+            Some(answer)
+        }
+        Err(TryRecvError::Empty) => None,
+        Err(TryRecvError::Disconnected) => {
+            *job = None;
+            None
+        }
+    }
+}
+
+/// What a file dialog is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    /// A model or a project to open.
+    Open,
+    /// Where to write the project.
+    SaveProject,
+    /// A folder for the program.
+    Folder,
+    /// Where to write a picture.
+    SavePicture,
+    /// A profile to take.
+    OpenProfile,
+}
+
+/// Asks in the system's own dialog; none when the person thinks better of it.
+pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<(Ask, Option<PathBuf>)> {
+    let dialog = rfd::AsyncFileDialog::new();
+    let named = |extension: &str| dialog.clone().set_file_name(format!("{name}.{extension}"));
+    let models = ["stl", "STL", "igs", "iges", "IGS", "IGES", "bwp"];
+    // The dialog is made here, as some systems want it on the first thread, and waited for elsewhere.
+    let answer: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match what {
+        Ask::Open => Box::pin(dialog.clone().add_filter("STL, IGES, BWP", &models).pick_file()),
+        Ask::OpenProfile => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
+        Ask::Folder => Box::pin(dialog.clone().pick_folder()),
+        Ask::SaveProject => Box::pin(named("bwp").save_file()),
+        Ask::SavePicture => Box::pin(named("png").save_file()),
+    };
+    Job::start(ctx, move || (what, pollster::block_on(answer).map(|file| file.path().to_owned())))
+}
+
+/// The steps of the hybrid on every island of a layer: pockets and skeleton regions.
+pub fn steps(ctx: &Context, layer: Arc<Layer>, profile: Arc<Profile>) -> Job<(usize, Vec<Steps>)> {
+    Job::start(ctx, move || {
+        let settings = profile.fill_settings(layer.index);
+        (layer.index, layer.islands.iter().map(|island| Steps::of(island, &settings)).collect())
+    })
+}
+
+/// Walks a plan with a robot.
+pub fn reach(
+    ctx: &Context,
+    cell: String,
+    layers: Vec<Arc<Layer>>,
+    profile: Arc<Profile>,
+) -> Job<Result<Reach, String>> {
+    Job::start(ctx, move || {
+        let cell = Cell::built_in(&cell).map_err(|error| error.to_string())?;
+        let track = Track::of(&layers, profile.travel.clearance, profile.travel.speed);
+        Ok(robot::reach(&cell, cell.part, &track))
+    })
+}

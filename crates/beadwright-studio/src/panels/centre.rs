@@ -1,0 +1,155 @@
+//! The views in the middle of the window.
+
+use super::totals;
+use crate::app::Studio;
+use crate::jobs;
+use crate::state::PlanState;
+use crate::view::Mode;
+use crate::view2d::{Subject, View2d};
+use beadwright::fill;
+use beadwright::fill::hybrid::Steps;
+use eframe::egui::{CentralPanel, ComboBox, Grid, Panel, Ui};
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    if studio.view.mode == Mode::Compare {
+        Panel::bottom("differences").show(ui, |ui| differences(studio, ui));
+    }
+    CentralPanel::default().show(ui, |ui| {
+        if studio.project().source.is_none() {
+            ui.centered_and_justified(|ui| ui.heading(studio.t("drop-here")));
+            return;
+        }
+        match studio.view.mode {
+            Mode::Solid => solid(studio, ui),
+            Mode::Layer => layer(studio, ui),
+            Mode::Compare => compare(studio, ui),
+        }
+    });
+}
+
+fn solid(studio: &mut Studio, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| crate::view3d::bar(studio, ui));
+    crate::view3d::show(studio, ui);
+}
+
+fn layer(studio: &mut Studio, ui: &mut Ui) {
+    bar(studio, ui);
+    look_closer(studio);
+    let label = studio.t("view-2d-label");
+    let steps = steps(studio).unwrap_or_default();
+    let layer = studio.view.last;
+    if let Some(picked) = flat(&studio.plan, &mut studio.flat, ui, &studio.view, &steps, label) {
+        studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
+    }
+    studio.steps = (!steps.is_empty()).then_some((layer, steps));
+}
+
+/// The steps of the layer in view, taken out of the program for as long as they are drawn.
+fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
+    studio.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
+}
+
+fn flat(
+    plan: &PlanState,
+    view: &mut View2d,
+    ui: &mut Ui,
+    state: &crate::view::ViewState,
+    steps: &[Steps],
+    label: &str,
+) -> Option<Option<(usize, usize)>> {
+    let layer = plan.layer(state.last)?;
+    let count: usize = layer.passes.iter().map(|pass| pass.segments().count()).sum();
+    let subject = Subject {
+        layer,
+        judgement: plan.judgements.get(state.last),
+        steps,
+        pieces: (state.progress * count as f64).ceil() as usize,
+        chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, _)| pass),
+    };
+    view.show(ui, subject, state.show, label).picked
+}
+
+fn bar(studio: &mut Studio, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        let texts = ["show-beads", "show-paths", "show-travels", "show-starts", "show-heights", "show-regions"];
+        let [beads, paths, travels, starts, heights, regions] = texts.map(|key| studio.t(key));
+        let show = &mut studio.view.show;
+        ui.checkbox(&mut show.beads, beads);
+        ui.checkbox(&mut show.paths, paths);
+        ui.checkbox(&mut show.travels, travels);
+        ui.checkbox(&mut show.starts, starts);
+        ui.checkbox(&mut show.heights, heights);
+        ui.checkbox(&mut show.regions, regions);
+        let measure = studio.t("measure");
+        if ui.toggle_value(&mut studio.flat.measuring, measure).changed() {
+            studio.flat.clear_measure();
+        }
+        if let Some(length) = studio.flat.measured() {
+            ui.label(format!("{length:.2} mm"));
+        }
+    });
+}
+
+/// Works out pockets and skeleton regions of the layer in view where they are asked for.
+fn look_closer(studio: &mut Studio) {
+    let known = studio.steps.as_ref().is_some_and(|(of, _)| *of == studio.view.last);
+    if !studio.view.show.regions || known || studio.steps_job.is_some() {
+        return;
+    }
+    if let (Some(layer), Some(profile)) = (studio.plan.layer(studio.view.last), &studio.plan.profile) {
+        studio.steps_job = Some(jobs::steps(&studio.ctx, layer.clone(), profile.clone()));
+    }
+}
+
+fn compare(studio: &mut Studio, ui: &mut Ui) {
+    choose(studio, ui);
+    bar(studio, ui);
+    let [label, other_label] = ["view-2d-label", "view-2d-other"].map(|key| studio.t(key));
+    ui.columns(2, |columns| {
+        let [left, right] = columns else { return };
+        if let Some(picked) = flat(&studio.plan, &mut studio.flat, left, &studio.view, &[], label) {
+            studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
+        }
+        if let Some(other) = &mut studio.other {
+            flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label);
+        }
+    });
+}
+
+fn choose(studio: &mut Studio, ui: &mut Ui) {
+    let now = studio.other.as_ref().map_or_else(|| "–".to_owned(), |other| other.strategy.clone());
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        let label = ui.label(studio.t("other-strategy"));
+        let combo = ComboBox::from_id_salt("other-strategy").selected_text(&now).show_ui(ui, |ui| {
+            for strategy in fill::STRATEGIES {
+                if ui.selectable_label(now == strategy.name(), strategy.name()).clicked() {
+                    chosen = Some(strategy.name());
+                }
+            }
+        });
+        combo.response.labelled_by(label.id);
+    });
+    if let Some(strategy) = chosen.filter(|strategy| *strategy != now) {
+        studio.compare_with(Some(strategy));
+    }
+}
+
+/// Totals of both plans side by side.
+fn differences(studio: &Studio, ui: &mut Ui) {
+    let Some(other) = &studio.other else { return };
+    let (own, theirs) = (totals::rows_of(&studio.plan), totals::rows_of(&other.plan));
+    Grid::new("differences").num_columns(3).striped(true).show(ui, |ui| {
+        ui.label("");
+        let now = studio.plan.header.as_ref().map_or("", |header| &header.strategy);
+        ui.strong(now);
+        ui.strong(&other.strategy);
+        ui.end_row();
+        for (name, value) in &own {
+            ui.label(totals::name_of(studio, name));
+            ui.label(value);
+            ui.label(theirs.iter().find(|(n, _)| n == name).map_or("…", |(_, value)| value));
+            ui.end_row();
+        }
+    });
+}

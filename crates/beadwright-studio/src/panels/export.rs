@@ -1,0 +1,52 @@
+//! What can be written.
+
+use crate::app::Studio;
+use crate::export::Paper;
+use crate::jobs::Ask;
+use beadwright::post;
+use eframe::egui::{Button, ComboBox, Ui};
+
+/// What a folder is asked for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum What {
+    /// A program in a dialect.
+    Program(String),
+    /// A file that belongs to the plan.
+    Paper(Paper),
+}
+
+impl Default for What {
+    fn default() -> Self {
+        Self::Paper(Paper::Plan)
+    }
+}
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        let label = ui.label(studio.t("dialect"));
+        let now = studio.view.dialect.clone();
+        let combo = ComboBox::from_id_salt("dialect").selected_text(now).show_ui(ui, |ui| {
+            for name in post::NAMES {
+                ui.selectable_value(&mut studio.view.dialect, name.to_owned(), name);
+            }
+        });
+        combo.response.labelled_by(label.id);
+    });
+    let (planned, judged) = (studio.plan.summary.is_some(), studio.plan.total.is_some());
+    if !judged {
+        ui.weak(studio.t("not-complete"));
+    }
+    let papers = [("export-plan", Paper::Plan), ("export-report", Paper::Report)];
+    let program = ("export-program", What::Program(studio.view.dialect.clone()), planned);
+    let papers = papers.into_iter().map(|(key, paper)| (key, What::Paper(paper), judged));
+    for (key, what, enabled) in [program].into_iter().chain(papers) {
+        if ui.add_enabled(enabled, Button::new(studio.t(key))).clicked() {
+            studio.exporting = what;
+            studio.ask(Ask::Folder);
+        }
+    }
+    let pictured = studio.render_state.is_some() && studio.plan.layer_count() > 0;
+    if ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked() {
+        studio.ask(Ask::SavePicture);
+    }
+}

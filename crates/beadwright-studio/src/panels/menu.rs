@@ -1,0 +1,139 @@
+//! Menus, and the bar below them: strategy, views, progress.
+
+use crate::actions::{self, Action};
+use crate::app::Studio;
+use crate::text::Language;
+use crate::view::Mode;
+use beadwright::task::Stage;
+use beadwright::{example, fill};
+use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, Ui};
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button(studio.t("file"), |ui| {
+            items(studio, ui, &[Action::Open]);
+            ui.menu_button(studio.t("recent"), |ui| recent(studio, ui));
+            ui.separator();
+            items(studio, ui, &[Action::Save, Action::SaveAs, Action::ExportProgram]);
+            ui.separator();
+            items(studio, ui, &[Action::Quit]);
+        });
+        ui.menu_button(studio.t("edit"), |ui| {
+            items(studio, ui, &[Action::Undo, Action::Redo, Action::Plan, Action::Stop]);
+        });
+        ui.menu_button(studio.t("view"), |ui| {
+            items(studio, ui, &[Action::Solid, Action::Layer, Action::Compare]);
+            ui.separator();
+            items(studio, ui, &[Action::Fit, Action::Top, Action::Front, Action::Right, Action::Corner]);
+            ui.separator();
+            items(studio, ui, &[Action::Up, Action::Down, Action::Play]);
+            ui.separator();
+            items(studio, ui, &[Action::Theme]);
+            ui.menu_button(studio.t("language"), |ui| languages(studio, ui));
+        });
+        ui.menu_button(studio.t("examples"), |ui| examples(studio, ui));
+        ui.menu_button(studio.t("help"), |ui| items(studio, ui, &[Action::Keys]));
+    });
+    ui.horizontal(|ui| bar(studio, ui));
+}
+
+fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
+    for entry in wanted.iter().filter_map(|action| actions::find(*action)) {
+        let enabled = match entry.action {
+            Action::Undo => studio.project.can_undo(),
+            Action::Redo => studio.project.can_redo(),
+            Action::ExportProgram | Action::Play => studio.plan.summary.is_some(),
+            Action::Save | Action::SaveAs | Action::Plan => studio.project().source.is_some(),
+            Action::Stop => studio.plan.is_busy(),
+            _ => true,
+        };
+        let key = entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default();
+        if ui.add_enabled(enabled, Button::new(studio.t(entry.text)).shortcut_text(key)).clicked() {
+            studio.act(entry.action);
+            ui.close();
+        }
+    }
+}
+
+fn recent(studio: &mut Studio, ui: &mut Ui) {
+    if studio.settings.recent.is_empty() {
+        ui.weak(studio.t("no-recent"));
+    }
+    for path in studio.settings.recent.clone() {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+            studio.open(&path);
+            ui.close();
+        }
+    }
+}
+
+fn examples(studio: &mut Studio, ui: &mut Ui) {
+    for example in example::ALL {
+        if ui.button(example.name).on_hover_text(example.about).clicked() {
+            studio.open_example(example.name);
+            ui.close();
+        }
+    }
+}
+
+fn languages(studio: &mut Studio, ui: &mut Ui) {
+    for (language, name) in Language::ALL {
+        let possible = studio.chinese || language == Language::English;
+        // Without a font its own name could not be shown either.
+        let name = if possible { name } else { "Chinese" };
+        let button = ui.add_enabled(possible, Button::selectable(studio.language() == language, name));
+        if button.on_disabled_hover_text(studio.t("no-chinese")).clicked() {
+            studio.settings.language = language;
+            studio.store.keep_settings(&studio.settings);
+            ui.close();
+        }
+    }
+}
+
+fn bar(studio: &mut Studio, ui: &mut Ui) {
+    let now = studio.plan.profile.as_ref().map(|profile| profile.fill.strategy.clone());
+    let now = now.unwrap_or_else(|| strategy_of(&studio.project().profile));
+    let label = ui.label(studio.t("strategy"));
+    let mut chosen = now.clone();
+    let combo = ComboBox::from_id_salt("strategy").selected_text(&now).show_ui(ui, |ui| {
+        for strategy in fill::STRATEGIES {
+            ui.selectable_value(&mut chosen, strategy.name().to_owned(), strategy.name());
+        }
+    });
+    combo.response.labelled_by(label.id);
+    if chosen != now {
+        studio.set_value("fill.strategy", &format!("\"{chosen}\""));
+    }
+    ui.separator();
+    for (mode, key) in [(Mode::Solid, "view-solid"), (Mode::Layer, "view-layer"), (Mode::Compare, "view-compare")] {
+        let text = studio.t(key);
+        ui.selectable_value(&mut studio.view.mode, mode, text);
+    }
+    ui.separator();
+    match studio.plan.progress {
+        Some((stage, fraction)) => {
+            ui.add(ProgressBar::new(fraction as f32).desired_width(180.0).text(studio.t(stage_text(stage))));
+            if ui.button(studio.t("stop")).clicked() {
+                studio.act(Action::Stop);
+            }
+        }
+        None if studio.plan.is_complete() => {
+            ui.label(studio.t("ready"));
+        }
+        None => {}
+    }
+}
+
+fn strategy_of(profile: &str) -> String {
+    beadwright::profile::Profile::parse(profile).map(|profile| profile.fill.strategy).unwrap_or_default()
+}
+
+fn stage_text(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Import => "stage-import",
+        Stage::Slice => "stage-slice",
+        Stage::Plan => "stage-plan",
+        Stage::Deposit => "stage-deposit",
+    }
+}

@@ -1,0 +1,54 @@
+//! What went wrong or was done, as sentences that stay until they are closed.
+
+use crate::app::Studio;
+use crate::planner::Failure;
+use eframe::egui::{Color32, RichText, ScrollArea, Ui};
+
+/// Lines that are shown at a time.
+const HEIGHT: f32 = 70.0;
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    let failure = match &studio.plan.failure {
+        Some(Failure::Sentence(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let (warnings, close) = (warnings(studio), studio.t("close"));
+    if failure.is_none() && studio.messages.is_empty() && warnings.is_empty() {
+        return;
+    }
+    ScrollArea::vertical().max_height(HEIGHT).show(ui, |ui| {
+        if let Some(text) = failure {
+            line(ui, &text, true, || studio.plan.failure = None, close);
+        }
+        let mut closed = None;
+        for (i, message) in studio.messages.iter().enumerate().rev() {
+            line(ui, &message.text, message.error, || closed = Some(i), close);
+        }
+        closed.into_iter().for_each(|i| {
+            studio.messages.remove(i);
+        });
+        for text in warnings {
+            ui.label(RichText::new(format!("⚠ {text}")).weak());
+        }
+    });
+}
+
+fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) {
+    ui.horizontal_wrapped(|ui| {
+        if ui.small_button("✖").on_hover_text(hint).clicked() {
+            close();
+        }
+        let colour = if error { ui.visuals().error_fg_color } else { Color32::from_rgb(0x1a, 0x9c, 0x4b) };
+        ui.colored_label(colour, text);
+    });
+}
+
+/// What was mended in the model, and what the plan left out.
+fn warnings(studio: &Studio) -> Vec<String> {
+    let part = studio.plan.part.iter().flat_map(|part| part.warnings());
+    let plan = studio.plan.summary.iter().flat_map(|summary| {
+        let events = summary.warnings.summaries().map(|warning| warning.sentence());
+        events.chain(summary.notes.iter().cloned()).collect::<Vec<_>>()
+    });
+    part.chain(plan).collect()
+}

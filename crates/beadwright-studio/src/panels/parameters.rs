@@ -1,0 +1,209 @@
+//! The profile as a form: units, ranges and meaning of every key.
+
+use crate::app::Studio;
+use crate::form::{self, Field, Kind, Section};
+use crate::jobs::Ask;
+use beadwright::profile::{BUILT_IN, Limit, Profile};
+use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Response, RichText, TextEdit, Ui};
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    ui.separator();
+    ui.heading(studio.t("parameters"));
+    let Ok(profile) = Profile::parse(&studio.project().profile) else { return };
+    choose(studio, ui, &profile);
+    let label = ui.label(studio.t("search"));
+    ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
+    if let Some((key, reason)) = studio.refused.clone() {
+        ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
+    }
+    let (values, limits) = (values(&profile), profile.limits());
+    let mut form = Form { studio, values: &values, limits: &limits };
+    for section in form::sections() {
+        form.section(ui, section);
+    }
+}
+
+fn choose(studio: &mut Studio, ui: &mut Ui, profile: &Profile) {
+    ui.horizontal(|ui| {
+        let label = ui.label(studio.t("profile"));
+        let combo = ComboBox::from_id_salt("profile").selected_text(&profile.name).show_ui(ui, |ui| {
+            for (name, text) in BUILT_IN {
+                if ui.selectable_label(profile.name == name, name).clicked() {
+                    studio.set_profile("profile", Ok(text.to_owned()));
+                }
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text(&profile.description);
+    });
+    if ui.button(studio.t("profile-file")).clicked() {
+        studio.ask(Ask::OpenProfile);
+    }
+}
+
+/// The values with all defaults.
+fn values(profile: &Profile) -> toml::Table {
+    toml::Table::try_from(profile).unwrap_or_default()
+}
+
+struct Form<'a> {
+    studio: &'a mut Studio,
+    values: &'a toml::Table,
+    limits: &'a [Limit],
+}
+
+impl Form<'_> {
+    fn section(&mut self, ui: &mut Ui, section: &Section) {
+        let search = self.studio.view.search.to_lowercase();
+        let found =
+            |f: &&Field| search.is_empty() || f.key.contains(&search) || f.about.to_lowercase().contains(&search);
+        let fields: Vec<&Field> = section.fields.iter().filter(found).collect();
+        // A dialect without a section in this profile has no values to show.
+        let present = section.key.is_empty() || form::value(self.values, &section.key).is_some();
+        if fields.is_empty() || !present {
+            return;
+        }
+        let title =
+            if section.key.is_empty() { self.studio.t("profile").to_owned() } else { section.key.replace('_', " ") };
+        let open = (section.key == "fill" || !search.is_empty()).then_some(!search.is_empty());
+        CollapsingHeader::new(title)
+            .id_salt(&section.key)
+            .default_open(section.key == "fill")
+            .open(open.filter(|open| *open))
+            .show(ui, |ui| {
+                if !section.about.is_empty() {
+                    ui.weak(&section.about);
+                }
+                fields.into_iter().for_each(|field| self.field(ui, field));
+            });
+    }
+
+    fn field(&mut self, ui: &mut Ui, field: &Field) {
+        let value = form::value(self.values, &field.key);
+        let limit = form::limit(self.limits, &field.key);
+        let hint = self.hint(field, limit);
+        let refused = self.studio.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
+        ui.horizontal_wrapped(|ui| {
+            let mut name = RichText::new(&field.name);
+            if refused {
+                name = name.color(ui.visuals().error_fg_color);
+            }
+            let label = ui.label(name).on_hover_text(&hint);
+            let (response, changed) = widget(ui, field, value.as_ref(), limit);
+            response.labelled_by(label.id).on_hover_text(&hint);
+            if let Some(text) = changed {
+                self.studio.set_value(&field.key, &text);
+            }
+            if field.optional
+                && value.is_some()
+                && ui.small_button("↺").on_hover_text(self.studio.t("default")).clicked()
+            {
+                self.studio.reset_value(&field.key);
+            }
+        });
+    }
+
+    /// What the key means, what it can be, and why.
+    fn hint(&self, field: &Field, limit: Option<&Limit>) -> String {
+        let range = limit.map(|l| {
+            let (from, to) = (self.studio.t("from"), self.studio.t("to"));
+            format!("\n{from} {} {to} {} {}", l.least, l.greatest, l.unit)
+        });
+        let words = match &field.kind {
+            Kind::Choice(words) => words.iter().filter(|(_, about)| !about.is_empty()).collect(),
+            _ => Vec::new(),
+        };
+        let words: String = words.iter().map(|(word, about)| format!("\n• {word}: {about}")).collect();
+        format!("{}\n{}{}{words}", field.key, field.about, range.unwrap_or_default())
+    }
+}
+
+/// The widget of a field, and the new value as TOML where it was changed.
+fn widget(
+    ui: &mut Ui,
+    field: &Field,
+    value: Option<&toml::Value>,
+    limit: Option<&Limit>,
+) -> (Response, Option<String>) {
+    match &field.kind {
+        Kind::Number { whole } => number(ui, *whole, value, limit),
+        Kind::Switch => {
+            let mut on = value.and_then(toml::Value::as_bool).unwrap_or_default();
+            let response = ui.checkbox(&mut on, "");
+            let changed = response.changed().then(|| on.to_string());
+            (response, changed)
+        }
+        Kind::Choice(words) => choice(ui, &field.key, words, value),
+        Kind::Text => {
+            let mut text = value.and_then(toml::Value::as_str).unwrap_or_default().to_owned();
+            let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
+            let changed = response.changed().then(|| quoted(&text));
+            (response, changed)
+        }
+        Kind::Lines => lines(ui, value),
+        Kind::Numbers(count) => numbers(ui, *count, value),
+    }
+}
+
+fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&Limit>) -> (Response, Option<String>) {
+    let now = value.and_then(|v| v.as_float().or(v.as_integer().map(|i| i as f64)));
+    let mut number = now.unwrap_or_default();
+    let (least, greatest) = limit.map_or((f64::MIN, f64::MAX), |l| (l.least, l.greatest));
+    let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
+    // Units behind a bracket tell what the range depends on; that belongs in the hint.
+    let unit = limit.map_or("", |l| l.unit.split('(').next().unwrap_or_default().trim());
+    let drag = DragValue::new(&mut number).range(least..=greatest).speed(speed).suffix(format!(" {unit}"));
+    let drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(4) };
+    let response = ui.add(drag);
+    let changed = response.changed().then(|| if whole { format!("{number:.0}") } else { format!("{number:?}") });
+    (response, changed)
+}
+
+fn choice(
+    ui: &mut Ui,
+    key: &str,
+    words: &[(String, String)],
+    value: Option<&toml::Value>,
+) -> (Response, Option<String>) {
+    let now = value.and_then(toml::Value::as_str).unwrap_or_default();
+    let mut chosen = None;
+    let combo = ComboBox::from_id_salt(key).selected_text(now).show_ui(ui, |ui| {
+        for (word, about) in words {
+            let item = ui.selectable_label(word == now, word);
+            let item = if about.is_empty() { item } else { item.on_hover_text(about) };
+            if item.clicked() && word != now {
+                chosen = Some(quoted(word));
+            }
+        }
+    });
+    (combo.response, chosen)
+}
+
+fn lines(ui: &mut Ui, value: Option<&toml::Value>) -> (Response, Option<String>) {
+    let now: Vec<&str> =
+        value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(|v| v.as_str()).collect();
+    let mut text = now.join("\n");
+    let rows = now.len().max(1);
+    let edit = TextEdit::multiline(&mut text).code_editor().desired_rows(rows).desired_width(f32::INFINITY);
+    let response = ui.add(edit);
+    let changed = response.changed().then(|| {
+        let quoted: Vec<String> = text.lines().map(quoted).collect();
+        format!("[{}]", quoted.join(", "))
+    });
+    (response, changed)
+}
+
+fn numbers(ui: &mut Ui, count: usize, value: Option<&toml::Value>) -> (Response, Option<String>) {
+    let now = value.and_then(toml::Value::as_array).into_iter().flatten();
+    let mut numbers: Vec<f64> = now.filter_map(|v| v.as_float().or(v.as_integer().map(|i| i as f64))).collect();
+    numbers.resize(count, 0.0);
+    let group = ui.horizontal(|ui| {
+        let drags = numbers.iter_mut().map(|number| ui.add(DragValue::new(number).speed(0.1)).changed());
+        drags.fold(false, |any, changed| any | changed)
+    });
+    let changed = group.inner.then(|| format!("{numbers:?}"));
+    (group.response, changed)
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}

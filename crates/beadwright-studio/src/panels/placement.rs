@@ -1,0 +1,63 @@
+//! Where the part stands: units, scale, turn.
+
+use crate::app::Studio;
+use beadwright::model::{Part, Placement, Units};
+use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    let Some(source) = studio.project().source.clone() else {
+        ui.label(studio.t("drop-here"));
+        return;
+    };
+    ui.strong(source.label());
+    CollapsingHeader::new(studio.t("placement")).show(ui, |ui| {
+        let mut placement = studio.project().placement;
+        Grid::new("placement").num_columns(2).show(ui, |ui| {
+            units(studio, ui, &mut placement);
+            ui.end_row();
+            number(ui, studio.t("scale"), &mut placement.scale, 1e-6..=1e6, 0.01, "");
+            for (key, axis) in [("turn-x", 0), ("turn-y", 1), ("turn-z", 2)] {
+                number(ui, studio.t(key), &mut placement.turn[axis], -360.0..=360.0, 1.0, "°");
+            }
+        });
+        ui.checkbox(&mut placement.centre, studio.t("centre"));
+        ui.horizontal(|ui| {
+            if ui.button(studio.t("lay-flat")).clicked() {
+                placement.turn = laid_flat(studio, &placement);
+            }
+            if ui.button(studio.t("reset")).clicked() {
+                placement = Placement { units: placement.units, ..Placement::default() };
+            }
+        });
+        studio.change("placement", |project| project.placement = placement);
+    });
+}
+
+/// The turn that lays the part in view flat.
+fn laid_flat(studio: &Studio, placement: &Placement) -> glam::DVec3 {
+    match studio.plan.part.as_deref() {
+        Some(Part::Mesh(import)) => placement.laid_flat(&import.mesh),
+        _ => placement.turn,
+    }
+}
+
+fn units(studio: &Studio, ui: &mut Ui, placement: &mut Placement) {
+    let name = |units: Option<Units>| match units {
+        Some(units) => Units::ALL.iter().find(|(_, u)| *u == units).map_or("mm", |(name, _)| *name),
+        None => studio.t("units-guess"),
+    };
+    let label = ui.label(studio.t("units"));
+    let combo = ComboBox::from_id_salt("units").selected_text(name(placement.units)).show_ui(ui, |ui| {
+        ui.selectable_value(&mut placement.units, None, name(None));
+        for (word, units) in Units::ALL {
+            ui.selectable_value(&mut placement.units, Some(units), word);
+        }
+    });
+    combo.response.labelled_by(label.id);
+}
+
+fn number(ui: &mut Ui, name: &str, value: &mut f64, range: std::ops::RangeInclusive<f64>, speed: f64, unit: &str) {
+    let label = ui.label(name);
+    ui.add(DragValue::new(value).range(range).speed(speed).suffix(unit)).labelled_by(label.id);
+    ui.end_row();
+}

@@ -1,0 +1,93 @@
+//! Curves: figures of every layer, beads that were measured, the joints of the robot.
+
+use crate::app::Studio;
+use crate::jobs;
+use beadwright::bead::library::BeadLibrary;
+use beadwright::robot::{Reach, cell};
+use eframe::egui::{ComboBox, Ui};
+use egui_plot::{Legend, Line, Plot, PlotPoints};
+
+/// Points of a curve that are drawn.
+const POINTS: usize = 2000;
+
+/// Height of a plot.
+const HEIGHT: f32 = 140.0;
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    let x = studio.t("axis-layer");
+    let judged = |value: fn(&beadwright::deposit::Figures) -> f64| -> Vec<[f64; 2]> {
+        let figures = studio.plan.judgements.iter().enumerate();
+        figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
+    };
+    curve(ui, studio.t("plot-void"), x, judged(|f| f.void_percent()));
+    curve(ui, studio.t("plot-overfill"), x, judged(|f| f.overfill_percent()));
+    let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
+        (0..studio.plan.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
+    };
+    curve(ui, studio.t("plot-starts"), x, planned(&|i| studio.plan.layers[i].passes.len() as f64));
+    let seconds = |i: usize| studio.plan.layers[i].passes.iter().map(|pass| pass.seconds()).sum();
+    curve(ui, studio.t("plot-time"), x, planned(&seconds));
+    ui.separator();
+    joints(studio, ui);
+}
+
+fn curve(ui: &mut Ui, title: &'static str, x: &'static str, points: Vec<[f64; 2]>) {
+    ui.label(title);
+    let step = points.len().div_ceil(POINTS).max(1);
+    let points: PlotPoints<'_> = points.into_iter().step_by(step).collect();
+    Plot::new(title).height(HEIGHT).x_axis_label(x).include_y(0.0).allow_scroll(false).show(ui, |plot| {
+        plot.line(Line::new(title, points));
+    });
+}
+
+fn joints(studio: &mut Studio, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        let label = ui.label(studio.t("cell"));
+        let now = studio.view.cell.clone();
+        let combo = ComboBox::from_id_salt("cell").selected_text(now).show_ui(ui, |ui| {
+            for (name, _) in cell::BUILT_IN {
+                ui.selectable_value(&mut studio.view.cell, name.to_owned(), name);
+            }
+        });
+        combo.response.labelled_by(label.id);
+    });
+    let ready = studio.plan.summary.is_some() && studio.reach_job.is_none();
+    if ui.add_enabled(ready, eframe::egui::Button::new(studio.t("reach-run"))).clicked()
+        && let Some(profile) = studio.plan.profile.clone()
+    {
+        let layers = studio.plan.layers.clone();
+        studio.reach_job = Some(jobs::reach(&studio.ctx, studio.view.cell.clone(), layers, profile));
+    }
+    if studio.reach_job.is_some() {
+        ui.spinner();
+    }
+    let Some(reach) = &studio.reach else { return };
+    match reach.least_margin() {
+        Some(margin) => ui.label(format!("{}: {margin:.1}°", studio.t("reach-margin"))),
+        None => ui.label("–"),
+    };
+    for finding in &reach.findings {
+        ui.colored_label(ui.visuals().warn_fg_color, finding.sentence());
+    }
+    ui.label(studio.t("plot-joints"));
+    let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(studio.t("axis-time"));
+    plot.allow_scroll(false).show(ui, |plot| {
+        for joint in 0..6 {
+            plot.line(Line::new(format!("J{}", joint + 1), joint_curve(reach, joint)));
+        }
+    });
+}
+
+fn joint_curve(reach: &Reach, joint: usize) -> PlotPoints<'static> {
+    let step = reach.poses.len().div_ceil(POINTS).max(1);
+    let mut seconds = 0.0;
+    let timed = reach.poses.iter().map(|(stop, pose)| {
+        seconds += stop.seconds;
+        (seconds, pose)
+    });
+    let points = timed.filter_map(|(seconds, pose)| Some([seconds, pose.as_ref()?.joints[joint]]));
+    points.step_by(step).collect::<Vec<_>>().into()
+}
+
+#[allow(dead_code)]
+fn unused(_: &BeadLibrary) {}

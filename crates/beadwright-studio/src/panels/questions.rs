@@ -1,0 +1,85 @@
+//! Questions that must be answered before work goes on, and the list of keys.
+
+use crate::actions::ENTRIES;
+use crate::app::Studio;
+use crate::planner::Failure;
+use beadwright::model::Units;
+use eframe::egui::{Align2, DragValue, Grid, Ui, Window, vec2};
+
+pub(super) fn show(studio: &mut Studio, ui: &Ui) {
+    lost(studio, ui);
+    match studio.plan.failure.clone() {
+        Some(Failure::Units(text)) => units(studio, ui, &text),
+        Some(Failure::Height(text)) => height(studio, ui, &text),
+        _ => {}
+    }
+    keys(studio, ui);
+}
+
+fn window<'a>(title: &'a str) -> Window<'a> {
+    Window::new(title).collapsible(false).resizable(false).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+}
+
+fn lost(studio: &mut Studio, ui: &Ui) {
+    let Some(project) = studio.lost.clone() else { return };
+    window(studio.t("lost-title")).show(ui.ctx(), |ui| {
+        ui.label(studio.t("lost-text"));
+        ui.label(project.source.as_ref().map(|source| source.label()).unwrap_or_default());
+        ui.horizontal(|ui| {
+            if ui.button(studio.t("bring-back")).clicked() {
+                studio.lost = None;
+                studio.begin(project);
+            }
+            if ui.button(studio.t("let-go")).clicked() {
+                studio.lost = None;
+                studio.store.forget_project();
+            }
+        });
+    });
+}
+
+fn units(studio: &mut Studio, ui: &Ui, text: &str) {
+    window(studio.t("units-title")).show(ui.ctx(), |ui| {
+        // The command's options stand behind the first sentences; here the buttons do.
+        ui.label(text.split(" Say which").next().unwrap_or(text));
+        ui.horizontal(|ui| {
+            for (name, units) in Units::ALL {
+                if ui.button(name).clicked() {
+                    studio.change("placement", |project| project.placement.units = Some(units));
+                }
+            }
+        });
+    });
+}
+
+fn height(studio: &mut Studio, ui: &Ui, text: &str) {
+    const USUAL: f64 = 50.0;
+    window(studio.t("height-title")).show(ui.ctx(), |ui| {
+        ui.label(text.split(';').next().unwrap_or(text));
+        let mut height = studio.project().height.unwrap_or(USUAL);
+        ui.horizontal(|ui| {
+            let label = ui.label(studio.t("height"));
+            let id = ui.make_persistent_id("height");
+            height = ui.data_mut(|data| *data.get_temp_mut_or(id, height));
+            ui.add(DragValue::new(&mut height).range(0.1..=20_000.0).suffix(" mm")).labelled_by(label.id);
+            ui.data_mut(|data| data.insert_temp(id, height));
+            if ui.button(studio.t("take")).clicked() {
+                studio.change("height", |project| project.height = Some(height));
+            }
+        });
+    });
+}
+
+fn keys(studio: &mut Studio, ui: &Ui) {
+    let mut open = studio.view.keys;
+    Window::new(studio.t("keys")).open(&mut open).show(ui.ctx(), |ui| {
+        Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+            for entry in &ENTRIES {
+                ui.label(studio.t(entry.text));
+                ui.monospace(entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default());
+                ui.end_row();
+            }
+        });
+    });
+    studio.view.keys = open;
+}

@@ -1,0 +1,71 @@
+//! Totals of the plan, and the values of the chosen bead.
+
+use crate::app::Studio;
+use crate::state::PlanState;
+use beadwright::deposit::Figures;
+use beadwright::metrics::Metrics;
+use beadwright::report::rows;
+use eframe::egui::{Grid, Ui};
+
+pub(super) fn show(studio: &Studio, ui: &mut Ui) {
+    if let Some(part) = &studio.plan.part {
+        let (low, high) = part.bounds();
+        let size = high - low;
+        ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", studio.t("size"), size.x, size.y, size.z));
+        ui.separator();
+    }
+    let rows = rows_of(&studio.plan);
+    Grid::new("totals").num_columns(2).striped(true).show(ui, |ui| {
+        for (name, value) in &rows {
+            ui.label(name_of(studio, name));
+            ui.label(value);
+            ui.end_row();
+        }
+    });
+    ui.separator();
+    chosen(studio, ui);
+}
+
+/// The rows that are known of a plan.
+pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
+    let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
+    let figures: Option<&Figures> = plan.total.as_ref();
+    let totals = metrics.map(rows::totals).into_iter().flatten();
+    totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
+}
+
+/// A row's name in the language of the window.
+pub(super) fn name_of(studio: &Studio, name: &'static str) -> &'static str {
+    studio.language().find(&format!("total {name}")).unwrap_or(name)
+}
+
+fn chosen(studio: &Studio, ui: &mut Ui) {
+    ui.strong(studio.t("chosen"));
+    let Some((layer, pass, piece)) = studio.view.chosen else {
+        ui.weak(studio.t("nothing-chosen"));
+        return;
+    };
+    let found = studio.plan.layer(layer).and_then(|layer| layer.passes.get(pass));
+    let (Some(found), Some(profile)) = (found, &studio.plan.profile) else { return };
+    let Some(segment) = found.segments().nth(piece) else { return };
+    let wire = profile.process.wire_feed_speed / 60.0 * found.seconds();
+    let heat = profile.heat_input().map(|heat| heat * profile.process.deposition_speed / segment.speed);
+    let values = [
+        ("layer", format!("{}", layer + 1)),
+        ("pass", format!("{}", pass + 1)),
+        ("kind", found.kind.name().to_owned()),
+        ("length", format!("{:.2} mm", found.length())),
+        ("speed", format!("{:.2} mm/s", segment.speed)),
+        ("width", format!("{:.2} mm", segment.width)),
+        ("wire", format!("{wire:.2} m")),
+        ("duration", format!("{:.1} s", found.seconds())),
+    ];
+    Grid::new("chosen").num_columns(2).striped(true).show(ui, |ui| {
+        let heat = heat.map(|heat| ("heat-input", format!("{heat:.0} J/mm")));
+        for (key, value) in values.into_iter().chain(heat) {
+            ui.label(studio.t(key));
+            ui.label(value);
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,284 @@
+//! Planning in the background: a request goes in, events come out, and a newer request stops the one before.
+//!
+//! A thread of its own reads the model, plans the layer in view, then all layers, judges them and runs the checks. What
+//! it has read stays with it, so that a change of the profile does not read the model again.
+
+use crate::project::{Project, Source};
+use crate::view3d::beads::LayerBeads;
+use beadwright::check::{self, Finding};
+use beadwright::deposit::{Figures, Judge, Judgement};
+use beadwright::example;
+use beadwright::model::{Model, Part, PartError, Placement};
+use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
+use beadwright::profile::Profile;
+use beadwright::task::{Cancelled, Stage, Task};
+use std::convert::Infallible;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::SystemTime;
+
+/// Pixels along the longer side of the height fields.
+const MAP_PIXELS: usize = 480;
+
+/// What the planner tells; a number says which request it belongs to.
+pub enum Event {
+    /// How far a stage has come, 0 to 1.
+    Progress(Stage, f64),
+    /// The model is read and placed; the profile it is planned with.
+    Part(Arc<Part>, Arc<Profile>),
+    /// The layer in view, before the others.
+    Preview(Arc<Layer>, Arc<LayerBeads>),
+    /// The layers follow.
+    Begin(Header),
+    /// The next layer.
+    Layer(Arc<Layer>, Arc<LayerBeads>),
+    /// All layers are planned.
+    Planned(Summary),
+    /// What the deposit model says of a layer.
+    Judged(usize, Arc<Judgement>),
+    /// What it says of all, and what the checks found.
+    Checked(Figures, Vec<Finding>),
+    /// Nothing more comes.
+    Failed(Failure),
+}
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// The unit of the model must be told: a sentence that says why.
+    Units(String),
+    /// The height of a wall must be told.
+    Height(String),
+    /// Anything else, as a sentence.
+    Sentence(String),
+}
+
+struct Request {
+    number: u64,
+    project: Project,
+    layer: usize,
+    task: Task,
+}
+
+/// The thread, and what is to be heard of it.
+pub struct Planner {
+    requests: Sender<Request>,
+    events: Receiver<(u64, Event)>,
+    number: u64,
+    task: Task,
+    notify: Arc<dyn Fn() + Send + Sync>,
+    sender: Sender<(u64, Event)>,
+}
+
+impl Planner {
+    /// A planner that calls `notify` when there is something to hear.
+    pub fn new(notify: impl Fn() + Send + Sync + 'static) -> Self {
+        let (requests, inbox) = channel::<Request>();
+        let (sender, events) = channel();
+        let notify: Arc<dyn Fn() + Send + Sync> = Arc::new(notify);
+        let (outbox, bell) = (sender.clone(), notify.clone());
+        std::thread::spawn(move || serve(&inbox, &outbox, &bell));
+        Self { requests, events, number: 0, task: Task::new(), notify, sender }
+    }
+
+    /// Plans a project, the given layer (from 0) first. What is under way stops.
+    pub fn plan(&mut self, project: &Project, layer: usize) {
+        self.task.cancel();
+        self.number += 1;
+        let (number, sender, bell) = (self.number, self.sender.clone(), self.notify.clone());
+        self.task = Task::with_progress(move |stage, fraction| {
+            if sender.send((number, Event::Progress(stage, fraction))).is_ok() {
+                bell();
+            }
+        });
+        let request = Request { number, project: project.clone(), layer, task: self.task.clone() };
+        // The thread lives as long as this sender.
+        let _ = self.requests.send(request);
+    }
+
+    /// Stops what is under way.
+    pub fn cancel(&mut self) {
+        self.task.cancel();
+        self.number += 1;
+    }
+
+    /// What has happened of the last request.
+    pub fn events(&mut self) -> Vec<Event> {
+        let number = self.number;
+        self.events.try_iter().filter(|(of, _)| *of == number).map(|(_, event)| event).collect()
+    }
+}
+
+impl Drop for Planner {
+    fn drop(&mut self) {
+        self.task.cancel();
+    }
+}
+
+/// What has been read and placed, so that it need not be done again.
+#[derive(Default)]
+struct Kept {
+    model: Option<(Source, Option<SystemTime>, Model)>,
+    part: Option<(PartKey, Arc<Part>)>,
+}
+
+/// What a placed part depends on, beside its model; the bead's width plays a part in the guess of units.
+#[derive(Clone, Copy, PartialEq)]
+struct PartKey {
+    placement: Placement,
+    height: Option<f64>,
+    bead_width: f64,
+}
+
+fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Arc<dyn Fn() + Send + Sync>) {
+    let mut kept = Kept::default();
+    while let Ok(mut request) = inbox.recv() {
+        // Only the newest counts.
+        while let Ok(newer) = inbox.try_recv() {
+            request = newer;
+        }
+        let number = request.number;
+        let send = |event: Event| {
+            if outbox.send((number, event)).is_ok() {
+                bell();
+            }
+        };
+        match work(&request, &mut kept, &send) {
+            Ok(()) | Err(Stop::Cancelled) => {}
+            Err(Stop::Failed(failure)) => send(Event::Failed(failure)),
+        }
+    }
+}
+
+enum Stop {
+    Cancelled,
+    Failed(Failure),
+}
+
+impl From<Cancelled> for Stop {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl From<PlanError<Infallible>> for Stop {
+    fn from(error: PlanError<Infallible>) -> Self {
+        match error {
+            PlanError::Cancelled(_) => Self::Cancelled,
+            other => Self::Failed(Failure::Sentence(other.to_string())),
+        }
+    }
+}
+
+fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Result<(), Stop> {
+    let task = &request.task;
+    let sentence = |text: String| Stop::Failed(Failure::Sentence(text));
+    let profile = Profile::parse(&request.project.profile).map_err(|error| sentence(error.to_string()))?;
+    let part = kept.part(&request.project, profile.bead.width, task)?;
+    let profile = Arc::new(plan::profile_for(&part, &profile));
+    send(Event::Part(part.clone(), profile.clone()));
+    if let Some(layer) = plan::preview(&part, &profile, request.layer, task)? {
+        let beads = Arc::new(beads(&layer, &profile, None));
+        send(Event::Preview(Arc::new(layer), beads));
+    }
+    let mut layers = Layers { send, profile: &profile, layers: Vec::new(), torch: None };
+    let summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
+    let layers = layers.layers;
+    send(Event::Planned(summary));
+    let settings = plan::deposit_settings_over(&profile, part.bounds());
+    let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
+    let each = |index: usize, judgement: Judgement| send(Event::Judged(index, Arc::new(judgement)));
+    let judged = check::judge(&layers, judge, task, each)?;
+    let total = judged.total;
+    send(Event::Checked(total, check::check_judged(&layers, &profile, settings.nominal.rise, judged)));
+    Ok(())
+}
+
+fn beads(layer: &Layer, profile: &Profile, from: Option<glam::DVec3>) -> LayerBeads {
+    LayerBeads::of(layer, profile.travel.speed, profile.travel.clearance, from)
+}
+
+struct Layers<'a> {
+    send: &'a (dyn Fn(Event) + Sync),
+    profile: &'a Profile,
+    layers: Vec<Arc<Layer>>,
+    torch: Option<glam::DVec3>,
+}
+
+impl Sink for Layers<'_> {
+    type Error = Infallible;
+
+    fn begin(&mut self, header: &Header) -> Result<(), Infallible> {
+        (self.send)(Event::Begin(header.clone()));
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        let beads = Arc::new(beads(&layer, self.profile, self.torch));
+        self.torch = beads.end().or(self.torch);
+        let layer = Arc::new(layer);
+        self.layers.push(layer.clone());
+        (self.send)(Event::Layer(layer, beads));
+        Ok(())
+    }
+}
+
+impl Kept {
+    fn part(&mut self, project: &Project, bead_width: f64, task: &Task) -> Result<Arc<Part>, Stop> {
+        let Some(source) = &project.source else {
+            return Err(Stop::Failed(Failure::Sentence("no model is open.".to_owned())));
+        };
+        let changed = modified(source);
+        let fresh = self.model.as_ref().is_some_and(|(of, at, _)| of == source && *at == changed);
+        if !fresh {
+            self.part = None;
+            self.model = Some((source.clone(), changed, read(source, task)?));
+        }
+        let key = PartKey { placement: project.placement, height: project.height, bead_width };
+        if let Some((_, part)) = self.part.as_ref().filter(|(of, _)| *of == key) {
+            return Ok(part.clone());
+        }
+        let Some((_, _, model)) = &self.model else { return Err(Stop::Cancelled) };
+        let part = model.clone().place(&project.placement, project.height, bead_width);
+        let part = Arc::new(part.map_err(|error| refused(source, &error))?);
+        self.part = Some((key, part.clone()));
+        Ok(part)
+    }
+}
+
+fn modified(source: &Source) -> Option<SystemTime> {
+    match source {
+        Source::File(path) => path.metadata().and_then(|m| m.modified()).ok(),
+        Source::Example(_) => None,
+    }
+}
+
+fn read(source: &Source, task: &Task) -> Result<Model, Stop> {
+    let bytes = match source {
+        Source::File(path) => bytes(path).map_err(|text| Stop::Failed(Failure::Sentence(text)))?,
+        Source::Example(name) => {
+            let found = example::find(name);
+            let found = found.ok_or_else(|| Stop::Failed(Failure::Sentence(format!("there is no example {name}."))))?;
+            found.stl()
+        }
+    };
+    Model::read(&bytes, task).map_err(|error| refused(source, &error))
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    if path.is_dir() {
+        return Err(format!("{}: this is a folder, not a model file.", path.display()));
+    }
+    std::fs::read(path).map_err(|error| format!("{}: {error}.", path.display()))
+}
+
+fn refused(source: &Source, error: &PartError) -> Stop {
+    let text = format!("{}: {error}", source.label());
+    match error {
+        PartError::Import(beadwright::model::ImportError::Cancelled(_)) => Stop::Cancelled,
+        PartError::Units(_) => Stop::Failed(Failure::Units(text)),
+        PartError::NoHeight => Stop::Failed(Failure::Height(text)),
+        _ => Stop::Failed(Failure::Sentence(text)),
+    }
+}

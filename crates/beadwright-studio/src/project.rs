@@ -1,0 +1,138 @@
+//! What a person works on: a model, where it stands, and a profile. A project file (`.bwp`, TOML) holds it whole.
+
+use beadwright::model::Placement;
+use beadwright::profile::{Profile, ProfileError};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The profile that a new project has.
+pub const FIRST_PROFILE: &str = "cmt-al2319-kuka";
+
+/// Where the model comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Source {
+    /// A file.
+    File(PathBuf),
+    /// One of the built-in example parts, by name.
+    Example(String),
+}
+
+impl Source {
+    /// The name of the part, for files and headings.
+    pub fn part(&self) -> String {
+        match self {
+            Self::File(path) => path.file_stem().map_or("part".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+            Self::Example(name) => name.clone(),
+        }
+    }
+
+    /// What a person sees of it: a file name, or the name of the example.
+    pub fn label(&self) -> String {
+        match self {
+            Self::File(path) => path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            Self::Example(name) => name.clone(),
+        }
+    }
+}
+
+/// A model, its placement and its profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Project {
+    /// The model; none before the first is opened.
+    pub source: Option<Source>,
+    /// How the model is placed.
+    pub placement: Placement,
+    /// Height of a wall that is given by curves of one height, mm.
+    pub height: Option<f64>,
+    /// The profile, as the TOML text that people edit.
+    pub profile: String,
+}
+
+impl Default for Project {
+    fn default() -> Self {
+        let profile = Profile::built_in_text(FIRST_PROFILE).unwrap_or_default().to_owned();
+        Self { source: None, placement: Placement::default(), height: None, profile }
+    }
+}
+
+/// Why a project file was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ProjectError {
+    /// Not the text of a project.
+    #[error("this is not a Beadwright project: {0}")]
+    Text(String),
+    /// Written by a later version.
+    #[error("the project has version {0}; this program reads version {VERSION}. Take a newer Beadwright.")]
+    Version(u32),
+    /// Both kinds of model, or a model nobody knows.
+    #[error("the project names {0}")]
+    Model(String),
+    /// Its profile cannot be.
+    #[error("the project's profile: {0}")]
+    Profile(#[from] ProfileError),
+}
+
+const VERSION: u32 = 1;
+
+/// The file, key for key.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    version: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model: Option<PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    example: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    height: Option<f64>,
+    profile: String,
+    #[serde(default)]
+    placement: Placement,
+}
+
+impl Project {
+    /// The text of the project file. A model that lies in `folder`, or below it, is named relative to it, so that the folder
+    /// can be moved.
+    ///
+    /// # Errors
+    /// What the writer of TOML says, as a sentence.
+    pub fn write(&self, folder: Option<&Path>) -> Result<String, String> {
+        let relative = |path: &PathBuf| folder.and_then(|f| path.strip_prefix(f).ok()).unwrap_or(path).to_owned();
+        let (model, example) = match &self.source {
+            Some(Source::File(path)) => (Some(relative(path)), None),
+            Some(Source::Example(name)) => (None, Some(name.clone())),
+            None => (None, None),
+        };
+        let (height, profile, placement) = (self.height, self.profile.clone(), self.placement);
+        toml::to_string_pretty(&File { version: VERSION, model, example, height, profile, placement })
+            .map_err(|error| format!("the project cannot be written: {error}"))
+    }
+
+    /// Reads the text of a project file that lies in `folder`.
+    ///
+    /// # Errors
+    /// [`ProjectError`].
+    pub fn read(text: &str, folder: Option<&Path>) -> Result<Self, ProjectError> {
+        let file: File = toml::from_str(text).map_err(|error| ProjectError::Text(error.message().to_owned()))?;
+        if file.version != VERSION {
+            return Err(ProjectError::Version(file.version));
+        }
+        Profile::parse(&file.profile)?;
+        let absolute = |path: PathBuf| folder.map_or(path.clone(), |folder| folder.join(&path));
+        let source = match (file.model, file.example) {
+            (Some(_), Some(_)) => return Err(ProjectError::Model("both a model and an example.".to_owned())),
+            (Some(path), None) => Some(Source::File(absolute(path))),
+            (None, Some(name)) if beadwright::example::find(&name).is_none() => {
+                return Err(ProjectError::Model(format!("the example \"{name}\", which does not exist.")));
+            }
+            (None, Some(name)) => Some(Source::Example(name)),
+            (None, None) => None,
+        };
+        Ok(Self { source, placement: file.placement, height: file.height, profile: file.profile })
+    }
+
+    /// The name of the part.
+    pub fn part(&self) -> String {
+        self.source.as_ref().map_or_else(|| "part".to_owned(), Source::part)
+    }
+}

@@ -1,0 +1,104 @@
+//! What the program remembers of a person: language, theme, recent files. And the project, in case of a crash.
+
+use crate::project::Project;
+use crate::text::Language;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Recent files that are remembered.
+const RECENT: usize = 10;
+
+/// What is remembered between two runs.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Language of the window.
+    pub language: Language,
+    /// Whether the window is light; dark otherwise.
+    pub light: bool,
+    /// Files that were opened, the newest first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Settings {
+    /// Puts a file first among the recent ones.
+    pub fn remember(&mut self, path: &Path) {
+        self.recent.retain(|known| known != path);
+        self.recent.insert(0, path.to_owned());
+        self.recent.truncate(RECENT);
+    }
+}
+
+/// The folder that holds them; none for a run that leaves no trace.
+#[derive(Debug, Clone, Default)]
+pub struct Store(Option<PathBuf>);
+
+impl Store {
+    /// The place where this system keeps such things.
+    pub fn of_user() -> Self {
+        Self(dirs::data_dir().map(|folder| folder.join("beadwright-studio")))
+    }
+
+    /// In a folder of choice.
+    pub fn at(folder: PathBuf) -> Self {
+        Self(Some(folder))
+    }
+
+    /// The settings; those of a new user where there are none, or where they cannot be read.
+    pub fn settings(&self) -> Settings {
+        let text = self.file("settings.toml").and_then(|path| std::fs::read_to_string(path).ok());
+        text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
+    }
+
+    /// Keeps the settings. What cannot be kept is lost in silence: no work is.
+    pub fn keep_settings(&self, settings: &Settings) {
+        if let Ok(text) = toml::to_string_pretty(settings) {
+            let _ = self.keep("settings.toml", &text);
+        }
+    }
+
+    /// Keeps the project, so that it comes back after a crash.
+    ///
+    /// # Errors
+    /// A sentence for the window.
+    pub fn keep_project(&self, project: &Project) -> Result<(), String> {
+        let text = project.write(None)?;
+        self.keep("autosave.bwp", &text).map_err(|error| format!("The project cannot be kept aside: {error}."))
+    }
+
+    /// The project of a run that did not end well.
+    pub fn lost_project(&self) -> Option<Project> {
+        let text = std::fs::read_to_string(self.file("autosave.bwp")?).ok()?;
+        Project::read(&text, None).ok().filter(|project| project.source.is_some())
+    }
+
+    /// The run ends well: nothing is to be brought back.
+    pub fn forget_project(&self) {
+        if let Some(path) = self.file("autosave.bwp") {
+            let _ = std::fs::remove_file(path);
+        }
+    }
+
+    fn file(&self, name: &str) -> Option<PathBuf> {
+        self.0.as_ref().map(|folder| folder.join(name))
+    }
+
+    fn keep(&self, name: &str, text: &str) -> std::io::Result<()> {
+        let (Some(folder), Some(path)) = (&self.0, self.file(name)) else { return Ok(()) };
+        std::fs::create_dir_all(folder)?;
+        write_whole(&path, text.as_bytes())
+    }
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// What the system says.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut aside = path.as_os_str().to_owned();
+    aside.push(".part");
+    let aside = PathBuf::from(aside);
+    std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path)).inspect_err(|_| {
+        let _ = std::fs::remove_file(&aside);
+    })
+}

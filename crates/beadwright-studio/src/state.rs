@@ -1,0 +1,130 @@
+//! What is known of a plan so far: events of the planner, put together.
+
+use crate::planner::{Event, Failure};
+use crate::view3d::Scene;
+use beadwright::check::Finding;
+use beadwright::deposit::{Figures, Judgement};
+use beadwright::model::Part;
+use beadwright::plan::{Header, Layer, Summary};
+use beadwright::profile::Profile;
+use beadwright::task::Stage;
+use std::sync::Arc;
+
+/// A plan, as far as it has come.
+#[derive(Default)]
+pub struct PlanState {
+    /// The placed model.
+    pub part: Option<Arc<Part>>,
+    /// The profile of this plan.
+    pub profile: Option<Arc<Profile>>,
+    /// What is the same for all layers, once they follow.
+    pub header: Option<Header>,
+    /// The layers planned so far.
+    pub layers: Vec<Arc<Layer>>,
+    /// The layer in view, until the others have come as far.
+    pub preview: Option<Arc<Layer>>,
+    /// What the deposit model says of each layer.
+    pub judgements: Vec<Arc<Judgement>>,
+    /// What it says of all.
+    pub total: Option<Figures>,
+    /// Totals and warnings, once all layers are there.
+    pub summary: Option<Summary>,
+    /// What the checks found, at the very end.
+    pub findings: Option<Vec<Finding>>,
+    /// What is under way.
+    pub progress: Option<(Stage, f64)>,
+    /// Why there is no plan.
+    pub failure: Option<Failure>,
+    /// What the 3-D view shows.
+    pub scene: Scene,
+}
+
+impl PlanState {
+    /// A new request is under way; what there is stays in view until something better comes.
+    pub fn restart(&mut self) {
+        self.progress = Some((Stage::Import, 0.0));
+        self.failure = None;
+        self.findings = None;
+    }
+
+    /// Takes an event in.
+    pub fn take(&mut self, event: Event) {
+        match event {
+            Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
+            Event::Part(part, profile) => self.take_part(part, profile),
+            Event::Preview(layer, beads) => {
+                self.clear_layers();
+                self.scene.set_layer(layer.index, beads);
+                self.preview = Some(layer);
+            }
+            Event::Begin(header) => {
+                self.clear_plan();
+                self.header = Some(header);
+            }
+            Event::Layer(layer, beads) => {
+                self.scene.set_layer(layer.index, beads);
+                self.layers.push(layer);
+            }
+            Event::Planned(summary) => self.summary = Some(summary),
+            Event::Judged(_, judgement) => self.judgements.push(judgement),
+            Event::Checked(total, findings) => {
+                self.total = Some(total);
+                self.findings = Some(findings);
+                self.progress = None;
+            }
+            Event::Failed(failure) => {
+                self.progress = None;
+                self.failure = Some(failure);
+            }
+        }
+    }
+
+    fn take_part(&mut self, part: Arc<Part>, profile: Arc<Profile>) {
+        let same = self.part.as_ref().is_some_and(|old| Arc::ptr_eq(old, &part));
+        if !same {
+            self.scene.set_mesh(match &*part {
+                Part::Mesh(import) => Some(Arc::new(import.mesh.clone())),
+                Part::Curves { .. } => None,
+            });
+            self.clear_layers();
+        }
+        self.part = Some(part);
+        self.profile = Some(profile);
+    }
+
+    fn clear_layers(&mut self) {
+        self.scene.clear_layers();
+        self.clear_plan();
+    }
+
+    /// Forgets the plan; the preview stays in view.
+    fn clear_plan(&mut self) {
+        self.header = None;
+        self.layers.clear();
+        self.judgements.clear();
+        self.total = None;
+        self.summary = None;
+        self.findings = None;
+    }
+
+    /// Number of layers, as far as known.
+    pub fn layer_count(&self) -> usize {
+        let preview = self.preview.as_ref().map_or(0, |layer| layer.index + 1);
+        self.header.as_ref().map_or(preview, |header| header.layers).max(self.layers.len())
+    }
+
+    /// A layer, if it is planned, or the preview of it.
+    pub fn layer(&self, index: usize) -> Option<&Arc<Layer>> {
+        self.layers.get(index).or_else(|| self.preview.as_ref().filter(|layer| layer.index == index))
+    }
+
+    /// Whether everything is done.
+    pub fn is_complete(&self) -> bool {
+        self.findings.is_some()
+    }
+
+    /// Whether something is under way.
+    pub fn is_busy(&self) -> bool {
+        self.progress.is_some()
+    }
+}

@@ -1,0 +1,38 @@
+//! Every word of the window, in English and Chinese, from one table (`texts.toml`).
+
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::OnceLock;
+
+/// A language of the window. What the library tells (errors, findings, notes) is English in both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Language {
+    /// English.
+    #[default]
+    #[serde(rename = "en")]
+    English,
+    /// Chinese.
+    #[serde(rename = "zh")]
+    Chinese,
+}
+
+impl Language {
+    /// All of them with their own names.
+    pub const ALL: [(Self, &'static str); 2] = [(Self::English, "English"), (Self::Chinese, "中文")];
+
+    /// The text of a key; the key itself where the table lacks it (a test sees to it that it never does).
+    pub fn text(self, key: &'static str) -> &'static str {
+        self.find(key).unwrap_or(key)
+    }
+
+    /// The text of a key, if the table has it.
+    pub fn find(self, key: &str) -> Option<&'static str> {
+        table().get(key).map(|texts| texts[self as usize].as_str())
+    }
+}
+
+/// The table: key, English, Chinese.
+pub fn table() -> &'static HashMap<String, [String; 2]> {
+    static TABLE: OnceLock<HashMap<String, [String; 2]>> = OnceLock::new();
+    TABLE.get_or_init(|| toml::from_str(include_str!("texts.toml")).unwrap_or_default())
+}

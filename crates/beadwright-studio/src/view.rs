@@ -1,0 +1,124 @@
+//! What is shown, and how: nothing of it belongs to the project.
+
+use crate::view2d::Show;
+use crate::view3d::Colour;
+
+/// Which view fills the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// Part and beads.
+    #[default]
+    Solid,
+    /// One layer.
+    Layer,
+    /// One layer of two strategies.
+    Compare,
+}
+
+/// Which side panel is open on the right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Side {
+    /// Totals and the chosen bead.
+    #[default]
+    Totals,
+    /// What the checks found.
+    Findings,
+    /// Curves.
+    Plots,
+    /// What can be written.
+    Export,
+}
+
+/// The state of the views.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewState {
+    /// Which view fills the window.
+    pub mode: Mode,
+    /// The open panel.
+    pub side: Side,
+    /// Lowest layer shown, from 0.
+    pub first: usize,
+    /// Highest layer shown, the one in view, from 0.
+    pub last: usize,
+    /// How much of the highest layer is shown, 0 to 1 of its pieces.
+    pub progress: f64,
+    /// Whether the torch runs.
+    pub playing: bool,
+    /// How much faster than the robot.
+    pub rate: f64,
+    /// Where the torch is, s from the start of the program, while it plays.
+    pub seconds: f64,
+    /// What colours tell.
+    pub colour: Colour,
+    /// Whether the part is shown.
+    pub mesh: bool,
+    /// What else is shown.
+    pub show: Show,
+    /// The chosen bead: layer, pass, piece.
+    pub chosen: Option<(usize, usize, usize)>,
+    /// The dialect to be written.
+    pub dialect: String,
+    /// The robot cell to be walked.
+    pub cell: String,
+    /// What is searched among the parameters.
+    pub search: String,
+    /// Whether the keys are listed.
+    pub keys: bool,
+    /// Whether the highest layer follows the top as the plan grows.
+    follows: bool,
+}
+
+impl Default for ViewState {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Solid,
+            side: Side::Totals,
+            first: 0,
+            last: 0,
+            progress: 1.0,
+            playing: false,
+            rate: 20.0,
+            seconds: 0.0,
+            colour: Colour::Kind,
+            mesh: true,
+            show: Show::default(),
+            chosen: None,
+            dialect: "krl".to_owned(),
+            cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
+            search: String::new(),
+            keys: false,
+            follows: true,
+        }
+    }
+}
+
+impl ViewState {
+    /// Everything of a new part is shown.
+    pub fn reset(&mut self) {
+        *self = Self { follows: true, first: 0, last: 0, progress: 1.0, chosen: None, ..self.clone() };
+    }
+
+    /// Keeps the range within the layers there are.
+    pub fn follow(&mut self, layers: usize) {
+        if layers == 0 {
+            return;
+        }
+        if self.follows || self.last >= layers {
+            self.last = layers - 1;
+        }
+        self.first = self.first.min(self.last);
+    }
+
+    /// Looks at a layer from now on.
+    pub fn look_at(&mut self, layer: usize) {
+        self.last = layer;
+        self.first = self.first.min(layer);
+        self.progress = 1.0;
+        self.follows = false;
+    }
+
+    /// One layer up or down.
+    pub fn step_layer(&mut self, by: isize, layers: usize) {
+        self.look_at(self.last.saturating_add_signed(by).min(layers.saturating_sub(1)));
+    }
+}

@@ -1,0 +1,30 @@
+//! Totals as people read them, row by row: name and value with its unit.
+
+use crate::deposit::Figures;
+use crate::metrics::Metrics;
+use crate::number::hours;
+
+/// The totals as people read them.
+pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
+    let mut rows = vec![
+        ("layers", format!("{}", m.layers)),
+        ("passes (arc starts)", format!("{}", m.passes)),
+        ("deposited length", format!("{:.2} m", m.deposited_length_mm / 1000.0)),
+        ("travel length", format!("{:.2} m", m.travel_length_mm / 1000.0)),
+        ("arc time", hours(m.arc_time_s)),
+        ("total time", hours(m.total_time_s)),
+        ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
+        ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
+        ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
+    ];
+    rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
+    rows
+}
+
+/// What the deposit model says, as people read it.
+pub fn deposit(f: &Figures) -> [(&'static str, String); 2] {
+    [
+        ("void / low area", format!("{:.2} / {:.2} %", f.void_percent(), f.low_percent())),
+        ("overfill / outside", format!("{:.2} / {:.2} %", f.overfill_percent(), f.outside_percent())),
+    ]
+}
