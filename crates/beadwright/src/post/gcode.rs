@@ -19,6 +19,7 @@ pub struct CncGcode {
     comment: String,
     gcode: Gcode,
     values: Values,
+    wire_feed_speed: f64,
     block: usize,
     /// Feed written last, mm/s.
     feed: f64,
@@ -31,7 +32,8 @@ impl CncGcode {
         let file = format!("{part}.{}", gcode.extension);
         let values = Values::new(&ascii(part), profile);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
-        Self { file, comment, gcode, values, block: 0, feed: 0.0, at: None }
+        let wire_feed_speed = profile.process.wire_feed_speed;
+        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, at: None }
     }
 
     fn begin_block(&mut self, text: &mut String) {
@@ -112,6 +114,16 @@ impl CncGcode {
                 self.blocks(text, &lines);
             }
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                let lines = self.gcode.wire_feed.clone();
+                self.blocks(text, &lines);
+            }
+            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
+                self.values.set_dwell(seconds);
+                let lines = self.gcode.dwell.clone();
+                self.blocks(text, &lines);
+            }
             Instruction::ArcOff { .. } => {
                 let lines = self.gcode.arc_off.clone();
                 self.blocks(text, &lines);

@@ -23,6 +23,7 @@ pub struct KukaKrl {
     krl: Krl,
     values: Values,
     travel_speed: f64,
+    wire_feed_speed: f64,
     digits: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
@@ -34,7 +35,8 @@ impl KukaKrl {
         let name = module_name(part);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
-        Self { name, comment, krl, values, travel_speed: profile.travel.speed, digits: 3, speed: 0.0 }
+        let (travel_speed, wire_feed_speed) = (profile.travel.speed, profile.process.wire_feed_speed);
+        Self { name, comment, krl, values, travel_speed, wire_feed_speed, digits: 3, speed: 0.0 }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -111,6 +113,13 @@ impl KukaKrl {
                     Some(circle) => self.circ(text, circle.via, to, !last),
                     None => self.lin(text, to, !last),
                 }
+            }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(text, &self.krl.wire_feed);
+            }
+            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
+                text.push_str(&format!("WAIT SEC {}\r\n", fixed(seconds, 3)));
             }
             Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
         }

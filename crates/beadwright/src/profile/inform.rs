@@ -52,6 +52,11 @@ pub struct Inform {
     pub arc_on: Vec<String>,
     /// Instructions that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
+    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
+    /// none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
     /// Instructions at the end of the main job.
     pub end: Vec<String>,
 }
@@ -89,12 +94,13 @@ impl Inform {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 6] {
         [
             ("inform.start", &self.start),
             ("inform.layer_start", &self.layer_start),
             ("inform.arc_on", &self.arc_on),
             ("inform.arc_off", &self.arc_off),
+            ("inform.wire_feed", &self.wire_feed),
             ("inform.end", &self.end),
         ]
     }

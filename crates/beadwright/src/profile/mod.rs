@@ -13,6 +13,7 @@ mod limits;
 mod marlin;
 mod rapid;
 mod read;
+mod start_stop;
 mod urscript;
 
 pub use check::CheckLimits;
@@ -25,6 +26,7 @@ pub use marlin::Marlin;
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 pub(crate) use read::{explain, line_of, line_of_key, nearest};
+pub use start_stop::StartStop;
 pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};
@@ -87,6 +89,9 @@ pub struct Profile {
     /// How paths become moves of a program; optional.
     #[serde(default)]
     pub program: Program,
+    /// How passes begin and end, and how long layers wait; optional.
+    #[serde(default)]
+    pub start_stop: StartStop,
     /// Acceleration, for machines whose time depends on it; optional.
     pub motion: Option<Motion>,
     /// KUKA KRL; needed for the post `krl`.
@@ -103,6 +108,9 @@ pub struct Profile {
     pub inform: Option<Inform>,
     /// URScript; needed for the post `urscript`.
     pub urscript: Option<Urscript>,
+    /// Whether programs only move: a way of writing them, no value of the file.
+    #[serde(skip)]
+    dry_run: bool,
 }
 
 /// The wire.
@@ -127,6 +135,10 @@ pub struct Process {
     pub wire_feed_speed: f64,
     /// Speed of the torch while the arc burns, mm/s.
     pub deposition_speed: f64,
+    /// What changes where a bead is wider or narrower than nominal, or hotter: `speed` of the torch, or `wire-feed`;
+    /// default speed.
+    #[serde(default)]
+    pub follow: Follow,
     /// Part of the wire that ends in the bead, 0 to 1.
     pub efficiency: f64,
     /// Arc current, A; optional, for the heat input.
@@ -147,6 +159,18 @@ pub struct Process {
     pub gas_postflow: f64,
     /// Contact tip to work distance, mm.
     pub ctwd: f64,
+}
+
+/// What keeps the metal of a bead in balance where it is not the nominal one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Follow {
+    /// The torch goes slower or faster; the wire comes at its nominal speed.
+    #[default]
+    Speed,
+    /// The wire comes faster or slower; the torch goes at its nominal speed.
+    WireFeed,
 }
 
 /// The single bead, a parabola.
@@ -297,6 +321,10 @@ pub struct Order {
     /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further on every layer) or `spread` (as far
     /// as can be from the seams below); default nearest.
     pub seam: Seam,
+    /// Whether passes run the other way on every second layer, so that ends come to lie over starts: closed passes turn
+    /// round, open ones begin at their left end on one layer (least x, then least y) and at their right end on the next;
+    /// default false.
+    pub alternate: bool,
 }
 
 /// Tolerances of slicing.
@@ -459,8 +487,8 @@ impl Profile {
 
     /// How the passes of a layer are put in order.
     pub fn order_settings(&self, layer: usize) -> OrderSettings {
-        let Order { method, seam } = self.order;
-        OrderSettings { method, seam, layer, bead_width: self.bead.width }
+        let Order { method, seam, alternate } = self.order;
+        OrderSettings { method, seam, alternate, layer, bead_width: self.bead.width }
     }
 
     fn hybrid_settings(&self) -> HybridSettings {
@@ -482,6 +510,26 @@ impl Profile {
         }
     }
 
+    /// The profile for programs that only move: the same ways at the same speeds, but arc, gas and wire never on. The
+    /// lines that light and end the arc are left out; `start`, `layer_start`, `header`, `end` and `footer` stay.
+    pub fn dry_run(mut self) -> Self {
+        self.dry_run = true;
+        self.name.push_str(", DRY RUN");
+        if let Some(rapid) = &mut self.rapid {
+            rapid.arc = RapidArc::Plain;
+        }
+        // The weld schedule gives no speed while nothing is welded.
+        if let Some(fanuc) = self.fanuc.as_mut().filter(|fanuc| fanuc.speed == FanucSpeed::WeldSpeed) {
+            fanuc.speed = FanucSpeed::MillimetresPerSecond;
+        }
+        self
+    }
+
+    /// Whether programs only move.
+    pub fn is_dry_run(&self) -> bool {
+        self.dry_run
+    }
+
     /// What does not fit together although every value is possible, as sentences.
     pub fn notes(&self) -> Vec<String> {
         let rise = self.bead().rise(self.stepover());
@@ -497,6 +545,7 @@ impl Profile {
                 fitting.height,
             )
         });
-        self.mass_balance().warning().into_iter().chain(rise_note).collect()
+        let ends = self.start_stop.notes(self.fill.min_pass_length);
+        self.mass_balance().warning().into_iter().chain(rise_note).chain(ends).collect()
     }
 }
