@@ -54,6 +54,8 @@ pub enum Instruction {
     Crater {
         /// How long, s.
         seconds: f64,
+        /// What the wire feed becomes meanwhile, a part of the nominal one; none where it stays as it is.
+        ratio: Option<f64>,
     },
     /// Ends the arc.
     ArcOff {
@@ -182,8 +184,9 @@ impl Programmer {
         }
         let seconds = self.torch.weld(&moves).crater;
         if seconds > 0.0 {
-            self.set_feed(self.torch.ends().crater_power, out);
-            out.push(Instruction::Crater { seconds });
+            let ratio = Some(self.torch.ends().crater_power).filter(|_| self.sets_feed);
+            self.feed = ratio;
+            out.push(Instruction::Crater { seconds, ratio });
         }
         out.push(Instruction::ArcOff { pass: number });
     }

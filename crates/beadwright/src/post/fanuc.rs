@@ -3,7 +3,7 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched by lines of their own after FINE;
 //! inside a pass moves are CNT. Lines are numbered from 1, an arc's second position stands on a line without number.
 
-use super::{Chunk, Post, Values, ascii, split, upper_name, waits};
+use super::{Chunk, Post, Values, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use crate::profile::{Fanuc, FanucSpeed, Process, Profile};
 use crate::program::{Instruction, LayerProgram};
@@ -144,12 +144,21 @@ impl FanucTp {
                 self.values.set_wire_feed(ratio, self.wire_feed_speed);
                 self.lines(program, &self.fanuc.wire_feed);
             }
-            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
-                waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(program, crater_lines(&self.fanuc.crater, &self.fanuc.wire_feed));
+                }
+                wait(program, seconds);
             }
+            Instruction::Dwell { seconds } => wait(program, seconds),
             Instruction::ArcOff { .. } => self.lines(program, &self.fanuc.arc_off),
         }
     }
+}
+
+fn wait(program: &mut Program, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
 }
 
 impl Post for FanucTp {

@@ -1,7 +1,7 @@
 //! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
 //! keys and templates of the profile.
 
-use super::{Chunk, Post, Values, ascii};
+use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::push_fixed;
 use crate::profile::{Gcode, GcodeComments, Profile};
 use crate::program::{Circle, Instruction, LayerProgram};
@@ -59,6 +59,12 @@ impl CncGcode {
             text.push_str(&line);
             text.push('\n');
         }
+    }
+
+    fn wait(&mut self, text: &mut String, seconds: f64) {
+        self.values.set_dwell(seconds);
+        let lines = self.gcode.dwell.clone();
+        self.blocks(text, &lines);
     }
 
     /// A straight move; axes that stand still are left out.
@@ -119,11 +125,15 @@ impl CncGcode {
                 let lines = self.gcode.wire_feed.clone();
                 self.blocks(text, &lines);
             }
-            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
-                self.values.set_dwell(seconds);
-                let lines = self.gcode.dwell.clone();
-                self.blocks(text, &lines);
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    let lines = crater_lines(&self.gcode.crater, &self.gcode.wire_feed).to_vec();
+                    self.blocks(text, &lines);
+                }
+                self.wait(text, seconds);
             }
+            Instruction::Dwell { seconds } => self.wait(text, seconds),
             Instruction::ArcOff { .. } => {
                 let lines = self.gcode.arc_off.clone();
                 self.blocks(text, &lines);

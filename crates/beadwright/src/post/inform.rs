@@ -4,7 +4,7 @@
 //! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
 //! begins, so the robot does not move for it.
 
-use super::{Chunk, Post, Values, ascii, split, upper_name, waits};
+use super::{Chunk, Post, Values, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use crate::profile::{Inform, InformSpeed, Profile};
 use crate::program::{Instruction, LayerProgram};
@@ -120,9 +120,14 @@ impl YaskawaInform {
                 self.values.set_wire_feed(ratio, self.wire_feed_speed);
                 self.lines(&mut job.instructions, &self.inform.wire_feed);
             }
-            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
-                waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(&mut job.instructions, crater_lines(&self.inform.crater, &self.inform.wire_feed));
+                }
+                wait(job, seconds);
             }
+            Instruction::Dwell { seconds } => wait(job, seconds),
             Instruction::ArcOff { .. } => self.lines(&mut job.instructions, &self.inform.arc_off),
         }
     }
@@ -146,6 +151,10 @@ impl YaskawaInform {
         );
         Chunk { file: format!("{name}.jbi"), text }
     }
+}
+
+fn wait(job: &mut Job, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
 }
 
 impl Post for YaskawaInform {

@@ -175,7 +175,8 @@ impl MarlinGcode {
             }
             Instruction::WireFeed { ratio } => self.filament_ratio = ratio,
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
-            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
+            // Craters are refused before a printer's program is begun.
+            Instruction::Crater { seconds, .. } | Instruction::Dwell { seconds } => {
                 text.push_str(&format!("G4 P{}\n", fixed(seconds * 1000.0, 0)));
             }
             Instruction::ArcOff { .. } => self.lays = false,

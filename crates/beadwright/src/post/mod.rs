@@ -163,7 +163,7 @@ impl Values {
             ("wire_feed", fixed(process.wire_feed_speed, 3)),
             ("wire_feed_ratio", fixed(1.0, 4)),
             ("wire_retract", profile.start_stop.wire_retract.to_string()),
-            ("wire_retract_time", fixed(retract, 3)),
+            ("wire_retract_time", ((retract * 100.0).round() / 100.0).to_string()),
             ("wire_retract_time_ms", milliseconds(retract)),
         ])
     }
@@ -189,6 +189,11 @@ impl Values {
     fn expand<'a>(&'a self, lines: &'a [String]) -> impl Iterator<Item = String> + 'a {
         lines.iter().map(|line| template::expand(line, &self.0))
     }
+}
+
+/// Lines that set the wire feed in a crater: those of the profile, or those that set it anywhere.
+fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
+    if crater.is_empty() { wire_feed } else { crater }
 }
 
 /// A wait in pieces of what a controller takes at once, s.

@@ -9,7 +9,7 @@ pub(crate) mod names;
 
 mod data;
 
-use super::{Chunk, Post, Values, ascii};
+use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::fixed;
 use crate::profile::{Process, Profile, Rapid, RapidArc, RapidModules};
 use crate::program::{Instruction, LayerProgram};
@@ -167,9 +167,14 @@ impl AbbRapid {
                 }
                 // The seamdata fill it.
                 (Instruction::Crater { .. }, _) if self.with_arc() => {}
-                (Instruction::Crater { seconds } | Instruction::Dwell { seconds }, _) => {
-                    statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
+                (Instruction::Crater { seconds, ratio }, _) => {
+                    if let Some(ratio) = ratio {
+                        self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+                        self.switch(text, crater_lines(&self.rapid.crater, &self.rapid.wire_feed));
+                    }
+                    wait(text, seconds);
                 }
+                (Instruction::Dwell { seconds }, _) => wait(text, seconds),
                 (Instruction::ArcOff { .. }, _) => self.arc_off(text),
             }
         }
@@ -287,6 +292,10 @@ impl Post for AbbRapid {
         text.push_str("  ENDPROC\r\nENDMODULE\r\n");
         [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
     }
+}
+
+fn wait(text: &mut String, seconds: f64) {
+    statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
 }
 
 /// Crater and wire at the end of a seam as the section `start_stop` wants them, where it does.

@@ -4,7 +4,7 @@
 //! `pose_trans`. Moves of a pass are blended, by less than half of the shorter one of two; where the arc switches they
 //! are not. Lines end as on the controller, which is a Linux: with a line feed alone.
 
-use super::{Chunk, Post, Values, ascii, upper_name};
+use super::{Chunk, Post, Values, ascii, crater_lines, upper_name};
 use crate::number::{fixed, push_fixed};
 use crate::profile::{Profile, Urscript};
 use crate::program::{Instruction, LayerProgram};
@@ -137,9 +137,14 @@ impl UniversalScript {
                 self.values.set_wire_feed(ratio, self.wire_feed_speed);
                 self.lines(text, indent, &self.urscript.wire_feed);
             }
-            Instruction::Crater { seconds } | Instruction::Dwell { seconds } => {
-                text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(text, indent, crater_lines(&self.urscript.crater, &self.urscript.wire_feed));
+                }
+                wait(text, indent, seconds);
             }
+            Instruction::Dwell { seconds } => wait(text, indent, seconds),
             Instruction::ArcOff { .. } => self.lines(text, indent, &self.urscript.arc_off),
         }
     }
@@ -193,6 +198,10 @@ impl Post for UniversalScript {
         text.push_str(&format!("end\n{}()\n", self.name));
         self.chunk(text)
     }
+}
+
+fn wait(text: &mut String, indent: &str, seconds: f64) {
+    text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
 }
 
 /// `p[x,y,z,rx,ry,rz]` of a place in mm, in metres and radians.

@@ -57,6 +57,10 @@ pub struct Inform {
     /// none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
+    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
+    /// those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Instructions at the end of the main job.
     pub end: Vec<String>,
 }
@@ -94,13 +98,14 @@ impl Inform {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 6] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 7] {
         [
             ("inform.start", &self.start),
             ("inform.layer_start", &self.layer_start),
             ("inform.arc_on", &self.arc_on),
             ("inform.arc_off", &self.arc_off),
             ("inform.wire_feed", &self.wire_feed),
+            ("inform.crater", &self.crater),
             ("inform.end", &self.end),
         ]
     }

@@ -33,6 +33,10 @@ pub struct Krl {
     /// none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
+    /// Lines that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
+    /// those act only with the next move, as a TRIGGER does.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Lines at the end of the main program.
     pub end: Vec<String>,
 }

@@ -209,6 +209,7 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("krl.arc_on", &k.arc_on),
             ("krl.arc_off", &k.arc_off),
             ("krl.wire_feed", &k.wire_feed),
+            ("krl.crater", &k.crater),
             ("krl.end", &k.end),
         ]
     });
@@ -220,6 +221,7 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("gcode.arc_off", &g.arc_off),
             ("gcode.dwell", &g.dwell),
             ("gcode.wire_feed", &g.wire_feed),
+            ("gcode.crater", &g.crater),
             ("gcode.footer", &g.footer),
         ]
     });

@@ -98,6 +98,10 @@ pub struct Rapid {
     /// none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
+    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
+    /// those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Statements at the end of the main program.
     pub end: Vec<String>,
 }
@@ -189,13 +193,14 @@ impl Rapid {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 6] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 7] {
         [
             ("rapid.start", &self.start),
             ("rapid.layer_start", &self.layer_start),
             ("rapid.arc_on", &self.arc_on),
             ("rapid.arc_off", &self.arc_off),
             ("rapid.wire_feed", &self.wire_feed),
+            ("rapid.crater", &self.crater),
             ("rapid.end", &self.end),
         ]
     }
