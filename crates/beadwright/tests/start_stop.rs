@@ -192,7 +192,9 @@ fn every_dialect_writes_starts_and_stops_alike() {
 #[test]
 fn printers_write_waits_and_filament() {
     let profile = printer(with_ends());
-    let print = readers::marlin::run(&written("marlin", &profile)["demo.gcode"]);
+    let files = written("marlin", &profile);
+    readers::golden("marlin-ends", &files);
+    let print = readers::marlin::run(&files["demo.gcode"]);
     let length: f64 = print.paths.iter().flat_map(|p| p.windows(2)).map(|p| distance(p[0], p[1])).sum();
     near(length, LENGTH, 0.01);
     assert_eq!(print.paths.len(), 4);
@@ -327,11 +329,13 @@ fn back(files: &Files, main: &str) -> Program {
 
 #[test]
 fn waits_of_fanuc_controls_are_read_in_milliseconds() {
-    let program = |head: &str| {
-        let text = format!("%\n{head}G21 G90\nG0 X0 Y0 Z0\nM3\nG4 P500\nG1 X10 F600\nM5\nM30\n%\n");
+    let program = |head: &str, wait: &str| {
+        let text = format!("%\n{head}G21 G90\nG0 X0 Y0 Z0\nM3\nG4 {wait}\nG1 X10 F600\nM5\nM30\n%\n");
         read(&text, &mut |_| None, &Options::default()).unwrap().dwell
     };
-    assert_eq!((program(""), program("O1234 (PART)\n")), (500.0, 0.5));
+    let number = "O1234 (PART)\n";
+    assert_eq!((program("", "P500"), program(number, "P500")), (500.0, 0.5));
+    assert_eq!((program(number, "P2.5"), program(number, "X20.0")), (2.5, 20.0));
 }
 
 #[test]

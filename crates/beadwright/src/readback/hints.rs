@@ -10,7 +10,7 @@ pub(super) struct Hints {
     pub(super) diameter: Option<f64>,
     /// E is a volume (UltiGCode).
     pub(super) volumetric: bool,
-    /// It has an O number alone on a line, as Fanuc's controls want it: their G4 P counts milliseconds.
+    /// It has an O number alone on a line, as Fanuc's controls want it: their whole G4 P counts milliseconds.
     pub(super) fanuc: bool,
 }
 
