@@ -303,7 +303,7 @@ fn totals_are_those_of_the_program() {
             // Up at the end, too.
             let told = totals.time_s + unknown - 2.0 * down;
             println!("{name}: {told:.3} s for {:.3} s", metrics.total_time_s);
-            near(told / metrics.total_time_s, 1.0, 1e-3);
+            near(told / metrics.total_time_s, 1.0, 1e-5);
             near(totals.deposited_length_mm, LENGTH, 0.01);
             assert_eq!(totals.arc_starts, 4, "{name}");
             assert!(
@@ -314,6 +314,8 @@ fn totals_are_those_of_the_program() {
         }
         let totals = back(&written("rapid", &profile), "demo.mod").totals();
         assert_eq!(totals.arc_starts, 4);
+        // The seamdata let the wire burn back for 0.08 s, too; speeds have steps.
+        near((totals.time_s - 2.0 * down - 4.0 * 0.08) / metrics.total_time_s, 1.0, 1e-4);
         near(totals.deposited_length_mm, LENGTH, 0.01);
     }
 }

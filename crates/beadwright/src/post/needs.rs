@@ -27,8 +27,8 @@ pub(super) fn check(name: &str, profile: &Profile) -> Result<(), ProfileError> {
     };
     if let Some(why) = why.filter(|_| lines.wire_feed.is_empty()) {
         let remedy = format!(
-            "Put the lines there that set it on the cell, such as wire_feed = [\"{}\"], or take process.follow = \"speed\" \
-             and a crater_power of 1.",
+            "Put the lines there that set it on the cell, such as wire_feed = [\"{}\"], or take process.follow = \
+             \"speed\" and a crater_power of 1.",
             lines.example
         );
         return Err(no_key(profile, format!("{name}.wire_feed"), why, remedy));

@@ -39,8 +39,8 @@ pub struct Gcode {
     /// none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Blocks that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
-    /// those act only with the next move, as LinuxCNC's M67 does: M68 does not.
+    /// Blocks that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move, as LinuxCNC's M67 does: M68 does not.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Blocks at the end.

@@ -52,13 +52,13 @@ pub struct Inform {
     pub arc_on: Vec<String>,
     /// Instructions that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
-    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
-    /// none.
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
-    /// those act only with the next move.
+    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`.
+    /// Needed where those act only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Instructions at the end of the main job.

@@ -4,6 +4,7 @@
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
 mod check;
+mod dry_run;
 mod fanuc;
 mod gcode;
 mod hybrid;
@@ -11,6 +12,7 @@ mod inform;
 mod krl;
 mod limits;
 mod marlin;
+mod process;
 mod rapid;
 mod read;
 mod start_stop;
@@ -23,6 +25,7 @@ pub use hybrid::Hybrid;
 pub use inform::{Inform, InformSpeed};
 pub use krl::Krl;
 pub use marlin::Marlin;
+pub use process::{Follow, Process};
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 pub(crate) use read::{explain, line_of, line_of_key, nearest};
@@ -124,53 +127,6 @@ pub struct Wire {
     pub diameter: f64,
     /// Density, g/cm³.
     pub density: f64,
-}
-
-/// Arc, wire feed, speed and gas.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Process {
-    /// Wire feed speed, m/min.
-    pub wire_feed_speed: f64,
-    /// Speed of the torch while the arc burns, mm/s.
-    pub deposition_speed: f64,
-    /// What changes where a bead is wider or narrower than nominal, or hotter: `speed` of the torch, or `wire-feed`;
-    /// default speed.
-    #[serde(default)]
-    pub follow: Follow,
-    /// Part of the wire that ends in the bead, 0 to 1.
-    pub efficiency: f64,
-    /// Arc current, A; optional, for the heat input.
-    pub current: Option<f64>,
-    /// Arc voltage, V; optional, for the heat input.
-    pub voltage: Option<f64>,
-    /// Wait after the arc is on before the torch moves, s.
-    pub arc_start_delay: f64,
-    /// Wait after the arc is off before the torch leaves, s.
-    pub arc_end_delay: f64,
-    /// Shielding gas, for the report.
-    pub gas: String,
-    /// Gas flow, L/min.
-    pub gas_flow: f64,
-    /// Gas before the arc, s.
-    pub gas_preflow: f64,
-    /// Gas after the arc, s.
-    pub gas_postflow: f64,
-    /// Contact tip to work distance, mm.
-    pub ctwd: f64,
-}
-
-/// What keeps the metal of a bead in balance where it is not the nominal one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Follow {
-    /// The torch goes slower or faster; the wire comes at its nominal speed.
-    #[default]
-    Speed,
-    /// The wire comes faster or slower; the torch goes at its nominal speed.
-    WireFeed,
 }
 
 /// The single bead, a parabola.
@@ -508,26 +464,6 @@ impl Profile {
             tip_reach: h.tip_reach,
             width_limits: (h.min_width * w, h.max_width * w),
         }
-    }
-
-    /// The profile for programs that only move: the same ways at the same speeds, but arc, gas and wire never on. The
-    /// lines that light and end the arc are left out; `start`, `layer_start`, `header`, `end` and `footer` stay.
-    pub fn dry_run(mut self) -> Self {
-        self.dry_run = true;
-        self.name.push_str(", DRY RUN");
-        if let Some(rapid) = &mut self.rapid {
-            rapid.arc = RapidArc::Plain;
-        }
-        // The weld schedule gives no speed while nothing is welded.
-        if let Some(fanuc) = self.fanuc.as_mut().filter(|fanuc| fanuc.speed == FanucSpeed::WeldSpeed) {
-            fanuc.speed = FanucSpeed::MillimetresPerSecond;
-        }
-        self
-    }
-
-    /// Whether programs only move.
-    pub fn is_dry_run(&self) -> bool {
-        self.dry_run
     }
 
     /// What does not fit together although every value is possible, as sentences.

@@ -30,13 +30,13 @@ pub struct Urscript {
     pub arc_on: Vec<String>,
     /// Statements that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
-    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
-    /// none.
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed where
-    /// those act only with the next move.
+    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Statements at the end of the program.
