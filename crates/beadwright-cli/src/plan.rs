@@ -42,6 +42,10 @@ pub(crate) struct Arguments {
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     from_layer: u32,
+    /// Write programs that only move, to be run before the first bead: the same ways at the same speeds, but arc, gas and
+    /// wire never on. Their names begin with "dry_"; plan.json and the report stay as they are.
+    #[arg(long)]
+    dry_run: bool,
     /// Folder for the files.
     #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]
     output: PathBuf,
@@ -86,13 +90,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(&arguments.profile, &settings)?;
     let part = arguments.model.part();
     let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };
-    let posts = names.iter().map(|name| post::post(name, &part, &profile)).collect::<Result<Vec<_>, _>>()?;
+    let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
+    let posts = names.iter().map(|name| post::post(name, &part, &programs)).collect::<Result<Vec<_>, _>>()?;
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
     let profile = plan::profile_for(&model, &profile);
     let output = Output::new(&arguments.output)?;
-    let programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
+    let programmer = Programmer::of(&programs);
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();

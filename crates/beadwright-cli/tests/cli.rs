@@ -420,3 +420,22 @@ fn a_build_is_resumed_at_a_layer() {
     let said = refused(folder.path(), &[&plan[..], &["-o", "none", "--from-layer", "99"]].concat(), 1);
     assert!(said.contains("lies above the part") && !folder.path().join("none").join("plan.json").exists(), "{said}");
 }
+
+#[test]
+fn a_dry_run_has_names_of_its_own_and_no_arc() {
+    let folder = folder_with("cross");
+    let ends = ["--set", "start_stop.end_overlap=5", "--set", "start_stop.min_layer_time=900"];
+    let plan = [&["plan", "cross.stl", "--post", "krl", "--no-deposit"][..], &ends[..]].concat();
+    let said = ok(folder.path(), &[&plan[..], &["-o", "hot"]].concat());
+    assert!(said.contains("waits between layers"), "{said}");
+    ok(folder.path(), &[&plan[..], &["-o", "dry", "--dry-run"]].concat());
+    let (hot, dry) = (files(&folder.path().join("hot")), files(&folder.path().join("dry")));
+    assert_eq!(hot["plan.json"], dry["plan.json"]);
+    assert_eq!(hot["metrics.json"], dry["metrics.json"]);
+    let text = |files: &BTreeMap<String, Vec<u8>>, name: &str| String::from_utf8(files[name].clone()).unwrap();
+    let (hot, dry) = (text(&hot, "CROSS_L002.src"), text(&dry, "DRY_CROSS_L002.src"));
+    let moves = |text: &str| text.lines().filter(|l| l.starts_with("LIN ")).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(moves(&hot), moves(&dry));
+    assert!(hot.contains("$OUT[2] = TRUE") && hot.contains("WAIT SEC ") && !hot.contains("DRY RUN"));
+    assert!(!dry.contains("$OUT") && !dry.contains("WAIT SEC ") && dry.contains("DRY RUN"), "{dry}");
+}

@@ -14,6 +14,7 @@
 //! | order | [`order`] |
 //! | judge | [`deposit`], [`simulate`], [`compare`] |
 //! | check | [`check`](mod@check) |
+//! | start and stop | [`weld`] |
 //! | plan | [`plan`], [`metrics`], [`plan_file`] |
 //! | program | [`program`] |
 //! | post | [`post`] |
@@ -60,5 +61,6 @@ pub mod slice;
 pub mod task;
 pub mod template;
 pub mod warning;
+pub mod weld;
 
 pub use planar;

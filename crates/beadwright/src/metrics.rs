@@ -1,10 +1,9 @@
 //! The totals of a plan: passes, lengths, times, wire, heat.
 
 use crate::bead::wire_area;
-use crate::motion::Motion;
 use crate::plan::Layer;
 use crate::profile::Profile;
-use glam::DVec3;
+use crate::weld::{Torch, path};
 use serde::Serialize;
 
 /// Totals of a plan, or of some of its layers.
@@ -16,15 +15,17 @@ pub struct Metrics {
     pub passes: usize,
     /// Arc starts, one for each pass.
     pub arc_starts: usize,
-    /// Length of all passes, mm.
+    /// Length of all passes with their overlaps, mm.
     pub deposited_length_mm: f64,
     /// Length of all moves without arc, mm.
     pub travel_length_mm: f64,
-    /// Time with the arc on and the torch moving, s; with acceleration where the profile gives it.
+    /// Time with the arc on, the torch moving or standing in craters, s; with acceleration where the profile gives it.
     pub arc_time_s: f64,
-    /// Whole time with travels, delays and gas, s; with acceleration where the profile gives it.
+    /// Waits between layers, s.
+    pub dwell_time_s: f64,
+    /// Whole time with travels, delays, gas and waits, s; with acceleration where the profile gives it.
     pub total_time_s: f64,
-    /// Wire, m.
+    /// Wire, with that of overlaps, hot starts and craters, m.
     pub wire_length_m: f64,
     /// Wire, kg.
     pub wire_mass_kg: f64,
@@ -41,7 +42,7 @@ pub struct Metrics {
     #[serde(skip)]
     rates: Rates,
     #[serde(skip)]
-    torch: Option<DVec3>,
+    torch: Torch,
 }
 
 /// What the totals need from the profile.
@@ -49,10 +50,6 @@ pub struct Metrics {
 struct Rates {
     /// Metal laid, mm³/s.
     metal: f64,
-    motion: Option<Motion>,
-    travel_speed: f64,
-    clearance: f64,
-    delay: f64,
     wire_feed_speed: f64,
     wire_grams_per_mm: f64,
 }
@@ -63,10 +60,6 @@ impl Metrics {
         let process = &profile.process;
         let rates = Rates {
             metal: profile.bead().area() * process.deposition_speed,
-            motion: profile.motion,
-            travel_speed: profile.travel.speed,
-            clearance: profile.travel.clearance,
-            delay: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
             wire_feed_speed: process.wire_feed_speed * 1000.0 / 60.0,
             wire_grams_per_mm: wire_area(profile.wire.diameter) * profile.wire.density / 1000.0,
         };
@@ -77,6 +70,7 @@ impl Metrics {
             deposited_length_mm: 0.0,
             travel_length_mm: 0.0,
             arc_time_s: 0.0,
+            dwell_time_s: 0.0,
             total_time_s: 0.0,
             wire_length_m: 0.0,
             wire_mass_kg: 0.0,
@@ -86,7 +80,7 @@ impl Metrics {
             part_volume_mm3: 0.0,
             deposited_volume_mm3: 0.0,
             rates,
-            torch: None,
+            torch: Torch::of(profile),
         }
     }
 
@@ -96,24 +90,25 @@ impl Metrics {
         self.slice_area_mm2 += layer.slice_area;
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += layer.slice_area * layer.height;
+        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten() {
+            self.travel_length_mm += pause.length;
+            self.dwell_time_s += pause.seconds;
+            self.total_time_s += pause.moving + pause.seconds;
+        }
         for pass in &layer.passes {
-            let (Some(start), Some(end)) = (pass.start(), pass.end()) else { continue };
-            let legs = self.torch.map_or([start; 3], |from| travel_legs(from, start, self.rates.clearance));
-            let (travel, travel_time) = self.rates.travel(self.torch.unwrap_or(start), legs);
-            let (length, seconds) = (pass.length(), pass.seconds());
-            let moving =
-                self.rates.motion.map_or(seconds, |m| m.seconds(start, pass.segments().map(|s| (s.to, s.speed))));
-            let wire = self.rates.wire_feed_speed * seconds;
+            let Some(start) = pass.start() else { continue };
+            let approach = self.torch.approach(start);
+            let welded = self.torch.weld(&path(pass, self.torch.ends()));
+            let wire = self.rates.wire_feed_speed * welded.metal;
             self.passes += 1;
             self.arc_starts += 1;
-            self.deposited_length_mm += length;
-            self.deposited_volume_mm3 += seconds * self.rates.metal;
-            self.travel_length_mm += travel;
-            self.arc_time_s += moving;
-            self.total_time_s += moving + travel_time + self.rates.delay;
+            self.deposited_length_mm += welded.length;
+            self.deposited_volume_mm3 += welded.metal * self.rates.metal;
+            self.travel_length_mm += approach.length;
+            self.arc_time_s += welded.moving + welded.crater;
+            self.total_time_s += welded.moving + welded.crater + approach.moving + welded.delay;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
-            self.torch = Some(end);
         }
     }
 
@@ -121,24 +116,4 @@ impl Metrics {
     pub fn coverage(&self) -> f64 {
         if self.slice_area_mm2 > 0.0 { self.planned_area_mm2 / self.slice_area_mm2 } else { 0.0 }
     }
-}
-
-impl Rates {
-    /// Length and time of a travel, mm and s; its legs begin and end at rest.
-    fn travel(&self, from: DVec3, legs: [DVec3; 3]) -> (f64, f64) {
-        let (mut at, mut length, mut time) = (from, 0.0, 0.0);
-        for to in legs {
-            let leg = at.distance(to);
-            length += leg;
-            time += self.motion.map_or(leg / self.travel_speed, |m| m.seconds(at, [(to, self.travel_speed)]));
-            at = to;
-        }
-        (length, time)
-    }
-}
-
-/// Where a move without arc goes: up to the clearance above the higher end, across, and down.
-fn travel_legs(from: DVec3, to: DVec3, clearance: f64) -> [DVec3; 3] {
-    let top = from.z.max(to.z) + clearance;
-    [from.with_z(top), to.with_z(top), to]
 }

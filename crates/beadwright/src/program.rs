@@ -1,12 +1,14 @@
-//! The neutral program: moves, arc on, arc off. Posts turn it into a controller's language.
+//! The neutral program: moves, arc on, arc off, wire feed, waits. Posts turn it into a controller's language.
 //!
 //! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one
 //! are dropped: a weld move of no length burns through. Then, if it is asked for, straight pieces and circular arcs are
-//! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path.
+//! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and
+//! no arc: `Weld` then only tells the way, since no `ArcOn` came before it.
 
 use crate::fill::PassKind;
 use crate::plan::{Layer, Pass};
-use crate::profile::Program;
+use crate::profile::{Follow, Profile, Program};
+use crate::weld::{Pause, Torch, path};
 use glam::DVec3;
 use planar::arcs::{Fit, Piece};
 
@@ -31,6 +33,12 @@ pub enum Instruction {
         /// What it is for.
         kind: PassKind,
     },
+    /// The wire feed from here on; nominal at first. It comes where it changes, and only in programs whose profile lets it
+    /// change.
+    WireFeed {
+        /// Part of the nominal one.
+        ratio: f64,
+    },
     /// A move with the arc on.
     Weld {
         /// Tool point, mm.
@@ -42,10 +50,22 @@ pub enum Instruction {
         /// Whether the pass ends here, with an exact stop.
         last: bool,
     },
+    /// The arc burns on the spot, at the end of a pass, to fill its crater.
+    Crater {
+        /// How long, s.
+        seconds: f64,
+        /// What the wire feed becomes meanwhile, a part of the nominal one; none where it stays as it is.
+        ratio: Option<f64>,
+    },
     /// Ends the arc.
     ArcOff {
         /// Number of the pass in its layer, from 1.
         pass: usize,
+    },
+    /// The torch waits without arc until the next layer may begin.
+    Dwell {
+        /// How long, s.
+        seconds: f64,
     },
 }
 
@@ -89,15 +109,28 @@ pub struct LayerProgram {
 #[derive(Debug, Clone)]
 pub struct Programmer {
     clearance: f64,
-    torch: Option<DVec3>,
+    torch: Torch,
     fit: Option<Fit>,
     speed_tolerance: f64,
+    /// What the wire feed was set to last, of the nominal one; none where that is not known.
+    feed: Option<f64>,
+    sets_feed: bool,
+    dry: bool,
 }
 
 impl Programmer {
-    /// Travels go `clearance` (mm) above the higher of their ends.
+    /// Passes as they are planned; travels go `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
-        Self { clearance, torch: None, fit: None, speed_tolerance: 0.0 }
+        let torch = Torch::new(clearance);
+        Self { clearance, torch, fit: None, speed_tolerance: 0.0, feed: None, sets_feed: false, dry: false }
+    }
+
+    /// Everything as the profile says.
+    pub fn of(profile: &Profile) -> Self {
+        let sets_feed = profile.process.follow == Follow::WireFeed || profile.start_stop.crater_is_weaker();
+        let torch = Torch::of(profile);
+        let programmer = Self { torch, sets_feed, dry: profile.is_dry_run(), ..Self::new(profile.travel.clearance) };
+        programmer.with_fit(&profile.program)
     }
 
     /// Fits straight pieces and arcs as the profile says; without a tolerance every point is kept.
@@ -112,47 +145,69 @@ impl Programmer {
     /// The instructions of the next layer; the torch ends above its last pass.
     pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
+        // A build may be resumed at any layer, so each sets the wire feed that it needs.
+        self.feed = None;
+        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten() {
+            self.pause(pause, &mut instructions);
+        }
         for (i, pass) in layer.passes.iter().enumerate() {
             self.pass(i + 1, pass, &mut instructions);
+        }
+        if self.dry {
+            instructions.retain(|i| matches!(i, Instruction::Travel { .. } | Instruction::Weld { .. }));
         }
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
 
+    fn pause(&self, pause: Pause, out: &mut Vec<Instruction>) {
+        out.extend((pause.length > 0.0).then_some(Instruction::Travel { to: pause.at }));
+        out.push(Instruction::Dwell { seconds: pause.seconds });
+    }
+
     fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
-        let mut moves = distinct(pass);
-        level_speeds(&mut moves, self.speed_tolerance);
-        let [(start, _), rest @ ..] = &moves[..] else { return };
-        let (start, Some(&(end, _))) = (*start, rest.last()) else { return };
-        let top = self.torch.map_or(start.z, |from| from.z.max(start.z)) + self.clearance;
-        // Up, across, down; the very first move has no place to rise from.
-        let rise = self.torch.map(|from| from.with_z(top));
-        let legs = rise.into_iter().chain([start.with_z(top), start]);
-        out.extend(legs.map(|to| Instruction::Travel { to }));
+        let mut moves = distinct(path(pass, self.torch.ends()));
+        level_paces(&mut moves, self.speed_tolerance);
+        let [(start, _), (_, first), ..] = moves[..] else { return };
+        let approach = self.torch.approach(start);
+        self.set_feed(self.torch.speed_and_feed(first).1, out);
+        out.extend(approach.legs.into_iter().map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
-        match &self.fit {
-            Some(fit) => fitted(&moves, fit, out),
-            None => out.extend(rest.iter().map(|&(to, speed)| weld(to, speed, None))),
+        let pieces = match &self.fit {
+            Some(fit) => fitted(&moves, fit),
+            None => moves[1..].iter().map(|&(to, pace)| (to, pace, None)).collect(),
+        };
+        let end = pieces.len();
+        for (i, (to, pace, circle)) in (1..).zip(pieces) {
+            let (speed, feed) = self.torch.speed_and_feed(pace);
+            self.set_feed(feed, out);
+            out.push(Instruction::Weld { to, circle, speed, last: i == end });
         }
-        if let Some(Instruction::Weld { last, .. }) = out.last_mut() {
-            *last = true;
+        let seconds = self.torch.weld(&moves).crater;
+        if seconds > 0.0 {
+            let ratio = Some(self.torch.ends().crater_power).filter(|_| self.sets_feed);
+            self.feed = ratio;
+            out.push(Instruction::Crater { seconds, ratio });
         }
         out.push(Instruction::ArcOff { pass: number });
-        self.torch = Some(end);
+    }
+
+    /// Sets the wire feed, a part of the nominal one, where it changes.
+    fn set_feed(&mut self, ratio: f64, out: &mut Vec<Instruction>) {
+        if self.sets_feed && self.feed != Some(ratio) {
+            self.feed = Some(ratio);
+            out.push(Instruction::WireFeed { ratio });
+        }
     }
 
     /// The move that takes the torch away at the end of the program.
     pub fn leave(&self) -> Option<Instruction> {
-        self.torch.map(|at| Instruction::Travel { to: at.with_z(at.z + self.clearance) })
+        self.torch.at().map(|at| Instruction::Travel { to: at.with_z(at.z + self.clearance) })
     }
 }
 
-fn weld(to: DVec3, speed: f64, circle: Option<Circle>) -> Instruction {
-    Instruction::Weld { to, circle, speed, last: false }
-}
-
-/// Gives neighbouring moves whose speeds differ by no more than that part one speed: the one that takes the same time
+/// Gives neighbouring moves whose paces differ by no more than that part one pace: the one that takes the same time
 /// along them together, and so lays the same metal.
-fn level_speeds(moves: &mut [(DVec3, f64)], tolerance: f64) {
+fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     let mut start = 1;
     while tolerance > 0.0 && start < moves.len() {
         let (mut low, mut high, mut end) = (f64::INFINITY, 0.0_f64, start);
@@ -173,11 +228,14 @@ fn level_speeds(moves: &mut [(DVec3, f64)], tolerance: f64) {
     }
 }
 
-/// The welds from the first point on. Pieces end where speed or height change.
-fn fitted(moves: &[(DVec3, f64)], fit: &Fit, out: &mut Vec<Instruction>) {
-    let mut start = 0;
-    while let Some(&(first, speed)) = moves.get(start + 1) {
-        let alike = |(to, s): &&(DVec3, f64)| *s == speed && to.z == first.z;
+/// The end of a move, the pace on it, and its circle if it has one.
+type Stretch = (DVec3, f64, Option<Circle>);
+
+/// The moves from the first point on, fitted. Pieces end where pace or height change.
+fn fitted(moves: &[(DVec3, f64)], fit: &Fit) -> Vec<Stretch> {
+    let (mut out, mut start) = (Vec::new(), 0);
+    while let Some(&(first, pace)) = moves.get(start + 1) {
+        let alike = |(to, p): &&(DVec3, f64)| *p == pace && to.z == first.z;
         let level = moves[start].0.z == first.z;
         let end = start + if level { moves[start + 1..].iter().take_while(alike).count() } else { 1 };
         let points: Vec<_> = moves[start..=end].iter().map(|(p, _)| p.truncate()).collect();
@@ -188,26 +246,26 @@ fn fitted(moves: &[(DVec3, f64)], fit: &Fit, out: &mut Vec<Instruction>) {
                 radius: arc.radius,
                 sweep: arc.sweep,
             };
-            weld(moves[start + p.end].0, speed, p.arc.map(lift))
+            (moves[start + p.end].0, pace, p.arc.map(lift))
         };
         out.extend(fit.pieces(&points).into_iter().map(piece));
         start = end;
     }
+    out
 }
 
-/// The rounded points of a pass and the speed on the way to each, without those too close to the last one; the end
-/// point stays in any case.
-fn distinct(pass: &Pass) -> Vec<(DVec3, f64)> {
+/// The points of a path, rounded, without those too close to the last one; the end point stays in any case.
+fn distinct(path: Vec<(DVec3, f64)>) -> Vec<(DVec3, f64)> {
     let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
-    let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(pass.points.len() + 1);
-    let first = pass.start().map(|p| (p, pass.speed.after(0)));
-    for (to, speed) in first.into_iter().chain(pass.segments().map(|s| (s.to, s.speed))) {
+    let end = path.last().map(|(to, _)| round(*to));
+    let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(path.len());
+    for (to, pace) in path {
         let to = round(to);
         if moves.last().is_none_or(|(last, _)| last.distance(to) >= MIN_MOVE_MM) {
-            moves.push((to, speed));
+            moves.push((to, pace));
         }
     }
-    if let (Some(end), [_, .., last]) = (pass.end().map(round), &mut moves[..]) {
+    if let (Some(end), [_, .., last]) = (end, &mut moves[..]) {
         last.0 = end;
     }
     moves

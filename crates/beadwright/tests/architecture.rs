@@ -20,6 +20,7 @@ const ROWS: &[&[&str]] = &[
     &["deposit"],
     // A profile holds the settings of all stages above; its limits know the names of posts.
     &["profile"],
+    &["weld"],
     &["metrics", "plan"],
     &["plan_file", "program"],
     &["check", "post"],

@@ -44,7 +44,7 @@ fn traced(instructions: &[Instruction]) -> Vec<Vec<DVec3>> {
                 pass.push(to);
                 at = to;
             }
-            Instruction::ArcOff { .. } => {}
+            _ => {}
         }
     }
     passes

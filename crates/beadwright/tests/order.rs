@@ -222,3 +222,54 @@ fn seams_lie_where_they_are_wanted() {
     }
     assert_eq!(seams(Seam::Nearest, false, 2), [37.0, 37.0], "below the torch at x 7");
 }
+
+/// Where a pass begins, and which way it goes on.
+fn way(pass: &Pass) -> [DVec2; 2] {
+    [pass.points[0], pass.points[1]]
+}
+
+#[test]
+fn passes_alternate_from_layer_to_layer() {
+    let mut ring = closed(&[(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)]);
+    ring.width = Along::Each(vec![1.0, 2.0, 3.0, 4.0]);
+    let mut line = open(&[(90.0, 5.0), (70.0, 0.0), (50.0, 0.0)], true);
+    line.width = Along::Each(vec![5.0, 6.0, 7.0]);
+    let upright = open(&[(100.0, 0.0), (100.0, 20.0)], true);
+    let fixed = open(&[(140.0, 0.0), (120.0, 0.0)], false);
+    for fixed_order in [false, true] {
+        let passes = vec![ring.clone(), line.clone(), upright.clone(), fixed.clone()];
+        let fill = Fill { stages: vec![passes], fixed_order };
+        let laid = |layer: usize| {
+            let settings = OrderSettings { seam: Seam::Aligned, alternate: true, layer, ..OrderSettings::default() };
+            order(vec![fill.clone()], &settings, &mut Some(DVec2::new(7.0, -9.0)))
+        };
+        let find = |laid: &[Pass], x: f64| laid.iter().find(|p| p.points.iter().any(|q| q.x == x)).unwrap().clone();
+        for layer in 0..4 {
+            let (laid, odd) = (laid(layer), layer % 2 == 1);
+            let ring = find(&laid, 30.0);
+            // Of the rearmost points the last one begins.
+            let expected = if odd { [(0.0, 30.0), (30.0, 30.0)] } else { [(0.0, 30.0), (0.0, 0.0)] };
+            assert_eq!(way(&ring), expected.map(DVec2::from));
+            // Every piece keeps its width: that from (0, 0) to (30, 0) has 1.
+            let Along::Each(widths) = &ring.width else { panic!("{ring:?}") };
+            assert_eq!(widths[..], if odd { [3.0, 2.0, 1.0, 4.0] } else { [4.0, 1.0, 2.0, 3.0] });
+            let (line, upright, fixed) = (find(&laid, 70.0), find(&laid, 100.0), find(&laid, 120.0));
+            assert_eq!(line.points[0].x, if odd { 90.0 } else { 50.0 });
+            assert_eq!(line.width.after(0), if odd { 5.0 } else { 6.0 });
+            assert_eq!(upright.points[0].y, if odd { 20.0 } else { 0.0 });
+            assert_eq!(fixed.points[0].x, 140.0, "what may not be turned is not");
+        }
+    }
+}
+
+#[test]
+fn seams_that_wander_do_so_on_alternating_layers_too() {
+    let ring = closed(&[(0.0, 0.0), (30.0, 0.0), (30.0, 30.0), (0.0, 30.0)]);
+    let start = |alternate: bool, layer: usize| {
+        let settings =
+            OrderSettings { seam: Seam::Rotate, alternate, layer, bead_width: 5.0, ..OrderSettings::default() };
+        let fill = Fill { stages: vec![vec![ring.clone()]], fixed_order: false };
+        order(vec![fill], &settings, &mut None)[0].points[0]
+    };
+    (0..6).for_each(|layer| assert_eq!(start(true, layer), start(false, layer)));
+}

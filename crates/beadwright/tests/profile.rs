@@ -3,7 +3,7 @@
 
 use beadwright::bead::MassBalance;
 use beadwright::post;
-use beadwright::profile::{BUILT_IN, Profile};
+use beadwright::profile::{BUILT_IN, Profile, StartStop};
 use toml_edit::{Document, DocumentMut, Item, Value};
 
 const KUKA: &str = "cmt-al2319-kuka";
@@ -185,6 +185,23 @@ fn only_optional_keys_may_be_missing() {
     assert_eq!(Profile::parse(&without_slice).unwrap().slice, Profile::built_in(KUKA).unwrap().slice);
 }
 
+/// The example in the comments of a built-in profile is one: it is taken as it stands, without its `#`.
+#[test]
+fn the_example_of_starts_and_stops_is_valid() {
+    let (head, rest) = text(KUKA).split_once("# [start_stop]").unwrap();
+    let (example, rest) = rest.split_once("\n\n").unwrap();
+    let mut profile = Profile::parse(&format!("{head}[start_stop]{}\n{rest}", example.replace("\n# ", "\n"))).unwrap();
+    assert!(profile.start_stop.end_overlap > 0.0 && profile.start_stop.min_layer_time > 0.0);
+    assert_eq!(profile.notes(), [""; 0]);
+    assert!(post::post("krl", "part", &profile).is_ok());
+    // It changes nothing else.
+    profile.start_stop = StartStop::default();
+    assert_eq!(profile, Profile::built_in(KUKA).unwrap());
+    // What follows the bead is a word of its own.
+    let text = text(ROBOTS).replace("deposition_speed = 8.0 ", "follow = \"wire\"\ndeposition_speed = 8.0 ");
+    check_text(&text, line_of(&text, "follow ="), &["Did you mean \"wire-feed\"?"]);
+}
+
 #[test]
 fn wrong_types_are_refused_with_their_line() {
     check(KUKA, "diameter = 1.2", "diameter = \"thick\"", &["string \"thick\"", "f64"]);
@@ -257,6 +274,25 @@ fn impossible_numbers_are_refused_with_line_and_key() {
         ("travel.speed", 0.0, 3001.0),
         ("travel.clearance", -1.0, 1001.0),
     ];
+    for (path, low, high) in [
+        ("end_overlap", -0.1, 201.0),
+        ("lead_in_length", -0.1, 201.0),
+        ("lead_in_power", 0.99, 4.1),
+        ("lead_out_length", -0.1, 201.0),
+        ("lead_out_power", 0.05, 1.01),
+        ("crater_fill_time", -0.1, 61.0),
+        ("crater_power", 0.0, 1.01),
+        ("wire_retract", -0.1, 51.0),
+        ("interpass_time", -0.1, 36_001.0),
+        ("min_layer_time", -0.1, 36_001.0),
+        ("dwell_height", -0.1, 2001.0),
+    ] {
+        for value in [low, high] {
+            let edited = format!("{}\n[start_stop]\n{path} = {value}\n", text(KUKA));
+            let key = format!("start_stop.{path} = {value}");
+            check_text(&edited, line_of(&edited, &format!("\n{path} = {value}")) + 1, &[&key, "is impossible"]);
+        }
+    }
     let both = both.map(|(path, low, high)| (KUKA, path, low, high)).into_iter().chain([
         (KUKA, "krl.ptp_speed", 0.5, 101.0),
         (KUKA, "krl.blend", -0.1, 51.0),
@@ -420,6 +456,14 @@ fn templates_with_unknown_placeholders_are_refused() {
             key(ROBOTS, &format!("{section}.{part}"), "WAIT {{gas}}");
         }
     }
+    for part in ["wire_feed", "crater"] {
+        for (name, section) in
+            [(KUKA, "krl"), (CNC, "gcode"), (ABB, "rapid"), (ROBOTS, "fanuc"), (ROBOTS, "inform"), (ROBOTS, "urscript")]
+        {
+            key(name, &format!("{section}.{part}"), "{{wire_feed_rate}}");
+        }
+    }
+    key(CNC, "gcode.dwell", "G4 P{{dwel}}");
     for part in ["header", "layer_start", "arc_on", "arc_off", "footer"] {
         let error = key(CNC, &format!("gcode.{part}"), "(Grüße)");
         assert!(error.contains("printable ASCII"), "{error}");

@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "heat per length of bead above check.max_heat_input; and layers done before check.min_layer_time is over",
     why: "the layer below is still too hot, so beads spread, walls sag and the structure coarsens",
     example: "layer 30: it takes 8 s; at least 30 s are needed to cool.",
-    remedy: "weld faster or with less current; wait between layers, or weld several parts in turn",
+    remedy: "weld faster or with less current, weld several parts in turn, or wait (start_stop.min_layer_time)",
     find,
 };
 
@@ -18,7 +18,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         Finding::of_plan(&CHECK, format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm."))
     });
     let least = limits.min_layer_time.unwrap_or(0.0);
-    let time = |layer: &crate::plan::Layer| layer.passes.iter().map(crate::pass::Pass::seconds).sum::<f64>();
+    let waits = &profile.start_stop;
+    let time = |layer: &crate::plan::Layer| {
+        let welded = layer.passes.iter().map(crate::pass::Pass::seconds).sum::<f64>();
+        (welded + waits.interpass_time).max(waits.min_layer_time)
+    };
     let short = subject.layers.iter().filter(|layer| !layer.passes.is_empty() && time(layer) < least);
     let short = short.map(|layer| {
         let text = format!("it takes {:.0} s; at least {least:.0} s are needed to cool.", time(layer));

@@ -26,7 +26,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         let area: f64 = large.clone().map(planar::Polygon::area).sum();
         let place = large.clone().next()?.outer.points().first()?.extend(pair[1].z);
         let text = format!("{area:.1} mm² reach more than {reach:.1} mm beyond the layer below.");
-        Some(Finding { place: Some(place), ..Finding::of_layer(&CHECK, &pair[1], text) })
+        Some(Finding { place: Some(place), ..Finding::of_layer(&CHECK, pair[1], text) })
     };
     subject.layers.windows(2).filter_map(hanging).collect()
 }

@@ -12,8 +12,10 @@
 //! | [`ant_colony`] | the ant colony of Han et al. 2018 (2.2) |
 //! | [`local_search`] | 2-opt, Or-opt and start points together; the default |
 //! | [`exact`] | the optimum by dynamic programming, for few stops |
+//! | `direction` | the other way round on every second layer |
 
 pub mod ant_colony;
+mod direction;
 pub mod exact;
 pub mod local_search;
 pub mod nearest;
@@ -79,6 +81,8 @@ pub struct OrderSettings {
     pub method: Method,
     /// Where closed passes begin.
     pub seam: Seam,
+    /// Whether passes run the other way on every second layer.
+    pub alternate: bool,
     /// Index of the layer, from 0.
     pub layer: usize,
     /// Bead width, mm.
@@ -113,8 +117,9 @@ impl OrderSettings {
 
 /// Puts the passes of a layer in order. `torch` is where the torch stands before and after; without one it counts as
 /// standing in the origin.
-pub fn order(islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Pass> {
+pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Pass> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
+    direction::settle_open(&mut islands, settings);
     for fill in islands_in_order(islands, settings, torch.unwrap_or_default()) {
         for stage in fill.stages {
             let stage = if fill.fixed_order {
@@ -126,6 +131,7 @@ pub fn order(islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DV
             ordered.extend(stage);
         }
     }
+    direction::turn_closed(&mut ordered, settings);
     ordered
 }
 

@@ -3,9 +3,9 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched by lines of their own after FINE;
 //! inside a pass moves are CNT. Lines are numbered from 1, an arc's second position stands on a line without number.
 
-use super::{Chunk, Post, Values, ascii, split, upper_name};
+use super::{Chunk, Post, Values, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
-use crate::profile::{Fanuc, FanucSpeed, Profile};
+use crate::profile::{Fanuc, FanucSpeed, Process, Profile};
 use crate::program::{Instruction, LayerProgram};
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -15,6 +15,9 @@ const MAX_NAME: usize = 36;
 
 /// Comments may have this many characters.
 const MAX_COMMENT: usize = 16;
+
+/// Longest wait of one line, s.
+const MAX_WAIT: f64 = 300.0;
 
 /// Room for `_L`, and for the number of a split layer.
 const SUFFIX: usize = 2 + 4;
@@ -27,6 +30,7 @@ pub struct FanucTp {
     values: Values,
     travel_speed: f64,
     nominal_speed: f64,
+    wire_feed_speed: f64,
     digits: usize,
     main: Program,
 }
@@ -73,9 +77,11 @@ impl FanucTp {
     pub fn new(part: &str, profile: &Profile, fanuc: Fanuc) -> Self {
         let name = upper_name(part);
         let values = Values::new(&name, profile);
-        let (travel_speed, nominal_speed) = (profile.travel.speed, profile.process.deposition_speed);
+        let Process { deposition_speed: nominal_speed, wire_feed_speed, .. } = profile.process;
+        let travel_speed = profile.travel.speed;
         let comment = ascii(part).replace('"', "_");
-        Self { name, comment, fanuc, values, travel_speed, nominal_speed, digits: 3, main: Program::default() }
+        let main = Program::default();
+        Self { name, comment, fanuc, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
@@ -134,9 +140,25 @@ impl FanucTp {
                     None => program.line(&format!("L {end}")),
                 }
             }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(program, &self.fanuc.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(program, crater_lines(&self.fanuc.crater, &self.fanuc.wire_feed));
+                }
+                wait(program, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(program, seconds),
             Instruction::ArcOff { .. } => self.lines(program, &self.fanuc.arc_off),
         }
     }
+}
+
+fn wait(program: &mut Program, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
 }
 
 impl Post for FanucTp {

@@ -1,7 +1,7 @@
 //! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
 //! keys and templates of the profile.
 
-use super::{Chunk, Post, Values, ascii};
+use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::push_fixed;
 use crate::profile::{Gcode, GcodeComments, Profile};
 use crate::program::{Circle, Instruction, LayerProgram};
@@ -19,6 +19,7 @@ pub struct CncGcode {
     comment: String,
     gcode: Gcode,
     values: Values,
+    wire_feed_speed: f64,
     block: usize,
     /// Feed written last, mm/s.
     feed: f64,
@@ -31,7 +32,8 @@ impl CncGcode {
         let file = format!("{part}.{}", gcode.extension);
         let values = Values::new(&ascii(part), profile);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
-        Self { file, comment, gcode, values, block: 0, feed: 0.0, at: None }
+        let wire_feed_speed = profile.process.wire_feed_speed;
+        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, at: None }
     }
 
     fn begin_block(&mut self, text: &mut String) {
@@ -57,6 +59,12 @@ impl CncGcode {
             text.push_str(&line);
             text.push('\n');
         }
+    }
+
+    fn wait(&mut self, text: &mut String, seconds: f64) {
+        self.values.set_dwell(seconds);
+        let lines = self.gcode.dwell.clone();
+        self.blocks(text, &lines);
     }
 
     /// A straight move; axes that stand still are left out.
@@ -112,6 +120,20 @@ impl CncGcode {
                 self.blocks(text, &lines);
             }
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                let lines = self.gcode.wire_feed.clone();
+                self.blocks(text, &lines);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    let lines = crater_lines(&self.gcode.crater, &self.gcode.wire_feed).to_vec();
+                    self.blocks(text, &lines);
+                }
+                self.wait(text, seconds);
+            }
+            Instruction::Dwell { seconds } => self.wait(text, seconds),
             Instruction::ArcOff { .. } => {
                 let lines = self.gcode.arc_off.clone();
                 self.blocks(text, &lines);

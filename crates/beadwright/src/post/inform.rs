@@ -4,7 +4,7 @@
 //! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
 //! begins, so the robot does not move for it.
 
-use super::{Chunk, Post, Values, ascii, split, upper_name};
+use super::{Chunk, Post, Values, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use crate::profile::{Inform, InformSpeed, Profile};
 use crate::program::{Instruction, LayerProgram};
@@ -13,6 +13,9 @@ use std::fmt::Write as _;
 
 /// Comments may have this many characters.
 const MAX_COMMENT: usize = 32;
+
+/// Longest wait of one timer, s.
+const MAX_WAIT: f64 = 600.0;
 
 /// Room for `-L`, and for the number of a split layer (which short names go without as long as they can).
 const SUFFIX: usize = 2;
@@ -24,6 +27,7 @@ pub struct YaskawaInform {
     inform: Inform,
     values: Values,
     travel_speed: f64,
+    wire_feed_speed: f64,
     digits: usize,
     /// Instructions of the main job so far.
     main: String,
@@ -57,6 +61,7 @@ impl YaskawaInform {
             inform,
             values,
             travel_speed,
+            wire_feed_speed: profile.process.wire_feed_speed,
             digits: 3,
             main: String::new(),
             at: DVec3::ZERO,
@@ -111,6 +116,18 @@ impl YaskawaInform {
                     self.motion(job, "MOVC", to, speed, level);
                 }
             }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(&mut job.instructions, &self.inform.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(&mut job.instructions, crater_lines(&self.inform.crater, &self.inform.wire_feed));
+                }
+                wait(job, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(job, seconds),
             Instruction::ArcOff { .. } => self.lines(&mut job.instructions, &self.inform.arc_off),
         }
     }
@@ -134,6 +151,10 @@ impl YaskawaInform {
         );
         Chunk { file: format!("{name}.jbi"), text }
     }
+}
+
+fn wait(job: &mut Job, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
 }
 
 impl Post for YaskawaInform {

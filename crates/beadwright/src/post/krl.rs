@@ -3,7 +3,7 @@
 //! One module a layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The
 //! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`.
 
-use super::{Chunk, Post, Values, ascii};
+use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::{fixed, push_fixed};
 use crate::profile::{Krl, Profile};
 use crate::program::{Instruction, LayerProgram};
@@ -23,6 +23,7 @@ pub struct KukaKrl {
     krl: Krl,
     values: Values,
     travel_speed: f64,
+    wire_feed_speed: f64,
     digits: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
@@ -34,7 +35,8 @@ impl KukaKrl {
         let name = module_name(part);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
-        Self { name, comment, krl, values, travel_speed: profile.travel.speed, digits: 3, speed: 0.0 }
+        let (travel_speed, wire_feed_speed) = (profile.travel.speed, profile.process.wire_feed_speed);
+        Self { name, comment, krl, values, travel_speed, wire_feed_speed, digits: 3, speed: 0.0 }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -112,6 +114,18 @@ impl KukaKrl {
                     None => self.lin(text, to, !last),
                 }
             }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(text, &self.krl.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(text, crater_lines(&self.krl.crater, &self.krl.wire_feed));
+                }
+                wait(text, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(text, seconds),
             Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
         }
     }
@@ -173,6 +187,10 @@ impl Post for KukaKrl {
         text.push_str("PTP XHOME\r\nEND\r\n");
         vec![Chunk { file: format!("{}.src", self.name), text }]
     }
+}
+
+fn wait(text: &mut String, seconds: f64) {
+    text.push_str(&format!("WAIT SEC {}\r\n", fixed(seconds, 3)));
 }
 
 /// A legal module name: letters, digits and `_`, not beginning with a digit, no keyword, at most 24 characters.

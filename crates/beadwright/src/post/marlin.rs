@@ -6,7 +6,7 @@ use super::gcode::push_centre;
 use super::{Chunk, Post, Values, ascii};
 use crate::bead::wire_area;
 use crate::fill::PassKind;
-use crate::number::push_fixed;
+use crate::number::{fixed, push_fixed};
 use crate::profile::{Marlin, Profile};
 use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
@@ -27,6 +27,10 @@ pub struct MarlinGcode {
     height: f64,
     /// Filament per second of deposition, mm/s: the metal of the bead at its nominal speed.
     filament_speed: f64,
+    /// Part of it from here on.
+    filament_ratio: f64,
+    /// Whether moves lay metal: not in a dry run.
+    lays: bool,
     travel_speed: f64,
     at: Option<DVec3>,
     /// Filament since the last G92, mm; the sum of what was written.
@@ -39,7 +43,10 @@ pub struct MarlinGcode {
 
 impl MarlinGcode {
     /// A post for a part.
-    pub fn new(part: &str, profile: &Profile, marlin: Marlin) -> Self {
+    pub fn new(part: &str, profile: &Profile, mut marlin: Marlin) -> Self {
+        if profile.is_dry_run() {
+            marlin.retract_length = 0.0;
+        }
         let metal = profile.bead().area() * profile.process.deposition_speed;
         Self {
             file: format!("{part}.{}", marlin.extension),
@@ -49,6 +56,8 @@ impl MarlinGcode {
             width: profile.bead.width,
             height: profile.layers.height,
             filament_speed: metal / wire_area(profile.wire.diameter) / profile.process.efficiency,
+            filament_ratio: 1.0,
+            lays: false,
             travel_speed: profile.travel.speed,
             at: None,
             extruded: 0.0,
@@ -77,7 +86,8 @@ impl MarlinGcode {
     fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
         let straight = self.at.map_or(0.0, |at| at.distance(to));
         let (word, length) = circle.map_or(("G1", straight), |circle| (circle.word(), circle.length()));
-        self.motion(text, word, to, circle, Some(self.filament_speed * length / speed), speed);
+        let filament = self.filament_speed * self.filament_ratio * length / speed;
+        self.motion(text, word, to, circle, self.lays.then_some(filament), speed);
     }
 
     /// A move; arcs need ARC_SUPPORT in the firmware, or `[gcode_arcs]` in Klipper.
@@ -161,9 +171,15 @@ impl MarlinGcode {
                     Self::comment(text, &format!("WIDTH:{}", self.width));
                 }
                 self.retract(text, false);
+                self.lays = true;
             }
+            Instruction::WireFeed { ratio } => self.filament_ratio = ratio,
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
-            Instruction::ArcOff { .. } => {}
+            // Craters are refused before a printer's program is begun.
+            Instruction::Crater { seconds, .. } | Instruction::Dwell { seconds } => {
+                text.push_str(&format!("G4 P{}\n", fixed(seconds * 1000.0, 0)));
+            }
+            Instruction::ArcOff { .. } => self.lays = false,
         }
     }
 

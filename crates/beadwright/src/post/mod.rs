@@ -17,14 +17,17 @@ pub mod gcode;
 pub mod inform;
 pub mod krl;
 pub mod marlin;
+mod needs;
 pub mod rapid;
 mod split;
 pub mod urscript;
 
+use crate::number::fixed;
 use crate::plan::Layer;
 use crate::profile::{BUILT_IN, Profile, ProfileError};
 use crate::program::{Instruction, LayerProgram, Programmer};
 use crate::template;
+use crate::weld::retract_time;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
@@ -68,6 +71,9 @@ pub enum PostError {
 /// # Errors
 /// [`PostError`] when there is none, or the profile lacks its section.
 pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, PostError> {
+    needs::check(name, profile)?;
+    // In front, since long names lose their end.
+    let part = &*if profile.is_dry_run() { format!("dry_{part}") } else { part.to_owned() };
     match name {
         "krl" => {
             let section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
@@ -113,7 +119,7 @@ pub fn write<L: Borrow<Layer>>(
     profile: &Profile,
 ) -> Result<BTreeMap<String, String>, PostError> {
     let mut post = post(name, part, profile)?;
-    let mut programmer = Programmer::new(profile.travel.clearance).with_fit(&profile.program);
+    let mut programmer = Programmer::of(profile);
     let mut chunks = post.begin(layers.len());
     layers.iter().for_each(|layer| chunks.extend(post.layer(&programmer.layer(layer.borrow()))));
     chunks.extend(post.end(programmer.leave()));
@@ -137,6 +143,7 @@ impl Values {
     fn new(program: &str, profile: &Profile) -> Self {
         let process = &profile.process;
         let milliseconds = |seconds: f64| (seconds * 1000.0).round().to_string();
+        let retract = retract_time(&profile.start_stop, process);
         Self(vec![
             ("program", program.to_owned()),
             ("layer", String::new()),
@@ -152,10 +159,29 @@ impl Values {
             ("arc_end_delay_ms", milliseconds(process.arc_end_delay)),
             ("gas_preflow_ms", milliseconds(process.gas_preflow)),
             ("gas_postflow_ms", milliseconds(process.gas_postflow)),
+            ("dwell", "0".to_owned()),
+            ("dwell_ms", "0".to_owned()),
+            ("wire_feed", fixed(process.wire_feed_speed, 3)),
+            ("wire_feed_ratio", fixed(1.0, 4)),
+            ("wire_retract", profile.start_stop.wire_retract.to_string()),
+            ("wire_retract_time", ((retract * 100.0).round() / 100.0).to_string()),
+            ("wire_retract_time_ms", milliseconds(retract)),
         ])
     }
 
-    fn set(&mut self, name: &str, value: usize) {
+    /// The wait of a template.
+    fn set_dwell(&mut self, seconds: f64) {
+        self.set("dwell", fixed(seconds, 3));
+        self.set("dwell_ms", fixed(seconds * 1000.0, 0));
+    }
+
+    /// The wire feed, of the nominal one.
+    fn set_wire_feed(&mut self, ratio: f64, nominal: f64) {
+        self.set("wire_feed_ratio", fixed(ratio, 4));
+        self.set("wire_feed", fixed(ratio * nominal, 3));
+    }
+
+    fn set(&mut self, name: &str, value: impl ToString) {
         for (_, v) in self.0.iter_mut().filter(|(known, _)| *known == name) {
             *v = value.to_string();
         }
@@ -164,6 +190,17 @@ impl Values {
     fn expand<'a>(&'a self, lines: &'a [String]) -> impl Iterator<Item = String> + 'a {
         lines.iter().map(|line| template::expand(line, &self.0))
     }
+}
+
+/// Lines that set the wire feed in a crater: those of the profile, or those that set it anywhere.
+fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
+    if crater.is_empty() { wire_feed } else { crater }
+}
+
+/// A wait in pieces of what a controller takes at once, s.
+fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
+    let count = (seconds / most).ceil().max(1.0);
+    (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
 }
 
 /// Printable ASCII for comments; other characters become `_`.

@@ -9,10 +9,11 @@ pub(crate) mod names;
 
 mod data;
 
-use super::{Chunk, Post, Values, ascii};
+use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::fixed;
 use crate::profile::{Process, Profile, Rapid, RapidArc, RapidModules};
 use crate::program::{Instruction, LayerProgram};
+use crate::weld::retract_time;
 use glam::DVec3;
 
 /// The RAPID post.
@@ -27,8 +28,12 @@ pub struct AbbRapid {
     digits: usize,
 }
 
-/// Speeds of a layer in order of appearance, thousandths of a mm/s: the place is the number of the data less one.
-type Speeds = Vec<u64>;
+/// What the data of a weld tell, thousandths of a mm/s: the speed, and the pace at which the nominal wire feed would lay
+/// the metal, where the wire comes otherwise.
+type Datum = (u64, Option<u64>);
+
+/// The data of a layer in order of appearance: the place is the number less one.
+type Speeds = Vec<Datum>;
 
 impl AbbRapid {
     /// A post for a part; its name becomes the module's name.
@@ -36,6 +41,7 @@ impl AbbRapid {
         let name = names::module_name(part, 3, [&rapid.tool, &rapid.wobj]);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
+        let rapid = with_ends(rapid, profile);
         let orientation = data::quaternion(&rapid.orientation);
         let (process, travel_speed) = (profile.process.clone(), profile.travel.speed);
         Self { name, comment, rapid, process, values, travel_speed, orientation, digits: 3 }
@@ -69,23 +75,35 @@ impl AbbRapid {
         (written * 1000.0).round().max(1.0) as u64
     }
 
+    /// The data for a speed and a part of the nominal wire feed; plain moves have no wire.
+    fn datum(&self, speed: f64, feed: f64) -> Datum {
+        let pace = self.process.deposition_speed / feed;
+        (self.rounded(speed), (self.with_arc() && feed != 1.0).then(|| self.rounded(pace)))
+    }
+
     fn speeds(&self, program: &LayerProgram) -> Speeds {
-        let mut speeds = Speeds::new();
+        let (mut speeds, mut feed) = (Speeds::new(), 1.0);
         for instruction in &program.instructions {
-            let Instruction::Weld { speed, .. } = instruction else { continue };
-            let speed = self.rounded(*speed);
-            if !speeds.contains(&speed) {
-                speeds.push(speed);
+            match *instruction {
+                Instruction::WireFeed { ratio } => feed = ratio,
+                Instruction::Weld { speed, .. } => {
+                    let datum = self.datum(speed, feed);
+                    if !speeds.contains(&datum) {
+                        speeds.push(datum);
+                    }
+                }
+                _ => {}
             }
         }
         speeds
     }
 
     fn declare(&self, text: &mut String, speeds: &Speeds) {
-        for (i, &speed) in speeds.iter().enumerate() {
+        for (i, &(speed, pace)) in speeds.iter().enumerate() {
             let speed = speed as f64 / 1000.0;
             let declaration = if self.with_arc() {
-                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, &self.process, &self.rapid))
+                let feed = pace.map_or(1.0, |pace| self.process.deposition_speed * 1000.0 / pace as f64);
+                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &self.process, &self.rapid))
             } else {
                 format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
             };
@@ -93,9 +111,9 @@ impl AbbRapid {
         }
     }
 
-    /// Number of the data for a speed, from 1.
-    fn number(&self, speeds: &Speeds, speed: f64) -> usize {
-        let wanted = self.rounded(speed);
+    /// Number of the data for a speed and a wire feed, from 1.
+    fn number(&self, speeds: &Speeds, speed: f64, feed: f64) -> usize {
+        let wanted = self.datum(speed, feed);
         speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
     }
 
@@ -124,6 +142,7 @@ impl AbbRapid {
     }
 
     fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds) {
+        let mut feed = 1.0;
         for (i, &instruction) in all.iter().enumerate() {
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself goes there.
@@ -132,22 +151,41 @@ impl AbbRapid {
                 (Instruction::ArcOn { pass, kind }, next) => {
                     self.values.set("pass", pass);
                     statement(text, &format!("! pass {pass} {}", kind.name()));
-                    self.arc_on(text, i.checked_sub(1).and_then(|before| all.get(before)), next, speeds);
+                    let before = i.checked_sub(1).and_then(|before| all.get(before));
+                    let first = next.and_then(|next| match *next {
+                        Instruction::Weld { speed, .. } => Some(self.number(speeds, speed, feed)),
+                        _ => None,
+                    });
+                    self.arc_on(text, before, first);
+                }
+                (Instruction::WireFeed { ratio }, _) => {
+                    feed = ratio;
+                    self.wire_feed(text, ratio);
                 }
                 (Instruction::Weld { to, circle, speed, last }, _) => {
-                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed), last);
+                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, feed), last);
                 }
+                // The seamdata fill it.
+                (Instruction::Crater { .. }, _) if self.with_arc() => {}
+                (Instruction::Crater { seconds, ratio }, _) => {
+                    if let Some(ratio) = ratio {
+                        self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+                        self.switch(text, crater_lines(&self.rapid.crater, &self.rapid.wire_feed));
+                    }
+                    wait(text, seconds);
+                }
+                (Instruction::Dwell { seconds }, _) => wait(text, seconds),
                 (Instruction::ArcOff { .. }, _) => self.arc_off(text),
             }
         }
     }
 
     /// Lights the arc where the travel before ended, with the data of the first piece.
-    fn arc_on(&self, text: &mut String, before: Option<&Instruction>, next: Option<&Instruction>, speeds: &Speeds) {
+    fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
         if !self.with_arc() {
             self.switch(text, &self.rapid.arc_on);
-        } else if let (Some(&Instruction::Travel { to }), Some(&Instruction::Weld { speed, .. })) = (before, next) {
-            let between = format!("vTravel,smBead,wd{}", self.number(speeds, speed));
+        } else if let (Some(&Instruction::Travel { to }), Some(number)) = (before, first) {
+            let between = format!("vTravel,smBead,wd{number}");
             self.motion(text, "ArcLStart", to, &between, false);
         }
     }
@@ -169,6 +207,14 @@ impl AbbRapid {
             self.switch(text, &self.rapid.arc_off);
         } else if self.process.arc_end_delay > 0.0 {
             statement(text, &format!("WaitTime \\InPos,{};", fixed(self.process.arc_end_delay, 3)));
+        }
+    }
+
+    /// The welddata hold the wire feed; without them lines of the profile set it.
+    fn wire_feed(&mut self, text: &mut String, ratio: f64) {
+        if !self.with_arc() {
+            self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+            self.lines(text, &self.rapid.wire_feed);
         }
     }
 
@@ -246,6 +292,22 @@ impl Post for AbbRapid {
         text.push_str("  ENDPROC\r\nENDMODULE\r\n");
         [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
     }
+}
+
+fn wait(text: &mut String, seconds: f64) {
+    statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
+}
+
+/// Crater and wire at the end of a seam as the section `start_stop` wants them, where it does.
+fn with_ends(mut rapid: Rapid, profile: &Profile) -> Rapid {
+    let ends = &profile.start_stop;
+    if ends.crater_fill_time > 0.0 {
+        (rapid.seam.fill_time, rapid.seam.fill_feed) = (ends.crater_fill_time, ends.crater_power);
+    }
+    if ends.wire_retract > 0.0 {
+        rapid.seam.rollback_time = retract_time(ends, &profile.process);
+    }
+    rapid
 }
 
 /// A statement of a routine on its own line.

@@ -4,7 +4,7 @@
 //! `pose_trans`. Moves of a pass are blended, by less than half of the shorter one of two; where the arc switches they
 //! are not. Lines end as on the controller, which is a Linux: with a line feed alone.
 
-use super::{Chunk, Post, Values, ascii, upper_name};
+use super::{Chunk, Post, Values, ascii, crater_lines, upper_name};
 use crate::number::{fixed, push_fixed};
 use crate::profile::{Profile, Urscript};
 use crate::program::{Instruction, LayerProgram};
@@ -47,6 +47,7 @@ pub struct UniversalScript {
     urscript: Urscript,
     values: Values,
     travel_speed: f64,
+    wire_feed_speed: f64,
     digits: usize,
     /// Names of the layers' functions.
     layers: Vec<String>,
@@ -62,8 +63,9 @@ impl UniversalScript {
         }
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
-        let travel_speed = profile.travel.speed;
-        Self { name, comment, urscript, values, travel_speed, digits: 3, layers: Vec::new(), at: None }
+        let (travel_speed, wire_feed_speed) = (profile.travel.speed, profile.process.wire_feed_speed);
+        let layers = Vec::new();
+        Self { name, comment, urscript, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
@@ -104,7 +106,7 @@ impl UniversalScript {
         text.push_str(if via.is_some() { ", mode=1)\n" } else { ")\n" });
     }
 
-    /// The blend at the end of a move, mm; `next` is what comes behind it.
+    /// The blend at the end of a move, mm; `next` is the move behind it, if one follows without a stop.
     fn blend(&self, to: DVec3, next: Option<&Instruction>) -> f64 {
         let before = self.at.map_or(0.0, |at| at.distance(to));
         match next {
@@ -131,6 +133,18 @@ impl UniversalScript {
                 self.motion(text, indent, circle.map(|c| c.via), to, speed, blend);
                 self.at = Some(to);
             }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(text, indent, &self.urscript.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(text, indent, crater_lines(&self.urscript.crater, &self.urscript.wire_feed));
+                }
+                wait(text, indent, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(text, indent, seconds),
             Instruction::ArcOff { .. } => self.lines(text, indent, &self.urscript.arc_off),
         }
     }
@@ -161,7 +175,9 @@ impl Post for UniversalScript {
         text.reserve(program.instructions.len() * 120);
         self.lines(&mut text, "    ", &self.urscript.layer_start);
         for (i, &instruction) in program.instructions.iter().enumerate() {
-            self.instruction(&mut text, "    ", instruction, program.instructions.get(i + 1));
+            let behind = program.instructions[i + 1..].iter();
+            let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
+            self.instruction(&mut text, "    ", instruction, next);
         }
         text.push_str("  end\n");
         self.layers.push(name);
@@ -182,6 +198,10 @@ impl Post for UniversalScript {
         text.push_str(&format!("end\n{}()\n", self.name));
         self.chunk(text)
     }
+}
+
+fn wait(text: &mut String, indent: &str, seconds: f64) {
+    text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
 }
 
 /// `p[x,y,z,rx,ry,rz]` of a place in mm, in metres and radians.

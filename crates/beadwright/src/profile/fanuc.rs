@@ -49,6 +49,15 @@ pub struct Fanuc {
     pub arc_on: Vec<String>,
     /// Instructions that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`.
+    /// Needed where those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Instructions at the end of the main program.
     pub end: Vec<String>,
 }
@@ -77,12 +86,14 @@ impl Fanuc {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 7] {
         [
             ("fanuc.start", &self.start),
             ("fanuc.layer_start", &self.layer_start),
             ("fanuc.arc_on", &self.arc_on),
             ("fanuc.arc_off", &self.arc_off),
+            ("fanuc.wire_feed", &self.wire_feed),
+            ("fanuc.crater", &self.crater),
             ("fanuc.end", &self.end),
         ]
     }

@@ -31,6 +31,18 @@ pub struct Gcode {
     pub arc_on: Vec<String>,
     /// Blocks that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
+    /// Blocks that wait `{{dwell}}` s or `{{dwell_ms}}` ms; default `G4 P{{dwell}}`, which is LinuxCNC's.
+    #[serde(default = "seconds")]
+    pub dwell: Vec<String>,
+    /// Blocks that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
+    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
+    /// none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Blocks that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move, as LinuxCNC's M67 does: M68 does not.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Blocks at the end.
     pub footer: Vec<String>,
 }
@@ -45,6 +57,10 @@ pub enum GcodeComments {
     Parentheses,
     /// `; LAYER 1`
     Semicolon,
+}
+
+fn seconds() -> Vec<String> {
+    vec!["G4 P{{dwell}}".to_owned()]
 }
 
 fn yes() -> bool {

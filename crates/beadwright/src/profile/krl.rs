@@ -27,6 +27,15 @@ pub struct Krl {
     pub arc_on: Vec<String>,
     /// Lines that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
+    /// Lines that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
+    /// where it changes. `$ANOUT[1] = …` stops at the point before; `TRIGGER WHEN DISTANCE=0 DELAY=0 DO $ANOUT[1] = …`
+    /// does not. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Lines that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move, as a TRIGGER does.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Lines at the end of the main program.
     pub end: Vec<String>,
 }

@@ -16,7 +16,7 @@ pub(super) fn broken_text(key: &str, value: &str, reason: &str) -> Broken {
 }
 
 /// Placeholders that a template may use.
-pub(crate) const PLACEHOLDERS: [&str; 14] = [
+pub(crate) const PLACEHOLDERS: [&str; 21] = [
     "program",
     "layer",
     "pass",
@@ -31,6 +31,13 @@ pub(crate) const PLACEHOLDERS: [&str; 14] = [
     "arc_end_delay_ms",
     "gas_preflow_ms",
     "gas_postflow_ms",
+    "dwell",
+    "dwell_ms",
+    "wire_feed",
+    "wire_feed_ratio",
+    "wire_retract",
+    "wire_retract_time",
+    "wire_retract_time_ms",
 ];
 
 pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
@@ -138,6 +145,7 @@ pub(super) fn ranges(p: &Profile) -> Vec<Range> {
         ranges.push(("marlin.retract_speed", marlin.retract_speed, 0.1, 500.0, "mm/s"));
         ranges.push(("marlin.retract_from", marlin.retract_from, 0.0, 1000.0, "mm"));
     }
+    ranges.extend(p.start_stop.ranges());
     ranges.extend(p.rapid.iter().flat_map(|rapid| rapid.ranges()));
     ranges.extend(p.fanuc.iter().flat_map(|fanuc| fanuc.ranges()));
     ranges.extend(p.inform.iter().flat_map(|inform| inform.ranges()));
@@ -205,6 +213,8 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("krl.layer_start", &k.layer_start),
             ("krl.arc_on", &k.arc_on),
             ("krl.arc_off", &k.arc_off),
+            ("krl.wire_feed", &k.wire_feed),
+            ("krl.crater", &k.crater),
             ("krl.end", &k.end),
         ]
     });
@@ -214,6 +224,9 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             ("gcode.layer_start", &g.layer_start),
             ("gcode.arc_on", &g.arc_on),
             ("gcode.arc_off", &g.arc_off),
+            ("gcode.dwell", &g.dwell),
+            ("gcode.wire_feed", &g.wire_feed),
+            ("gcode.crater", &g.crater),
             ("gcode.footer", &g.footer),
         ]
     });

@@ -4,6 +4,7 @@
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
 mod check;
+mod dry_run;
 pub mod edit;
 mod fanuc;
 mod gcode;
@@ -12,8 +13,10 @@ mod inform;
 mod krl;
 mod limits;
 mod marlin;
+mod process;
 mod rapid;
 mod read;
+mod start_stop;
 mod urscript;
 
 pub use check::CheckLimits;
@@ -23,9 +26,11 @@ pub use hybrid::Hybrid;
 pub use inform::{Inform, InformSpeed};
 pub use krl::Krl;
 pub use marlin::Marlin;
+pub use process::{Follow, Process};
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
 pub(crate) use read::{explain, line_of, line_of_key, nearest};
+pub use start_stop::StartStop;
 pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};
@@ -88,6 +93,9 @@ pub struct Profile {
     /// How paths become moves of a program; optional.
     #[serde(default)]
     pub program: Program,
+    /// How passes begin and end, and how long layers wait; optional.
+    #[serde(default)]
+    pub start_stop: StartStop,
     /// Acceleration, for machines whose time depends on it; optional.
     pub motion: Option<Motion>,
     /// KUKA KRL; needed for the post `krl`.
@@ -104,6 +112,9 @@ pub struct Profile {
     pub inform: Option<Inform>,
     /// URScript; needed for the post `urscript`.
     pub urscript: Option<Urscript>,
+    /// Whether programs only move: a way of writing them, no value of the file.
+    #[serde(skip)]
+    dry_run: bool,
 }
 
 /// The wire.
@@ -117,37 +128,6 @@ pub struct Wire {
     pub diameter: f64,
     /// Density, g/cm³.
     pub density: f64,
-}
-
-/// Arc, wire feed, speed and gas.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Process {
-    /// Wire feed speed, m/min.
-    pub wire_feed_speed: f64,
-    /// Speed of the torch while the arc burns, mm/s.
-    pub deposition_speed: f64,
-    /// Part of the wire that ends in the bead, 0 to 1.
-    pub efficiency: f64,
-    /// Arc current, A; optional, for the heat input.
-    pub current: Option<f64>,
-    /// Arc voltage, V; optional, for the heat input.
-    pub voltage: Option<f64>,
-    /// Wait after the arc is on before the torch moves, s.
-    pub arc_start_delay: f64,
-    /// Wait after the arc is off before the torch leaves, s.
-    pub arc_end_delay: f64,
-    /// Shielding gas, for the report.
-    pub gas: String,
-    /// Gas flow, L/min.
-    pub gas_flow: f64,
-    /// Gas before the arc, s.
-    pub gas_preflow: f64,
-    /// Gas after the arc, s.
-    pub gas_postflow: f64,
-    /// Contact tip to work distance, mm.
-    pub ctwd: f64,
 }
 
 /// The single bead, a parabola.
@@ -298,6 +278,10 @@ pub struct Order {
     /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further on every layer) or `spread` (as far
     /// as can be from the seams below); default nearest.
     pub seam: Seam,
+    /// Whether passes run the other way on every second layer, so that ends come to lie over starts: closed passes turn
+    /// round, open ones begin at their left end on one layer (least x, then least y) and at their right end on the next;
+    /// default false.
+    pub alternate: bool,
 }
 
 /// Tolerances of slicing.
@@ -479,8 +463,8 @@ impl Profile {
 
     /// How the passes of a layer are put in order.
     pub fn order_settings(&self, layer: usize) -> OrderSettings {
-        let Order { method, seam } = self.order;
-        OrderSettings { method, seam, layer, bead_width: self.bead.width }
+        let Order { method, seam, alternate } = self.order;
+        OrderSettings { method, seam, alternate, layer, bead_width: self.bead.width }
     }
 
     fn hybrid_settings(&self) -> HybridSettings {
@@ -517,6 +501,7 @@ impl Profile {
                 fitting.height,
             )
         });
-        self.mass_balance().warning().into_iter().chain(rise_note).collect()
+        let ends = self.start_stop.notes(self.fill.min_pass_length);
+        self.mass_balance().warning().into_iter().chain(rise_note).chain(ends).collect()
     }
 }

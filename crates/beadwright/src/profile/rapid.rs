@@ -93,6 +93,15 @@ pub struct Rapid {
     pub arc_on: Vec<String>,
     /// Statements that end the arc, at the end point of a pass; for `arc = "plain"`.
     pub arc_off: Vec<String>,
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. With `arc = "instructions"` the welddata hold it. Needed for `process.follow =
+    /// "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Statements at the end of the main program.
     pub end: Vec<String>,
 }
@@ -184,12 +193,14 @@ impl Rapid {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 7] {
         [
             ("rapid.start", &self.start),
             ("rapid.layer_start", &self.layer_start),
             ("rapid.arc_on", &self.arc_on),
             ("rapid.arc_off", &self.arc_off),
+            ("rapid.wire_feed", &self.wire_feed),
+            ("rapid.crater", &self.crater),
             ("rapid.end", &self.end),
         ]
     }

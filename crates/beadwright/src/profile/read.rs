@@ -50,6 +50,28 @@ pub enum ProfileError {
         /// Where to copy it from.
         hint: String,
     },
+    /// The profile lacks a key of a dialect that its other keys need.
+    #[error("profile \"{profile}\" has no {key} that {why} needs. {remedy}")]
+    NoKey {
+        /// Name of the profile.
+        profile: String,
+        /// Full key, such as `krl.wire_feed`.
+        key: String,
+        /// What needs it.
+        why: String,
+        /// What to write, or what to do without.
+        remedy: String,
+    },
+    /// A dialect cannot do what the profile asks for.
+    #[error("the post \"{post}\" cannot write {what}. {remedy}")]
+    Cannot {
+        /// Name of the post.
+        post: &'static str,
+        /// What it cannot.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// The file cannot be read; made by callers, since the library does no I/O.
     #[error("the profile {path} cannot be read: {reason}")]
     File {

@@ -30,6 +30,15 @@ pub struct Urscript {
     pub arc_on: Vec<String>,
     /// Statements that end the arc, at the end point of a pass.
     pub arc_off: Vec<String>,
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
     /// Statements at the end of the program.
     pub end: Vec<String>,
 }
@@ -53,12 +62,14 @@ impl Urscript {
     }
 
     /// Keys and lines of the templates.
-    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 5] {
+    pub(super) fn templates(&self) -> [(&'static str, &Vec<String>); 7] {
         [
             ("urscript.start", &self.start),
             ("urscript.layer_start", &self.layer_start),
             ("urscript.arc_on", &self.arc_on),
             ("urscript.arc_off", &self.arc_off),
+            ("urscript.wire_feed", &self.wire_feed),
+            ("urscript.crater", &self.crater),
             ("urscript.end", &self.end),
         ]
     }

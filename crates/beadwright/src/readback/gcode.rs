@@ -78,6 +78,8 @@ impl Extruder {
 struct Reader {
     trace: Trace,
     printer: bool,
+    /// The control is of Fanuc's kind.
+    fanuc: bool,
     on: Vec<Code>,
     off: Vec<Code>,
     /// mm per unit
@@ -110,6 +112,7 @@ impl Reader {
         Self {
             trace: Trace::new(),
             printer: hints.printer,
+            fanuc: hints.fanuc,
             on: codes(&["M3", "M4"], &options.arc.on),
             off: codes(&["M5"], &options.arc.off),
             unit: 1.0,
@@ -246,7 +249,9 @@ impl Reader {
 
     /// Seconds of a G4.
     fn dwell(&self, block: &Block) -> f64 {
-        let p = block.get(b'P').map(|p| if self.printer { p / 1000.0 } else { p });
+        // A decimal point makes seconds of it on such controls, and nobody waits for so few milliseconds.
+        let milliseconds = |p: f64| self.printer || (self.fanuc && p >= 10.0 && p.fract() == 0.0);
+        let p = block.get(b'P').map(|p| if milliseconds(p) { p / 1000.0 } else { p });
         let seconds = [block.get(b'S'), p, block.get(b'X'), block.get(b'F')].into_iter().flatten().next();
         seconds.unwrap_or(0.0).max(0.0)
     }

@@ -10,16 +10,19 @@ pub(super) struct Hints {
     pub(super) diameter: Option<f64>,
     /// E is a volume (UltiGCode).
     pub(super) volumetric: bool,
+    /// It has an O number alone on a line, as Fanuc's controls want it: their whole G4 P counts milliseconds.
+    pub(super) fanuc: bool,
 }
 
 /// Looks through the file; slicers write the diameter at its end.
 pub(super) fn of(text: &str) -> Hints {
-    let mut hints = Hints { printer: false, diameter: None, volumetric: false };
+    let mut hints = Hints { printer: false, diameter: None, volumetric: false, fanuc: false };
     for line in text.as_bytes().split(|&b| b == b'\n') {
         if let [b';', comment @ ..] = line {
             hints.diameter = hints.diameter.or_else(|| diameter(comment));
             hints.volumetric |= comment.starts_with(b"FLAVOR:UltiGCode");
         } else if !hints.printer {
+            hints.fanuc |= is_number(line);
             hints.printer = extrudes(line);
         } else if hints.diameter.is_some() {
             break;
@@ -28,12 +31,20 @@ pub(super) fn of(text: &str) -> Hints {
     hints
 }
 
+/// Whether a line is a program's number, such as `O1234`, perhaps with a comment.
+fn is_number(line: &[u8]) -> bool {
+    let code = line[..line.iter().position(|b| b";(".contains(b)).unwrap_or(line.len())].trim_ascii();
+    matches!(code, [b'O' | b'o', digits @ ..] if !digits.is_empty() && digits.iter().all(u8::is_ascii_digit))
+}
+
 /// Whether a line of G-code has an E word.
 fn extrudes(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     let code = &line[..line.iter().position(|b| b";(".contains(b)).unwrap_or(line.len())];
     let begins = matches!(code, [b'G' | b'g' | b'N' | b'n' | b'X' | b'x', b'0'..=b'9' | b'-' | b'.', ..]);
-    begins && code.windows(2).any(|w| matches!(w, [b'E' | b'e', b'0'..=b'9' | b'+' | b'-' | b'.']))
+    // `M67 E0 Q0.8` sets an analogue output of LinuxCNC: no extruder there.
+    let switches = code.split(|b| b.is_ascii_whitespace()).take(2).any(|w| matches!(w, [b'M' | b'm', b'0'..=b'9', ..]));
+    begins && !switches && code.windows(2).any(|w| matches!(w, [b'E' | b'e', b'0'..=b'9' | b'+' | b'-' | b'.']))
 }
 
 /// The diameter in a comment such as ` filament_diameter = 1.75,1.75`, mm.

@@ -31,7 +31,7 @@ const LINES: [&str; 21] = [
 ];
 
 /// Data kinds whose values matter.
-const KINDS: [&str; 3] = ["ROBTARGET", "SPEEDDATA", "WELDDATA"];
+const KINDS: [&str; 4] = ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA"];
 
 /// A value of named data.
 #[derive(Clone, Copy)]
@@ -40,6 +40,8 @@ pub(super) enum Value {
     Target(DVec3),
     /// Speed, mm/s.
     Speed(f64),
+    /// Times for which the torch stands at the start and at the end of a seam, s.
+    Seam([f64; 2]),
 }
 
 /// A module.
@@ -177,6 +179,17 @@ fn procs(text: &str, statements: &[(Range<usize>, usize)]) -> Vec<(String, Range
 /// The first number of an aggregate.
 pub(super) fn first_number(text: &str) -> Option<f64> {
     number(text.trim_start().trim_start_matches('[').split([',', ']']).next()?)
+}
+
+/// The times for which the torch stands at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
+/// drawn back, gas), s; none where the seamdata have other parts than those of RobotWare Arc 6.
+pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
+    const PARTS: usize = 48;
+    let numbers = text.split([',', '[', ']']).filter(|part| !part.trim().is_empty()).map(number);
+    let parts: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let sum = |places: &[usize]| places.iter().map(|&i| parts[i].max(0.0)).sum();
+    // Preflow and delay of the move; filling, burn-back, roll-back and postflow. Nine parts each are arcdata.
+    (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
 }
 
 /// The first three numbers of an aggregate, or the text that is none.

@@ -1,7 +1,7 @@
 //! ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
 //!
 //! Places are those of the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the
-//! codes of the options. A weld instruction lays metal at the speed of its welddata.
+//! codes of the options. A weld instruction lays metal at the speed of its welddata; the times of seamdata are waits.
 
 use super::module::{Module, Value};
 use super::trace::{Step, Trace};
@@ -130,6 +130,7 @@ impl Reader<'_> {
         for (line, kind, variable, value) in module.declarations() {
             let found = match kind {
                 "ROBTARGET" => self.target(&value, &module, line)?.map(Value::Target),
+                "SEAMDATA" => module::seam_times(&value).map(Value::Seam),
                 "SPEEDDATA" => module::first_number(&value).map(Value::Speed),
                 _ => module::first_number(&value).map(Value::Speed),
             };
@@ -320,6 +321,13 @@ impl Reader<'_> {
                 self.trace.forget();
             }
         }
+        if let Some(Value::Seam([start, end])) = self.value(at(speed_at + 1), module) {
+            self.trace.dwell += match weld {
+                Weld::Start => start,
+                Weld::End => end,
+                Weld::No | Weld::Seam => 0.0,
+            };
+        }
         if weld != Weld::No {
             self.trace.set_arc(matches!(weld, Weld::Start | Weld::Seam), line);
         }
@@ -336,7 +344,7 @@ impl Reader<'_> {
         }
         match self.value(text, module) {
             Some(Value::Speed(speed)) => Some(speed),
-            Some(Value::Target(_)) => None,
+            Some(Value::Target(_) | Value::Seam(_)) => None,
             None => number(text.strip_prefix(['v', 'V'])?),
         }
     }
@@ -362,7 +370,7 @@ impl Reader<'_> {
         }
         match self.value(text, module) {
             Some(Value::Target(to)) => Ok(Some(to)),
-            Some(Value::Speed(_)) | None => Ok(None),
+            Some(Value::Speed(_) | Value::Seam(_)) | None => Ok(None),
         }
     }
 }

@@ -17,6 +17,9 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
         ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
+    if m.dwell_time_s > 0.0 {
+        rows.insert(5, ("waits between layers", hours(m.dwell_time_s)));
+    }
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows
 }

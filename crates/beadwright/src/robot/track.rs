@@ -64,6 +64,7 @@ impl Track {
                     point += 1;
                     self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true });
                 }
+                Instruction::WireFeed { .. } | Instruction::Crater { .. } | Instruction::Dwell { .. } => {}
                 // The number of the pass, from 1, is the next one's from 0.
                 Instruction::ArcOff { pass: number } => pass = number,
             }

@@ -74,7 +74,12 @@ impl Reader<'_> {
                 assert!(self.exact, "the arc is switched at a blended point");
                 if word.starts_with("Start[") { self.machine.arc_on() } else { self.machine.arc_off() }
             }
-            ["WAIT", time] => assert!(time.strip_suffix("(sec)").unwrap().parse::<f64>().unwrap() >= 0.0),
+            ["WAIT", time] => {
+                let seconds = time.strip_suffix("(sec)").unwrap().parse().unwrap();
+                assert!(self.exact && seconds <= 327.67, "{statement}");
+                self.machine.wait(seconds);
+            }
+            [feed] if feed.starts_with("AO[1]=") => self.machine.motion.feeds.push(feed[6..].parse().unwrap()),
             _ => assert!(
                 ["!", "DO[", "UFRAME_NUM=1", "UTOOL_NUM=1"].iter().any(|w| words[0].starts_with(w)),
                 "{statement}"

@@ -54,6 +54,13 @@ struct Reader {
 impl Reader {
     fn block(&mut self, words: &[(char, f64)], line: &str) {
         if words.contains(&('G', 4.0)) {
+            let time: Vec<f64> = words.iter().filter(|w| "PXF".contains(w.0)).map(|w| w.1).collect();
+            assert_eq!(time.len(), 1, "{line}");
+            return self.machine.wait(time[0]);
+        }
+        // LinuxCNC: an analogue output with the next motion, or at once.
+        if words.contains(&('M', 67.0)) || words.contains(&('M', 68.0)) {
+            self.machine.motion.feeds.extend(words.iter().filter(|w| w.0 == 'Q').map(|w| w.1));
             return;
         }
         let (mut moves, mut centre) = (false, [None; 2]);

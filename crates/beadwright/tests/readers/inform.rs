@@ -78,7 +78,12 @@ impl Reader<'_> {
                 assert!(self.exact, "the arc ends at a blended point");
                 self.machine.arc_off();
             }
-            ["TIMER", time] => assert!(time.strip_prefix("T=").unwrap().parse::<f64>().unwrap() >= 0.0),
+            ["TIMER", time] => {
+                let seconds = time.strip_prefix("T=").unwrap().parse().unwrap();
+                assert!(self.exact && seconds <= 655.35, "{line}");
+                self.machine.wait(seconds);
+            }
+            ["AOUT", "AO#(1)", feed] => self.machine.motion.feeds.push(feed.parse().unwrap()),
             _ => assert!(line.starts_with('\'') || words[0] == "DOUT", "{line}"),
         }
     }

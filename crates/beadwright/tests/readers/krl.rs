@@ -38,8 +38,8 @@ fn check_module(file: &str, text: &str) {
 }
 
 /// Statements that neither move nor switch the arc.
-const KNOWN: [&str; 8] =
-    ["$OUT[", "$TOOL = ", "$BASE = ", "$APO.CDIS = ", "WAIT SEC ", "BAS(#", "GLOBAL INTERRUPT DECL ", "INTERRUPT ON "];
+const KNOWN: [&str; 7] =
+    ["$OUT[", "$TOOL = ", "$BASE = ", "$APO.CDIS = ", "BAS(#", "GLOBAL INTERRUPT DECL ", "INTERRUPT ON "];
 
 struct Reader<'a> {
     files: &'a BTreeMap<String, String>,
@@ -81,6 +81,11 @@ impl Reader<'_> {
                     "FALSE" => {}
                     _ => panic!("{line}"),
                 }
+            } else if let Some(seconds) = line.strip_prefix("WAIT SEC ") {
+                assert!(!self.blended, "a wait at a blended point");
+                self.machine.wait(seconds.parse().unwrap());
+            } else if let Some(feed) = line.strip_prefix("$ANOUT[1] = ") {
+                self.machine.motion.feeds.push(feed.parse().unwrap());
             } else if line == "PTP XHOME" {
                 assert!(!self.machine.burns());
                 self.homes += 1;

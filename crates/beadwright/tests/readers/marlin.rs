@@ -13,6 +13,10 @@ pub struct Print {
     pub drawn_back: f64,
     /// Length of moves without extrusion after the first point was reached, mm.
     pub travel: f64,
+    /// Sum of all waits, s.
+    pub waits: f64,
+    /// Speed and filament per length of every extruding move, mm/s and mm/mm.
+    pub moves: Vec<(f64, f64)>,
 }
 
 /// Runs a program; panics where a printer would do harm.
@@ -20,7 +24,7 @@ pub fn run(text: &str) -> Print {
     assert!(text.is_ascii());
     let mut print = Print::default();
     let (mut at, mut e, mut relative, mut hot, mut held) = ([None::<f64>; 3], 0.0, None, false, 0.0);
-    let mut goes_on = false;
+    let (mut goes_on, mut feed) = (false, 0.0);
     for line in text.lines() {
         assert!(line.len() < 96, "too long for Marlin: {line}");
         let code = line.split(';').next().unwrap().trim();
@@ -34,9 +38,11 @@ pub fn run(text: &str) -> Print {
             "M82" | "M83" => relative = Some(command == "M83"),
             "M109" => hot = value('S').unwrap() > 150.0,
             "M104" => hot &= value('S') != Some(0.0),
+            "G4" => print.waits += value('P').unwrap() / 1000.0,
             "G92" => e = value('E').unwrap(),
             "G0" | "G1" | "G2" | "G3" => {
                 let from = at;
+                feed = value('F').unwrap_or(feed);
                 for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
                     at[axis] = value(letter).or(at[axis]);
                 }
@@ -61,13 +67,21 @@ pub fn run(text: &str) -> Print {
                         print.paths.push(vec![a]);
                     }
                     let path = print.paths.last_mut().unwrap();
+                    let before = path.len();
                     if let ("G2" | "G3", Some(i), Some(j)) = (command, value('I'), value('J')) {
                         path.extend(chords(a, [a[0] + i, a[1] + j], command == "G3", b));
                     }
                     path.push(b);
+                    let length: f64 = path[before - 1..].windows(2).map(|p| distance(p[0], p[1])).sum();
+                    print.moves.push((feed / 60.0, pushed / length));
                 } else {
                     assert!(pushed == 0.0, "filament drawn back on the way: {line}");
-                    print.travel += distance(a, b);
+                    let mut way = vec![a];
+                    if let ("G2" | "G3", Some(i), Some(j)) = (command, value('I'), value('J')) {
+                        way.extend(chords(a, [a[0] + i, a[1] + j], command == "G3", b));
+                    }
+                    way.push(b);
+                    print.travel += way.windows(2).map(|p| distance(p[0], p[1])).sum::<f64>();
                 }
                 goes_on = pushed > 0.0 && a != b;
             }

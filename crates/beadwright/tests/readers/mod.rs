@@ -24,6 +24,10 @@ pub struct Motion {
     pub travel: f64,
     /// Circular moves.
     pub circles: usize,
+    /// Sum of all waits, in the unit of the language, s.
+    pub waits: f64,
+    /// What the wire feed was set to while the arc was on or before, in the order of the program.
+    pub feeds: Vec<f64>,
 }
 
 /// One path with the arc on.
@@ -82,6 +86,11 @@ impl Machine {
         self.motion.welds.push(weld);
     }
 
+    pub fn wait(&mut self, seconds: f64) {
+        assert!(seconds >= 0.0 && seconds.is_finite());
+        self.motion.waits += seconds;
+    }
+
     pub fn burns(&self) -> bool {
         self.weld.is_some()
     }
@@ -113,12 +122,16 @@ impl Machine {
     /// A circular move about `centre`; `sweep` in radians, counter-clockwise above 0.
     pub fn turn_to(&mut self, centre: Point, radius: f64, sweep: f64, to: Point, speed: f64) {
         let from = self.at.expect("an arc from nowhere");
-        assert!(self.weld.is_some(), "an arc without metal to {to:?}");
         assert!((distance(to, centre) - radius).abs() < 0.01, "the end {to:?} does not lie on the circle");
         assert!(distance(from, to) >= 0.0099, "a weld move of no length at {to:?}");
         let start = (from[1] - centre[1]).atan2(from[0] - centre[0]);
         let chords = (sweep.abs() / 0.01).ceil().max(1.0);
-        let weld = self.weld.as_mut().unwrap();
+        self.at = Some(to);
+        self.motion.circles += 1;
+        let Some(weld) = self.weld.as_mut() else {
+            self.motion.travel += radius * sweep.abs();
+            return;
+        };
         for i in 1..chords as usize {
             let angle = start + sweep * i as f64 / chords;
             weld.points.push([centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin(), to[2]]);
@@ -126,8 +139,6 @@ impl Machine {
         }
         weld.points.push(to);
         weld.speeds.push(speed);
-        self.at = Some(to);
-        self.motion.circles += 1;
     }
 
     /// G2 and G3: the centre as seen from the start.

@@ -235,9 +235,10 @@ impl Reader<'_> {
             }
             "WaitTime" => {
                 let seconds: f64 = rest.strip_prefix("\\InPos,").unwrap().parse().unwrap();
-                assert!(seconds >= 0.0);
+                self.machine.wait(seconds);
             }
             "SetDO" => self.set(rest),
+            "SetAO" => self.machine.motion.feeds.push(rest.strip_prefix("aoWire,").unwrap().parse().unwrap()),
             "Load" => {
                 let name = self.file(rest.strip_prefix("\\Dynamic,").unwrap());
                 assert!(self.loaded.insert(name.clone()), "{name} is loaded already");

@@ -52,11 +52,16 @@ impl Reader<'_> {
                 assert_eq!(self.blend, 0.0, "the arc is switched at a blended point");
                 if value == "True" { self.machine.arc_on() } else { self.machine.arc_off() }
             }
+        } else if let Some(seconds) = line.strip_prefix("sleep(") {
+            assert_eq!(self.blend, 0.0, "a wait at a blended point");
+            self.machine.wait(seconds.strip_suffix(')').unwrap().parse().unwrap());
+        } else if let Some(feed) = line.strip_prefix("set_standard_analog_out(0, ") {
+            self.machine.motion.feeds.push(feed.strip_suffix(')').unwrap().parse().unwrap());
         } else if let Some(function) = line.strip_suffix("()") {
             let body = self.functions.get(function).unwrap_or_else(|| panic!("{function} is not there yet")).clone();
             body.iter().for_each(|line| self.statement(line));
         } else {
-            let known = ["sleep(", "set_tcp(p[", "global part_frame = p["];
+            let known = ["set_tcp(p[", "global part_frame = p["];
             assert!(known.iter().any(|k| line.starts_with(k)), "{line}");
         }
     }

@@ -89,9 +89,9 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
     .join(",")
 }
 
-/// Welddata of a deposition speed, mm/s. The parts for tuning are 0, as in ABB's examples.
-pub(super) fn weld(speed: f64, process: &Process, rapid: &Rapid) -> String {
-    format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, 1.0))
+/// Welddata of a deposition speed, mm/s, and a part of the wire feed. The parts for tuning are 0, as in ABB's examples.
+pub(super) fn weld(speed: f64, feed: f64, process: &Process, rapid: &Rapid) -> String {
+    format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed))
 }
 
 /// The data of the main module: tool, part, home, speeds, zone and seam, one declaration each.

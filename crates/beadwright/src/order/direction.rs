@@ -1,0 +1,44 @@
+//! The other way round on every second layer, so that the low ends of beads come to lie over their high starts.
+
+use super::OrderSettings;
+use crate::fill::{Fill, Pass};
+
+/// Turns open passes that may be turned so that they begin at their left end on even layers, at their right end on odd
+/// ones, and stay so. An order alone cannot do it: it lays the same line on every layer the way that is shortest.
+pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
+    if !settings.alternate {
+        return;
+    }
+    let odd = settings.layer % 2 == 1;
+    let open = islands.iter_mut().flat_map(|fill| &mut fill.stages).flatten();
+    for pass in open.filter(|pass| !pass.closed && pass.reversible) {
+        if runs_left(pass) != odd {
+            pass.points.reverse();
+            pass.width.reverse();
+        }
+        pass.reversible = false;
+    }
+}
+
+/// Turns closed passes round on odd layers; they begin where they began. To be done last, since seams that wander are
+/// measured along the path as the strategy laid it.
+pub(super) fn turn_closed(passes: &mut [Pass], settings: &OrderSettings) {
+    if !settings.alternate || settings.layer.is_multiple_of(2) {
+        return;
+    }
+    for pass in passes.iter_mut().filter(|pass| pass.closed && !pass.points.is_empty()) {
+        pass.points.reverse();
+        pass.width.reverse();
+        let start = pass.points.len() - 1;
+        pass.points.rotate_left(start);
+        pass.width.rotate_left(start);
+    }
+}
+
+/// Whether a pass ends further left (then lower) than it begins.
+fn runs_left(pass: &Pass) -> bool {
+    let (Some(first), Some(last)) = (pass.points.first(), pass.points.last()) else { return false };
+    let across = last.x - first.x;
+    // Upright lines have no left end.
+    if across.abs() > 1e-6 { across < 0.0 } else { last.y < first.y }
+}

@@ -1,0 +1,28 @@
+//! Welding a pass: how it begins and ends, and how long that and the ways between passes take.
+//!
+//! Totals are counted and programs are written from the same two things, so that they tell the same times:
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `path` | a pass with its overlap, hot start and lead-out: points, and the pace to each |
+//! | `torch` | follows the torch over passes and layers: ways without arc, times, waits |
+//!
+//! The *pace* of a piece is the speed at which the nominal wire feed lays its metal, mm/s. By `process.follow` it is the
+//! speed of the torch, or it tells the wire feed while the torch keeps its nominal speed.
+
+mod path;
+mod torch;
+
+pub use path::path;
+pub(crate) use torch::retract_time;
+pub use torch::{Approach, Pause, Torch, Welded};
+
+use crate::profile::{Follow, Process};
+
+/// Speed of the torch and part of the nominal wire feed, at a pace (mm/s) of the metal.
+pub fn speed_and_feed(pace: f64, process: &Process) -> (f64, f64) {
+    match process.follow {
+        Follow::Speed => (pace, 1.0),
+        Follow::WireFeed => (process.deposition_speed, process.deposition_speed / pace),
+    }
+}

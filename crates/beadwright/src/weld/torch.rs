@@ -1,0 +1,176 @@
+//! Follows the torch: the ways between passes, how long everything takes, and how long it must wait.
+
+use super::speed_and_feed;
+use crate::motion::Motion;
+use crate::profile::{Process, Profile, StartStop};
+use glam::DVec3;
+
+/// Waits are told in steps of this, s; they are made longer, never shorter.
+const WAIT_STEP: f64 = 0.01;
+
+/// Where the torch stands, and how long the layer has taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Torch {
+    process: Option<Process>,
+    ends: StartStop,
+    motion: Option<Motion>,
+    travel_speed: f64,
+    clearance: f64,
+    at: Option<DVec3>,
+    /// Height of the last pass's end, mm: travels keep clear of it.
+    low: f64,
+    /// Time since the layer began, s.
+    seconds: f64,
+}
+
+/// A wait between layers, without arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pause {
+    /// Where the torch stands meanwhile, mm.
+    pub at: DVec3,
+    /// How long, s.
+    pub seconds: f64,
+    /// Length of the way there, mm.
+    pub length: f64,
+    /// Time of the way there, s.
+    pub moving: f64,
+}
+
+/// The way to the start of a pass, without arc.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Approach {
+    /// Ends of its legs, mm.
+    pub legs: Vec<DVec3>,
+    /// Its length, mm; 0 on the way to the first pass, which may come from anywhere.
+    pub length: f64,
+    /// Its time, s.
+    pub moving: f64,
+}
+
+/// What a pass takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Welded {
+    /// Its length, mm.
+    pub length: f64,
+    /// Time with the torch moving, s.
+    pub moving: f64,
+    /// Time in which the nominal wire feed lays its metal, with the crater's, s.
+    pub metal: f64,
+    /// Time for which the arc stands in the crater, s.
+    pub crater: f64,
+    /// Time with gas, starting and ending and drawing the wire back, s.
+    pub delay: f64,
+}
+
+impl Torch {
+    /// A torch whose ways count, but not its times; it never waits.
+    pub fn new(clearance: f64) -> Self {
+        Self {
+            process: None,
+            ends: StartStop::default(),
+            motion: None,
+            travel_speed: f64::INFINITY,
+            clearance,
+            at: None,
+            low: 0.0,
+            seconds: 0.0,
+        }
+    }
+
+    /// The torch of a profile.
+    pub fn of(profile: &Profile) -> Self {
+        Self {
+            process: Some(profile.process.clone()),
+            ends: profile.start_stop.clone(),
+            motion: profile.motion,
+            travel_speed: profile.travel.speed,
+            ..Self::new(profile.travel.clearance)
+        }
+    }
+
+    /// How passes begin and end.
+    pub fn ends(&self) -> &StartStop {
+        &self.ends
+    }
+
+    /// Where it stands; none before the first pass.
+    pub fn at(&self) -> Option<DVec3> {
+        self.at
+    }
+
+    /// Speed (mm/s) and part of the nominal wire feed at a pace.
+    pub fn speed_and_feed(&self, pace: f64) -> (f64, f64) {
+        self.process.as_ref().map_or((pace, 1.0), |process| speed_and_feed(pace, process))
+    }
+
+    /// Begins a layer, with the wait that its predecessor needs.
+    pub fn begin_layer(&mut self) -> Option<Pause> {
+        let missing = self.ends.min_layer_time - self.seconds;
+        let seconds = (missing.max(self.ends.interpass_time).max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
+        self.seconds = 0.0;
+        let from = self.at.filter(|_| seconds > 0.0)?;
+        let at = from.with_z(from.z + self.clearance + self.ends.dwell_height);
+        // The way up belongs to the wait: it counts for neither layer.
+        let (length, moving) = self.travel(&[at]);
+        self.at = Some(at);
+        Some(Pause { at, seconds, length, moving })
+    }
+
+    /// The way to the start of a pass, without arc: up above the higher end, across, and down. At first there is no place
+    /// to rise from.
+    pub fn approach(&mut self, start: DVec3) -> Approach {
+        let high = self.at.map_or(start.z, |_| self.low.max(start.z)) + self.clearance;
+        // After a wait it stands as high already, or higher.
+        let top = self.at.map_or(high, |at| at.z.max(high));
+        let rise = self.at.filter(|at| at.z < top || self.low == at.z).map(|at| at.with_z(top));
+        let legs: Vec<DVec3> = rise.into_iter().chain([start.with_z(top), start]).collect();
+        let (length, moving) = self.travel(&legs);
+        self.seconds += moving;
+        self.at = Some(start);
+        Approach { legs, length, moving }
+    }
+
+    /// Length and time of a way without arc from where the torch stands, mm and s; its legs begin and end at rest. The way
+    /// from nowhere to the first point counts nothing.
+    fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
+        let Some(mut at) = self.at else { return (0.0, 0.0) };
+        let (mut length, mut time) = (0.0, 0.0);
+        for &to in legs {
+            let leg = at.distance(to);
+            length += leg;
+            time += self.motion.map_or(leg / self.travel_speed, |m| m.seconds(at, [(to, self.travel_speed)]));
+            at = to;
+        }
+        (length, time)
+    }
+
+    /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them.
+    pub fn weld(&mut self, moves: &[(DVec3, f64)]) -> Welded {
+        let pieces = || moves.windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
+        let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_and_feed(pace).0));
+        let moving = match (&self.motion, moves.first()) {
+            (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
+            _ => pieces().map(|(length, pace)| length / self.speed_and_feed(pace).0).sum(),
+        };
+        let crater = self.ends.crater_fill_time;
+        let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + crater * self.ends.crater_power;
+        let welded = Welded { length: pieces().map(|p| p.0).sum(), moving, metal, crater, delay: self.delay() };
+        self.seconds += moving + crater + welded.delay;
+        if let Some(&(end, _)) = moves.last() {
+            (self.at, self.low) = (Some(end), end.z);
+        }
+        welded
+    }
+
+    /// Time with gas, starting, ending and drawing the wire back at its nominal speed, s a pass.
+    fn delay(&self) -> f64 {
+        let Some(process) = &self.process else { return 0.0 };
+        let gas_and_arc = process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow;
+        gas_and_arc + retract_time(&self.ends, process)
+    }
+}
+
+/// Time in which the wire is drawn back at its nominal speed, s.
+pub(crate) fn retract_time(ends: &StartStop, process: &Process) -> f64 {
+    ends.wire_retract / (process.wire_feed_speed * 1000.0 / 60.0)
+}

@@ -1,0 +1,151 @@
+/PROG  DEMO_L001
+/ATTR
+OWNER = MNEDITOR;
+COMMENT = "LAYER 1";
+LINE_COUNT = 45;
+PROTECT = READ_WRITE;
+DEFAULT_GROUP = 1,*,*,*,*;
+/MN
+   1:  UFRAME_NUM=1 ;
+   2:  UTOOL_NUM=1 ;
+   3:  !layer 1, z 1.419 mm ;
+   4:  AO[1]=1.0000 ;
+   5:L P[1] 100.0mm/sec FINE ;
+   6:L P[2] 100.0mm/sec FINE ;
+   7:  !pass 1 contour ;
+   8:  DO[1]=ON ;
+   9:  WAIT 0.5(sec) ;
+  10:  Weld Start[1,1] ;
+  11:  WAIT 0.2(sec) ;
+  12:L P[3] 6.4mm/sec CNT100 ;
+  13:L P[4] 8.0mm/sec CNT100 ;
+  14:L P[5] 8.0mm/sec CNT100 ;
+  15:L P[6] 8.0mm/sec CNT100 ;
+  16:L P[7] 8.0mm/sec CNT100 ;
+  17:L P[8] 8.0mm/sec CNT100 ;
+  18:L P[9] 10.0mm/sec FINE ;
+  19:  AO[1]=0.5000 ;
+  20:  WAIT 0.40(sec) ;
+  21:  Weld End[1,1] ;
+  22:  WAIT 0.5(sec) ;
+  23:  WAIT 1(sec) ;
+  24:  DO[1]=OFF ;
+  25:  WAIT 0.05(sec) ;
+  26:  AO[1]=1.0000 ;
+  27:L P[10] 100.0mm/sec FINE ;
+  28:L P[11] 100.0mm/sec FINE ;
+  29:L P[12] 100.0mm/sec FINE ;
+  30:  !pass 2 infill ;
+  31:  DO[1]=ON ;
+  32:  WAIT 0.5(sec) ;
+  33:  Weld Start[1,1] ;
+  34:  WAIT 0.2(sec) ;
+  35:L P[13] 6.4mm/sec CNT100 ;
+  36:L P[14] 8.0mm/sec CNT100 ;
+  37:L P[15] 6.0mm/sec CNT100 ;
+  38:L P[16] 7.5mm/sec FINE ;
+  39:  AO[1]=0.5000 ;
+  40:  WAIT 0.40(sec) ;
+  41:  Weld End[1,1] ;
+  42:  WAIT 0.5(sec) ;
+  43:  WAIT 1(sec) ;
+  44:  DO[1]=OFF ;
+  45:  WAIT 0.05(sec) ;
+/POS
+P[1]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     0.000 mm, Y =     0.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[2]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     0.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[3]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     5.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[4]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    30.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[5]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    30.000 mm, Y =    30.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[6]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     0.000 mm, Y =    30.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[7]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     0.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[8]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     2.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[9]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     6.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[10]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =     6.000 mm, Y =     0.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[11]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    50.000 mm, Y =     0.000 mm, Z =    21.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[12]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    50.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[13]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    55.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[14]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    70.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[15]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    86.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[16]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    90.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+/END

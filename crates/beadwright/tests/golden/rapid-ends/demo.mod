@@ -1,0 +1,23 @@
+MODULE demo
+  ! demo, cmt-steel-robots
+  TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
+  TASK PERS wobjdata wPart:=[FALSE,TRUE,"",[[900.000,0.000,400.000],[1.0000000,0.0000000,0.0000000,0.0000000]],[[0,0,0],[1,0,0,0]]];
+  CONST jointtarget jHome:=[[0.000,0.000,0.000,0.000,30.000,0.000],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
+  CONST speeddata vHome:=[100.000,500.000,5000,1000];
+  CONST speeddata vTravel:=[100.000,500.000,5000,1000];
+  CONST zonedata zBead:=[FALSE,1.000,1.000,1.000,0.100,1.000,0.100];
+  TASK PERS seamdata smBead:=[0.000,0.500,[1,7,0.000,2.400,0.000,129.000,0,0,0],0.200,0,6.000,0.000,0.000,[1,7,0.000,2.400,0.000,129.000,0,0,0],0.000,0.400,[1,7,0.000,1.200,0.000,129.000,0,0,0],0.080,0.050,[1,7,0.000,2.400,0.000,129.000,0,0,0],1.000];
+  PROC main()
+    ConfL \Off;
+    SingArea \Wrist;
+    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+    Load \Dynamic,"HOME:/part/demo_L001.mod";
+    %"demo_L001:Layer001"%;
+    UnLoad "HOME:/part/demo_L001.mod";
+    Load \Dynamic,"HOME:/part/demo_L002.mod";
+    %"demo_L002:Layer002"%;
+    UnLoad "HOME:/part/demo_L002.mod";
+    MoveL [[90.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+  ENDPROC
+ENDMODULE
