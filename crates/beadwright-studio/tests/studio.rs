@@ -10,9 +10,11 @@ use std::process::Command;
 use window::{click, studio, wait};
 
 /// What the command makes of the same part: metrics and the files of the program.
-fn command(folder: &Path, example: &str, settings: &[&str]) -> serde_json::Value {
+fn command(folder: &Path, example: &str, settings: &[&str]) -> String {
+    // This package's tests do not build the command by themselves.
+    let build = Command::new(env!("CARGO")).args(["build", "--quiet", "--package", "beadwright-cli"]).status().unwrap();
+    assert!(build.success());
     let binary = Path::new(env!("CARGO_BIN_EXE_beadwright-studio")).with_file_name("beadwright");
-    assert!(binary.is_file(), "build the command first: cargo build -p beadwright-cli");
     let model = folder.join(format!("{example}.stl"));
     let run = |arguments: &[&str]| {
         let output = Command::new(&binary).args(arguments).output().unwrap();
@@ -22,7 +24,7 @@ fn command(folder: &Path, example: &str, settings: &[&str]) -> serde_json::Value
     run(&["example", example, "-o", model.to_str().unwrap()]);
     let out = folder.join("cli");
     let plan = ["plan", model.to_str().unwrap(), "--json", "-o", out.to_str().unwrap()];
-    serde_json::from_slice(&run(&[&plan[..], settings].concat())).unwrap()
+    String::from_utf8(run(&[&plan[..], settings].concat())).unwrap()
 }
 
 #[test]
@@ -41,14 +43,18 @@ fn an_example_is_planned_changed_looked_through_and_exported() {
     let json = {
         let plan = harness.state().plan();
         assert_ne!(plan.summary.as_ref().unwrap().metrics.passes, contour_passes);
-        plan.summary.as_ref().unwrap().json(plan.total.as_ref())
+        format!("{:#}\n", plan.summary.as_ref().unwrap().json(plan.total.as_ref()))
     };
     let theirs = command(folder.path(), "cross", &["--strategy", "hybrid"]);
     assert_eq!(json, theirs);
     // The window shows these totals.
+    let theirs: serde_json::Value = serde_json::from_str(&theirs).unwrap();
     let length = format!("{:.2} m", theirs["deposited_length_mm"].as_f64().unwrap() / 1000.0);
     assert!(harness.query_by_label(&length).is_some(), "{length} is not on the screen");
 
+    if let Ok(picture) = harness.render() {
+        picture.save(std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("studio.png")).unwrap();
+    }
     let slider = harness.get_by_role_and_label(eframe::egui::Role::Slider, "Last layer");
     slider.set_value_accesskit(4.0);
     harness.run_steps(3);
@@ -73,5 +79,5 @@ fn an_example_is_planned_changed_looked_through_and_exported() {
     assert_eq!(again.state().project(), &before);
     assert_eq!(again.state().project().source, Some(Source::Example("cross".to_owned())));
     let plan = again.state().plan();
-    assert_eq!(plan.summary.as_ref().unwrap().json(plan.total.as_ref()), json);
+    assert_eq!(format!("{:#}\n", plan.summary.as_ref().unwrap().json(plan.total.as_ref())), json);
 }

@@ -62,8 +62,7 @@ impl Form<'_> {
         if fields.is_empty() || !present {
             return;
         }
-        let title =
-            if section.key.is_empty() { self.studio.t("profile").to_owned() } else { section.key.replace('_', " ") };
+        let title = if section.key.is_empty() { self.studio.t("profile").to_owned() } else { title(&section.key) };
         let open = (section.key == "fill" || !search.is_empty()).then_some(!search.is_empty());
         CollapsingHeader::new(title)
             .id_salt(&section.key)
@@ -106,7 +105,7 @@ impl Form<'_> {
     fn hint(&self, field: &Field, limit: Option<&Limit>) -> String {
         let range = limit.map(|l| {
             let (from, to) = (self.studio.t("from"), self.studio.t("to"));
-            format!("\n{from} {} {to} {} {}", l.least, l.greatest, l.unit)
+            format!("\n{from} {} {to} {} {}: {}.", l.least, l.greatest, l.unit, l.reason)
         });
         let words = match &field.kind {
             Kind::Choice(words) => words.iter().filter(|(_, about)| !about.is_empty()).collect(),
@@ -115,6 +114,13 @@ impl Form<'_> {
         let words: String = words.iter().map(|(word, about)| format!("\n• {word}: {about}")).collect();
         format!("{}\n{}{}{words}", field.key, field.about, range.unwrap_or_default())
     }
+}
+
+/// A section's name as a heading: `start_stop` becomes `Start stop`.
+fn title(key: &str) -> String {
+    let words = key.replace(['_', '.'], " ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The widget of a field, and the new value as TOML where it was changed.
@@ -145,8 +151,14 @@ fn widget(
 }
 
 fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&Limit>) -> (Response, Option<String>) {
+    let as_toml = |number: f64| if whole { format!("{number:.0}") } else { format!("{number:?}") };
     let now = value.and_then(|v| v.as_float().or(v.as_integer().map(|i| i as f64)));
-    let mut number = now.unwrap_or_default();
+    let Some(mut number) = now else {
+        // Left out: a click begins with a value that can be.
+        let response = ui.small_button("+");
+        let changed = response.clicked().then(|| as_toml(limit.map_or(1.0, |l| l.value.clamp(l.least, l.greatest))));
+        return (response, changed);
+    };
     let (least, greatest) = limit.map_or((f64::MIN, f64::MAX), |l| (l.least, l.greatest));
     let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
     // Units behind a bracket tell what the range depends on; that belongs in the hint.
@@ -154,7 +166,7 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     let drag = DragValue::new(&mut number).range(least..=greatest).speed(speed).suffix(format!(" {unit}"));
     let drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(4) };
     let response = ui.add(drag);
-    let changed = response.changed().then(|| if whole { format!("{number:.0}") } else { format!("{number:?}") });
+    let changed = response.changed().then(|| as_toml(number));
     (response, changed)
 }
 

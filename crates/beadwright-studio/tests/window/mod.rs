@@ -16,6 +16,7 @@ pub fn studio(store: &Path) -> Harness<'static, Studio> {
     let mut harness = Harness::builder()
         .with_size([1280.0, 800.0])
         .with_max_steps(64)
+        .wgpu()
         .build_eframe(move |cc| Studio::new(cc, store, None));
     harness.run_steps(2);
     harness

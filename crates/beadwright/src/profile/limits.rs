@@ -1,5 +1,6 @@
 //! What values can be: one table of ranges, and the few rules that tie keys together.
 
+use super::reasons::reason;
 use super::{Gcode, Profile, Program};
 use crate::template;
 
@@ -53,7 +54,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
     broken.map(|(key, value, low, high, unit)| Broken {
         key: key.to_owned(),
         value: format!("{value}"),
-        reason: format!("it must lie between {low} and {high} {unit}."),
+        reason: format!("it must lie between {low} and {high} {unit}: {}.", reason(key)),
     })
 }
 

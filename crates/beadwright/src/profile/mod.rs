@@ -16,6 +16,7 @@ mod marlin;
 mod process;
 mod rapid;
 mod read;
+mod reasons;
 mod start_stop;
 mod urscript;
 
@@ -332,12 +333,16 @@ pub struct Program {
 pub struct Limit {
     /// Full key, such as `bead.width`.
     pub key: &'static str,
+    /// The value, or one to begin with where it is left out.
+    pub value: f64,
     /// Least value.
     pub least: f64,
     /// Greatest value.
     pub greatest: f64,
     /// The unit, and what the range depends on.
     pub unit: &'static str,
+    /// Why, as part of a sentence.
+    pub reason: &'static str,
 }
 
 impl Profile {
@@ -374,7 +379,10 @@ impl Profile {
 
     /// What the numbers of this profile can be, for forms.
     pub fn limits(&self) -> Vec<Limit> {
-        let limit = |(key, _, least, greatest, unit): limits::Range| Limit { key, least, greatest, unit };
+        let limit = |(key, value, least, greatest, unit): limits::Range| {
+            let reason = reasons::reason(key);
+            Limit { key, value, least, greatest, unit, reason }
+        };
         limits::ranges(self).into_iter().map(limit).collect()
     }
 
