@@ -162,6 +162,8 @@ fn only_optional_keys_may_be_missing() {
         "fill.perimeters_first",
         "fill.infill_density",
         "fill.solid_layers",
+        "krl.arc",
+        "krl.arctech",
         "rapid.tool_frame",
         "rapid.part_frame",
         "urscript.tool_frame",

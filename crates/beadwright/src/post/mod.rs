@@ -12,6 +12,7 @@
 //! | [`inform`] | Yaskawa INFORM: a main job, and one job a layer |
 //! | [`urscript`] | URScript: one file, a function a layer |
 
+mod arctech;
 pub mod fanuc;
 pub mod gcode;
 pub mod inform;

@@ -104,15 +104,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),
         ("program.speed_tolerance", p.program.speed_tolerance, 0.0, 0.3, "of the speed"),
     ];
-    if let Some(krl) = &p.krl {
-        ranges.extend([
-            ("krl.tool", krl.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)"),
-            ("krl.base", krl.base.into(), 1.0, 32.0, "(index into BASE_DATA)"),
-            ("krl.ptp_speed", krl.ptp_speed, 1.0, 100.0, "%"),
-            ("krl.blend", krl.blend, 0.0, 50.0, "mm"),
-        ]);
-        ranges.extend(krl.orientation.map(|angle| ("krl.orientation", angle, -360.0, 360.0, "°")));
-    }
+    ranges.extend(p.krl.iter().flat_map(|krl| krl.ranges()));
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
         let number = gcode.program_number.unwrap_or(1);
@@ -175,7 +167,8 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     }
     let rapid = p.rapid.as_ref().and_then(|rapid| rapid.broken());
     let fanuc = || p.fanuc.as_ref().and_then(|fanuc| fanuc.broken());
-    rapid.or_else(fanuc).or_else(|| p.inform.as_ref().and_then(|inform| inform.broken()))
+    let krl = || p.krl.as_ref().and_then(|krl| krl.broken());
+    rapid.or_else(krl).or_else(fanuc).or_else(|| p.inform.as_ref().and_then(|inform| inform.broken()))
 }
 
 impl Program {

@@ -3,6 +3,7 @@
 //! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
+mod arctech;
 mod check;
 mod fanuc;
 mod gcode;
@@ -15,6 +16,7 @@ mod rapid;
 mod read;
 mod urscript;
 
+pub use arctech::{ArcTech, ArcTechCrater, ArcTechStrike, ArcTechWeld, KrlArc};
 pub use check::CheckLimits;
 pub use fanuc::{Fanuc, FanucSpeed};
 pub use gcode::{Gcode, GcodeComments};
