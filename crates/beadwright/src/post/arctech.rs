@@ -150,10 +150,8 @@ impl Forms {
     /// Declares the end point of a form, with its frames.
     fn end_point(&mut self, pose: &str) -> usize {
         let (n, tool, base) = (self.point(pose), self.tool, self.base);
-        let _ = write!(
-            self.data,
-            "DECL FDAT FP{n}={{TOOL_NO {tool},BASE_NO {base},IPO_FRAME #BASE,POINT2[] \" \"}}\r\n"
-        );
+        let _ =
+            write!(self.data, "DECL FDAT FP{n}={{TOOL_NO {tool},BASE_NO {base},IPO_FRAME #BASE,POINT2[] \" \"}}\r\n");
         n
     }
 

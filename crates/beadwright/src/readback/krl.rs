@@ -237,7 +237,7 @@ impl Reader<'_> {
             if rest.starts_with('.') {
                 self.trace.note(word, "is changed in a part, which is not understood", number);
             }
-        } else if !HARMLESS.iter().chain(&CONTROL_REST).any(is) && !flat.starts_with("TRIGGERWHEN") {
+        } else if !HARMLESS.iter().chain(&CONTROL_REST).chain(&SYSTEM).any(is) && !flat.starts_with("TRIGGERWHEN") {
             self.trace.note(word, "is not understood and was left out", number);
         }
         Ok(())

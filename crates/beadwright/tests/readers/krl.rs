@@ -162,7 +162,8 @@ impl<'a> Reader<'a> {
         let (what, names) = call.split_once(", ").unwrap();
         let sets: Vec<&str> = names.split(", ").map(|name| self.data(name, data)).collect();
         let group = |name: &str| sets[0].contains(&format!("{name} {{JobModeId[] \""));
-        let velocity = || sets[0].split("Velocity ").nth(1).map(|v| v.split(',').next().unwrap().parse::<f64>().unwrap());
+        let velocity =
+            || sets[0].split("Velocity ").nth(1).map(|v| v.split(',').next().unwrap().parse::<f64>().unwrap());
         assert!(sets[1..].iter().all(|s| s.contains("Info {Version 303030366}")), "{call}");
         match what {
             "ArcOnBeforeMoveStd" => self.expect_triggers(&["#PreDefinition", "#GasPreflow", "#ArcOnMoveStd"], names),
