@@ -4,11 +4,14 @@
 //! are dropped: a weld move of no length burns through. Then, if it is asked for, straight pieces and circular arcs are
 //! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path.
 
+mod spread;
+
 use crate::fill::PassKind;
 use crate::plan::{Layer, Pass};
 use crate::profile::Program;
 use glam::DVec3;
 use planar::arcs::{Fit, Piece};
+use spread::Spread;
 
 /// Coordinates of a program are multiples of this, mm.
 pub const RESOLUTION_MM: f64 = 1e-3;
@@ -92,18 +95,23 @@ pub struct Programmer {
     torch: Option<DVec3>,
     fit: Option<Fit>,
     speed_tolerance: f64,
+    spread: Option<Spread>,
 }
 
 impl Programmer {
     /// Travels go `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
-        Self { clearance, torch: None, fit: None, speed_tolerance: 0.0 }
+        Self { clearance, torch: None, fit: None, speed_tolerance: 0.0, spread: None }
     }
 
     /// Fits straight pieces and arcs as the profile says; without a tolerance every point is kept.
     pub fn with_fit(mut self, program: &Program) -> Self {
         // What dropping close points may have moved comes on top.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
+        // Merging points and fitting pieces each take half of it.
+        let time = program.min_point_time;
+        self.spread = (time > 0.0 && tolerance > 0.0).then_some(Spread { time, tolerance: tolerance / 2.0 });
+        let tolerance = if self.spread.is_some() { tolerance / 2.0 } else { tolerance };
         self.speed_tolerance = program.speed_tolerance;
         self.fit = (tolerance > 0.0).then_some(Fit { tolerance, arcs: program.arcs, grid: RESOLUTION_MM });
         self
@@ -121,6 +129,7 @@ impl Programmer {
     fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
         let mut moves = distinct(pass);
         level_speeds(&mut moves, self.speed_tolerance);
+        self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
         let [(start, _), rest @ ..] = &moves[..] else { return };
         let (start, Some(&(end, _))) = (*start, rest.last()) else { return };
         let top = self.torch.map_or(start.z, |from| from.z.max(start.z)) + self.clearance;

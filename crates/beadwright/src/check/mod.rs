@@ -6,6 +6,7 @@
 mod air;
 mod bead_width;
 mod crossing;
+mod dense_points;
 mod heat_input;
 mod layers;
 mod outside;
@@ -29,7 +30,7 @@ use planar::Bounds;
 use serde::Serialize;
 
 /// The checks.
-pub const CHECKS: [Check; 16] = [
+pub const CHECKS: [Check; 17] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
@@ -46,6 +47,7 @@ pub const CHECKS: [Check; 16] = [
     towers::CHECK,
     stacked_starts::CHECK,
     program_size::CHECK,
+    dense_points::CHECK,
 ];
 
 /// A check.

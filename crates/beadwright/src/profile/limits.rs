@@ -103,6 +103,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
         ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),
         ("program.speed_tolerance", p.program.speed_tolerance, 0.0, 0.3, "of the speed"),
+        ("program.min_point_time", p.program.min_point_time, 0.0, 1.0, "s"),
     ];
     ranges.extend(p.krl.iter().flat_map(|krl| krl.ranges()));
     if let Some(gcode) = &p.gcode {
@@ -179,6 +180,9 @@ impl Program {
         }
         if self.arcs && self.chord_tolerance == 0.0 {
             return Some("arcs = true needs a tolerance, such as 0.05 mm.");
+        }
+        if self.min_point_time > 0.0 && self.chord_tolerance == 0.0 {
+            return Some("min_point_time needs a tolerance within which points are merged, such as 0.05 mm.");
         }
         let coarse = gcode.is_some_and(|g| g.decimals < 3);
         (self.arcs && coarse).then_some("arcs = true needs 3 gcode.decimals or more: the radius must be kept.")

@@ -342,6 +342,9 @@ pub struct Program {
     /// Speeds along a pass that differ by no more than this part become one, with the same time along it: fewer changes,
     /// longer moves; default 0.
     pub speed_tolerance: f64,
+    /// Least time between two points of a pass, s: nearer ones are merged where that keeps the chord tolerance, since
+    /// controllers read ahead only so fast (KRC4 interpolates every 0.012 s); default 0: none are.
+    pub min_point_time: f64,
 }
 
 impl Profile {
