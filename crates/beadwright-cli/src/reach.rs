@@ -143,7 +143,11 @@ fn print(out: &mut impl Write, part: &str, cell: &Cell, track: &Track, reach: &R
         ("points", format!("{} on {:.2} m", track.stops.len(), track.length() / 1e3)),
     ];
     writeln!(out)?;
-    rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))
+    rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))?;
+    match t.program_angle() {
+        Some(angle) => writeln!(out, "  plan with              --set program.torch_angle={angle:.0}"),
+        None => Ok(()),
+    }
 }
 
 fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> serde_json::Value {
@@ -157,7 +161,7 @@ fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> s
     let points = reach.poses.len();
     let value = serde_json::json!({
         "cell": cell.name, "place": reach.place, "reachable": reach.is_reachable(), "least_margin": least,
-        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "points": points,
+        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "torch_angle": reach.turning.program_angle(), "points": points,
         "findings": findings,
     });
     match (value, suggestion) {

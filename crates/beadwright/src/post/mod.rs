@@ -18,6 +18,7 @@ pub mod gcode;
 pub mod inform;
 pub mod krl;
 pub mod marlin;
+mod orientation;
 pub mod rapid;
 mod split;
 pub mod urscript;
@@ -68,9 +69,11 @@ pub enum PostError {
 /// # Errors
 /// [`PostError`] when there is none, or the profile lacks its section.
 pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, PostError> {
+    let angle = profile.program.torch_angle;
     match name {
         "krl" => {
-            let section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
+            let mut section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
+            section.orientation = orientation::zyx(section.orientation, angle);
             Ok(Box::new(krl::KukaKrl::new(part, profile, section)))
         }
         "gcode" => {
@@ -82,19 +85,23 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
             Ok(Box::new(marlin::MarlinGcode::new(part, profile, section)))
         }
         "rapid" => {
-            let section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
+            let mut section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
+            section.orientation = orientation::quaternion(section.orientation, angle);
             Ok(Box::new(rapid::AbbRapid::new(part, profile, section)))
         }
         "fanuc" => {
-            let section = profile.fanuc.clone().ok_or_else(|| no_section(profile, "fanuc"))?;
+            let mut section = profile.fanuc.clone().ok_or_else(|| no_section(profile, "fanuc"))?;
+            section.orientation = orientation::xyz(section.orientation, angle);
             Ok(Box::new(fanuc::FanucTp::new(part, profile, section)))
         }
         "inform" => {
-            let section = profile.inform.clone().ok_or_else(|| no_section(profile, "inform"))?;
+            let mut section = profile.inform.clone().ok_or_else(|| no_section(profile, "inform"))?;
+            section.orientation = orientation::xyz(section.orientation, angle);
             Ok(Box::new(inform::YaskawaInform::new(part, profile, section)))
         }
         "urscript" => {
-            let section = profile.urscript.clone().ok_or_else(|| no_section(profile, "urscript"))?;
+            let mut section = profile.urscript.clone().ok_or_else(|| no_section(profile, "urscript"))?;
+            section.orientation = orientation::vector(section.orientation, angle);
             Ok(Box::new(urscript::UniversalScript::new(part, profile, section)))
         }
         _ => Err(PostError::Unknown(name.to_owned())),

@@ -345,6 +345,9 @@ pub struct Program {
     /// Least time between two points of a pass, s: nearer ones are merged where that keeps the chord tolerance, since
     /// controllers read ahead only so fast (KRC4 interpolates every 0.012 s); default 0: none are.
     pub min_point_time: f64,
+    /// Turn of the torch about its own axis, on top of the orientation in the robot's section, °: counter-clockwise seen from
+    /// behind the torch. Robots only; `beadwright reach` tells the best one. Default 0.
+    pub torch_angle: f64,
 }
 
 impl Profile {
