@@ -1,4 +1,5 @@
-//! The torch's turn about its own axis: every robot's language writes the same rotation, and it is the one that reach found.
+//! What reach finds goes into programs: the torch's turn about its own axis, the same rotation in every robot's language; and
+//! the angle of a turn table.
 #![allow(clippy::unwrap_used)]
 
 use beadwright::fill::PassKind;
@@ -126,4 +127,24 @@ fn the_angle_of_reach_is_what_the_program_has() {
         let tool = base_from_part.inverse().then(&cell.arm().forward(&pose.joints)).then(&cell.flange_from_tool());
         POSTS.iter().for_each(|post| all_are(post, &profile, DMat3::from_quat(tool.rotation)));
     }
+}
+
+#[test]
+fn the_table_stands_in_every_pose_or_the_post_refuses() {
+    let mut profile = profile();
+    profile.program.table_angle = Some(-35.0);
+    let krl = post::write("krl", "part", &job(), &profile).unwrap();
+    let poses = |text: &str, mark: &str| text.matches(mark).count();
+    let layer = &krl["PART_L001.src"];
+    assert_eq!((poses(layer, "{X "), poses(layer, ",C 180.0000,E1 -35.0000}")), (4, 4), "{layer}");
+    let rapid = post::write("rapid", "part", &job(), &profile).unwrap();
+    let layer = &rapid["part_L001.mod"];
+    let axes = ",[-35.0000,9E+09,9E+09,9E+09,9E+09,9E+09]]";
+    assert_eq!((poses(layer, ",[0,0,0,0],"), poses(layer, axes)), (4, 4), "{layer}");
+    for post in ["fanuc", "inform", "urscript"] {
+        let error = post::write(post, "part", &job(), &profile).unwrap_err().to_string();
+        assert!(error.contains("program.table_angle") && error.contains(post), "{error}");
+    }
+    profile.program.table_angle = None;
+    assert!(post::write("krl", "part", &job(), &profile).unwrap().values().all(|text| !text.contains(",E1 ")));
 }

@@ -26,6 +26,8 @@ pub struct KukaKrl {
     process: Process,
     values: Values,
     travel_speed: f64,
+    /// Angle of the turn table, E1, °.
+    table: Option<f64>,
     digits: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
@@ -38,7 +40,8 @@ impl KukaKrl {
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
         let (process, travel_speed) = (profile.process.clone(), profile.travel.speed);
-        Self { name, comment, krl, process, values, travel_speed, digits: 3, speed: 0.0 }
+        let table = profile.program.table_angle;
+        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0 }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -144,6 +147,10 @@ impl KukaKrl {
         push_fixed(text, to.z, 3);
         for (axis, angle) in [",A ", ",B ", ",C "].into_iter().zip(self.krl.orientation) {
             text.push_str(axis);
+            push_fixed(text, angle, 4);
+        }
+        if let Some(angle) = self.table {
+            text.push_str(",E1 ");
             push_fixed(text, angle, 4);
         }
         text.push('}');

@@ -59,6 +59,11 @@ pub enum PostError {
     /// No such post.
     #[error("there is no post \"{0}\". The posts are {known}.", known = NAMES.join(", "))]
     Unknown(String),
+    /// The profile has a turn table that the post does not write.
+    #[error(
+        "the post \"{0}\" does not write the turn table of program.table_angle; krl and rapid do. Take the key out, and turn the table by hand."
+    )]
+    NoTable(String),
     /// The profile lacks what the post needs.
     #[error(transparent)]
     Profile(#[from] ProfileError),
@@ -70,6 +75,9 @@ pub enum PostError {
 /// [`PostError`] when there is none, or the profile lacks its section.
 pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, PostError> {
     let angle = profile.program.torch_angle;
+    if profile.program.table_angle.is_some() && NAMES.contains(&name) && !["krl", "rapid"].contains(&name) {
+        return Err(PostError::NoTable(name.to_owned()));
+    }
     match name {
         "krl" => {
             let mut section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;

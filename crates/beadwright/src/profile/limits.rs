@@ -105,6 +105,7 @@ fn out_of_range(p: &Profile) -> Option<Broken> {
         ("program.speed_tolerance", p.program.speed_tolerance, 0.0, 0.3, "of the speed"),
         ("program.min_point_time", p.program.min_point_time, 0.0, 1.0, "s"),
         ("program.torch_angle", p.program.torch_angle, -360.0, 360.0, "°"),
+        ("program.table_angle", p.program.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°"),
     ];
     ranges.extend(p.krl.iter().flat_map(|krl| krl.ranges()));
     if let Some(gcode) = &p.gcode {

@@ -348,6 +348,10 @@ pub struct Program {
     /// Turn of the torch about its own axis, on top of the orientation in the robot's section, °: counter-clockwise seen from
     /// behind the torch. Robots only; `beadwright reach` tells the best one. Default 0.
     pub torch_angle: f64,
+    /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` tells the best one. The
+    /// part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other posts refuse it.
+    /// Left out where there is no table.
+    pub table_angle: Option<f64>,
 }
 
 impl Profile {
