@@ -37,6 +37,20 @@ pub(super) struct Target<'a> {
     pub(super) to: &'a str,
 }
 
+/// A form with the numbers of its points and its data set.
+struct Placed {
+    form: Form,
+    via: Option<usize>,
+    point: usize,
+    set: usize,
+}
+
+impl Placed {
+    fn motion(&self) -> &'static str {
+        if self.via.is_some() { "CIRC" } else { "LIN" }
+    }
+}
+
 /// The forms of one module.
 pub(super) struct Forms {
     arctech: ArcTech,
@@ -159,10 +173,8 @@ impl Forms {
     fn form(&mut self, text: &mut String, form: Form, target: Target<'_>, set: String) {
         let via = target.via.map(|pose| self.point(pose));
         let (point, set) = (self.end_point(target.to), self.set_number(set));
-        let motion = if via.is_some() { "CIRC" } else { "LIN" };
-        // The blend is what `BAS` takes from the motion's data; where the arc is lit or ends, the robot stands still.
-        let blended = form == Form::Switch && self.blend > 0.0;
-        self.title(text, form, motion, via, point, set, blended);
+        let placed = Placed { form, via, point, set };
+        self.title(text, &placed);
         let speed = if form == Form::On { &*self.travel } else { "gArcBasVelDefinition" };
         let _ = write!(
             text,
@@ -175,29 +187,26 @@ impl Forms {
             Form::Switch => "ArcSwi",
             Form::Off => "ArcOff",
         };
-        let to = via.map_or(format!("XP{point}"), |via| format!("XP{via}, XP{point}"));
-        let blend = if blended { " C_DIS" } else { "" };
+        let (motion, to) = (placed.motion(), via.map_or(format!("XP{point}"), |via| format!("XP{via}, XP{point}")));
+        let blend = if self.is_blended(form) { " C_DIS" } else { "" };
         let _ = write!(
             text,
             "ArcMainNG(#{name}BeforeMoveStd, {of})\r\n{motion} {to}{blend}\r\nArcMainNG(#{name}AfterMoveStd, {of})\r\n;ENDFOLD\r\n"
         );
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn title(
-        &self,
-        text: &mut String,
-        form: Form,
-        motion: &str,
-        via: Option<usize>,
-        point: usize,
-        set: usize,
-        blended: bool,
-    ) {
-        let (word, help) = (form.word(), via.map_or(String::new(), |via| format!("P{via} ")));
+    /// Where the arc is lit or ends, the robot stands still. The distance is what `BAS` takes from the motion's data.
+    fn is_blended(&self, form: Form) -> bool {
+        form == Form::Switch && self.blend > 0.0
+    }
+
+    fn title(&self, text: &mut String, placed: &Placed) {
+        let Placed { form, via, point, set } = *placed;
+        let (word, motion) = (form.word(), placed.motion());
+        let help = via.map_or(String::new(), |via| format!("P{via} "));
         let parameter = via.map_or(String::new(), |via| format!(" Kuka.HelpPointName=P{via};"));
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
-        let blending = if blended { "True" } else { "False" };
+        let blending = if self.is_blended(form) { "True" } else { "False" };
         let _ = write!(
             text,
             ";FOLD {word} WDAT{set} {motion} {help}P{point} CPDAT1 Tool[{}] Base[{}];%{{PE}}\r\n;FOLD Parameters ;%{{h}}\r\n\
