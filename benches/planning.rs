@@ -211,5 +211,5 @@ fn there_and_back(bencher: Bencher, cell: &str) {
 fn propeller_track() -> Track {
     let (mesh, profile) = propeller();
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
-    Track::of(&plan.layers, profile.travel.clearance, profile.travel.speed)
+    Track::of(&plan.layers, &profile)
 }

@@ -73,8 +73,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// What the robot cannot do, as findings.
 fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
-    let track = Track::of(layers, profile.travel.clearance, profile.travel.speed);
-    let found = robot::reach(cell, cell.part, &track).findings;
+    let track = Track::of(layers, profile);
+    let place = robot::turn_table(cell, cell.part, &track).map_or(cell.part, |table| table.place);
+    let found = robot::reach(cell, place, &track).findings;
     let finding =
         |f: &robot::Finding| Finding { check: REACH, layer: None, pass: None, place: None, text: f.sentence() };
     found.iter().map(finding).collect()

@@ -1,14 +1,22 @@
 //! `beadwright inspect`.
 
-use crate::{model, progress};
+use crate::{model, profile, program, progress};
+use anyhow::Context;
 use beadwright::model::iges::{IgesCurve, IgesFile};
+use beadwright::readback;
+use glam::DVec3;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The model: binary or ASCII STL, or IGES.
+    /// A model (binary or ASCII STL, IGES), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
+    /// Profile whose lines switch the arc of a program: a built-in name or a TOML file.
+    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
+    profile: String,
+    #[command(flatten)]
+    reading: program::Reading,
     /// Print JSON for machines.
     #[arg(long)]
     json: bool,
@@ -17,6 +25,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(file) = model::read_iges(&arguments.file)? {
         return Ok(curves(&file, arguments)?);
+    }
+    if is_program(&arguments.file)? {
+        return read_program(arguments);
     }
     let (task, bar) = progress::task()?;
     let import = model::read(&arguments.file, &task)?;
@@ -44,6 +55,48 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for line in repair.sentences() {
         writeln!(out, "  {line}")?;
     }
+    Ok(())
+}
+
+/// Whether the file holds a plan or a program. Models are told apart by their content too, and are no programs.
+fn is_program(path: &Path) -> anyhow::Result<bool> {
+    let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
+    let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(false) };
+    let solid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("solid"));
+    Ok(!solid && (text.trim_start().starts_with('{') || readback::dialect(text).is_some()))
+}
+
+/// What a plan or a program holds.
+fn read_program(arguments: &Arguments) -> anyhow::Result<()> {
+    let (task, bar) = progress::task()?;
+    let profile = profile::load(&arguments.profile, &[])?;
+    let loaded = arguments.reading.load(&arguments.file, &profile, None, &task)?;
+    bar.finish_and_clear();
+    let (t, passes) = (&loaded.totals, || loaded.layers.iter().flat_map(|l| &l.passes));
+    let points = || passes().flat_map(|p| &p.points);
+    let low = points().fold(DVec3::INFINITY, |a, b| a.min(*b));
+    let high = points().fold(DVec3::NEG_INFINITY, |a, b| a.max(*b));
+    let speeds = || passes().flat_map(|p| p.segments()).map(|s| s.speed);
+    let (slow, fast) = (speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max));
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value = serde_json::json!({
+            "format": loaded.language, "layers": loaded.layers.len(), "points": points().count(), "totals": t,
+            "min": low.to_array(), "max": high.to_array(), "speed": [slow, fast], "notes": loaded.notes,
+        });
+        writeln!(out, "{value:#}")?;
+        return Ok(());
+    }
+    writeln!(out, "{}: {}", arguments.file.display(), loaded.language)?;
+    writeln!(out, "  layers            {}", loaded.layers.len())?;
+    writeln!(out, "  arc starts        {}", t.arc_starts)?;
+    writeln!(out, "  deposited length  {:.3} m on {} points", t.deposited_length_mm / 1e3, points().count())?;
+    writeln!(out, "  travel length     {:.3} m", t.travel_length_mm / 1e3)?;
+    writeln!(out, "  time              {:.1} min", t.total_time_s / 60.0)?;
+    writeln!(out, "  deposition speed  {slow:.2} to {fast:.2} mm/s")?;
+    writeln!(out, "  from              x {:.3} y {:.3} z {:.3}", low.x, low.y, low.z)?;
+    writeln!(out, "  to                x {:.3} y {:.3} z {:.3}", high.x, high.y, high.z)?;
+    loaded.notes.iter().try_for_each(|note| writeln!(out, "  note: {note}"))?;
     Ok(())
 }
 

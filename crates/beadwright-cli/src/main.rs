@@ -45,7 +45,7 @@ enum Command {
     Reach(reach::Arguments),
     /// Make the papers' experiments again: ours beside theirs.
     Reproduce(reproduce::Arguments),
-    /// Tell what a model holds and what is wrong with it.
+    /// Tell what a model, a plan or a program holds, and what is wrong with it.
     Inspect(inspect::Arguments),
     /// Write one of the example parts as STL; without a name, list them.
     Example(example::Arguments),

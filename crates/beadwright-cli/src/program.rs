@@ -7,7 +7,7 @@ use beadwright::deposit::DepositSettings;
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
 use beadwright::plan::{self, Layer};
-use beadwright::profile::Profile;
+use beadwright::profile::{InformSpeed, Profile};
 use beadwright::readback::{self, ArcCodes};
 use beadwright::simulate;
 use beadwright::task::Task;
@@ -56,7 +56,8 @@ impl Reading {
         }
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
         let mut module = |name: &str| find_module(&folder, name);
-        let options = readback::Options { arc: self.codes(profile), filament_diameter: None };
+        let inform_cm_per_min = profile.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
+        let options = readback::Options { arc: self.codes(profile), filament_diameter: None, inform_cm_per_min };
         let program = readback::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
         let settings = plan::deposit_settings(profile);
         let mut layers = simulate::layers(&program, &settings, self.bead_width);
@@ -84,7 +85,10 @@ impl Reading {
         let krl = profile.krl.as_ref().map(|k| (&k.arc_on, &k.arc_off));
         let gcode = profile.gcode.as_ref().map(|g| (&g.arc_on, &g.arc_off));
         let rapid = profile.rapid.as_ref().map(|r| (&r.arc_on, &r.arc_off));
-        let templates = || krl.into_iter().chain(gcode).chain(rapid);
+        let fanuc = profile.fanuc.as_ref().map(|f| (&f.arc_on, &f.arc_off));
+        let inform = profile.inform.as_ref().map(|i| (&i.arc_on, &i.arc_off));
+        let urscript = profile.urscript.as_ref().map(|u| (&u.arc_on, &u.arc_off));
+        let templates = || [krl, gcode, rapid, fanuc, inform, urscript].into_iter().flatten();
         let plain = |lines: &[String]| {
             lines.iter().filter(|l| !template::has_placeholder(l)).map(|l| statement(l)).collect::<Vec<_>>()
         };
@@ -118,7 +122,7 @@ fn find_module(folder: &Path, name: &str) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
     let fits = |path: &PathBuf| {
         let file = path.file_name().map(|f| f.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        file == wanted || ["src", "mod", "sub"].iter().any(|ext| file == format!("{wanted}.{ext}"))
+        file == wanted || ["src", "mod", "sub", "ls", "jbi"].iter().any(|ext| file == format!("{wanted}.{ext}"))
     };
     let mut files: Vec<PathBuf> =
         fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.path())).filter(fits).collect();

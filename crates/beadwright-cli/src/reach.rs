@@ -5,7 +5,7 @@ use crate::profile;
 use anyhow::{Context, bail};
 use beadwright::plan_file::{self, PlanFile};
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, Track, cell};
+use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, cell};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -56,11 +56,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
     let plan = plan_file::read(&text).with_context(|| format!("{}", path.display()))?;
     let profile = plan_profile(arguments, &plan)?;
-    let track = Track::of(&plan.layers, profile.travel.clearance, profile.travel.speed);
+    let track = Track::of(&plan.layers, &profile);
     if track.stops.is_empty() {
         bail!("{}: the plan has no passes.", path.display());
     }
     let place = arguments.at.unwrap_or(cell.part);
+    let table = robot::turn_table(&cell, place, &track);
+    let place = table.map_or(place, |table| table.place);
     let start = Instant::now();
     let reach = robot::reach(&cell, place, &track);
     let seconds = start.elapsed().as_secs_f64();
@@ -71,9 +73,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         write_file(page, page_text.as_bytes())?;
     }
     if arguments.json {
-        writeln!(out, "{:#}", json(&cell, &reach, suggestion))?;
+        writeln!(out, "{:#}", json(&cell, &reach, table, suggestion))?;
     } else {
-        print(&mut out, &plan.header.part, &cell, &track, &reach)?;
+        print(&mut out, &plan.header.part, &cell, &track, &reach, table)?;
         if reach.reached().next().is_some() {
             let rate = reach.computed as f64 / seconds.max(1e-9);
             writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
@@ -99,7 +101,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
 }
 
-fn print(out: &mut impl Write, part: &str, cell: &Cell, track: &Track, reach: &Reach) -> std::io::Result<()> {
+fn print(
+    out: &mut impl Write,
+    part: &str,
+    cell: &Cell,
+    track: &Track,
+    reach: &Reach,
+    table: Option<TableAngle>,
+) -> std::io::Result<()> {
     writeln!(out, "{part} on {}: {}", cell.name, cell.description)?;
     writeln!(out, "origin of the part at {}\n", reach.place.sentence())?;
     if reach.reached().next().is_none() {
@@ -143,10 +152,27 @@ fn print(out: &mut impl Write, part: &str, cell: &Cell, track: &Track, reach: &R
         ("points", format!("{} on {:.2} m", track.stops.len(), track.length() / 1e3)),
     ];
     writeln!(out)?;
-    rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))
+    rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))?;
+    if let Some(table) = table {
+        let unturned = table.unturned.map_or("out of reach".to_owned(), |margin| format!("{margin:.1}°"));
+        let (angle, margin) = (table.angle, table.margin);
+        writeln!(
+            out,
+            "  turn table             {angle:.0}°, margin of the outermost points {margin:.1}° (at 0° {unturned})"
+        )?;
+    }
+    let torch = t.program_angle().map(|angle| format!("--set program.torch_angle={angle:.0}"));
+    let table = table.map(|table| format!("--set program.table_angle={:.0}", table.angle));
+    let settings: Vec<String> = torch.into_iter().chain(table).collect();
+    if settings.is_empty() { Ok(()) } else { writeln!(out, "  plan with              {}", settings.join(" ")) }
 }
 
-fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> serde_json::Value {
+fn json(
+    cell: &Cell,
+    reach: &Reach,
+    table: Option<TableAngle>,
+    suggestion: Option<Option<Suggestion>>,
+) -> serde_json::Value {
     let findings: Vec<_> = reach
         .findings
         .iter()
@@ -157,7 +183,7 @@ fn json(cell: &Cell, reach: &Reach, suggestion: Option<Option<Suggestion>>) -> s
     let points = reach.poses.len();
     let value = serde_json::json!({
         "cell": cell.name, "place": reach.place, "reachable": reach.is_reachable(), "least_margin": least,
-        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "points": points,
+        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "torch_angle": reach.turning.program_angle(), "table": table, "points": points,
         "findings": findings,
     });
     match (value, suggestion) {

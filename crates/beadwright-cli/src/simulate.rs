@@ -13,7 +13,8 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json, or a program in G-code (also a printer's), KRL or RAPID; of several files the main one.
+    /// plan.json, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or URScript; of several files the
+    /// main one.
     file: PathBuf,
     /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are told.
     #[arg(long, value_name = "MODEL")]

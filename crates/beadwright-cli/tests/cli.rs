@@ -439,3 +439,30 @@ fn a_dry_run_has_names_of_its_own_and_no_arc() {
     assert!(hot.contains("$OUT[2] = TRUE") && hot.contains("WAIT SEC ") && !hot.contains("DRY RUN"));
     assert!(!dry.contains("$OUT") && !dry.contains("WAIT SEC ") && dry.contains("DRY RUN"), "{dry}");
 }
+
+#[test]
+fn programs_of_every_robot_are_simulated_and_inspected() {
+    let folder = folder_with("cross");
+    let posts = ["--post", "fanuc", "--post", "inform", "--post", "urscript"];
+    let plan = ["plan", "cross.stl", "-p", "cmt-steel-robots", "-o", "out", "--no-deposit"];
+    ok(folder.path(), &[&plan[..], &posts].concat());
+    let json = |command: &str, file: &str| -> serde_json::Value {
+        let more: &[&str] = if command == "simulate" { &["--grid", "2"] } else { &[] };
+        let words = [&[command, file, "-p", "cmt-steel-robots", "--json"], more].concat();
+        serde_json::from_str(&ok(folder.path(), &words)).unwrap()
+    };
+    let metrics: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("out/metrics.json")).unwrap()).unwrap();
+    for (file, language) in [("CROSS.ls", "FANUC TP"), ("CROSS.jbi", "INFORM"), ("cross.script", "URScript")] {
+        let file = format!("out/{file}");
+        let (simulated, inspected) = (json("simulate", &file), json("inspect", &file));
+        assert_eq!((&inspected["format"], &inspected["layers"]), (&language.into(), &metrics["layers"]));
+        for value in [&simulated, &inspected] {
+            assert_eq!(value["totals"]["arc_starts"], metrics["arc_starts"], "{file}");
+            let length = value["totals"]["deposited_length_mm"].as_f64().unwrap();
+            assert!((length / metrics["deposited_length_mm"].as_f64().unwrap() - 1.0).abs() < 1e-4, "{file}: {length}");
+        }
+    }
+    assert!(ok(folder.path(), &["inspect", "out/CROSS.ls", "-p", "cmt-steel-robots"]).contains("arc starts"));
+    assert!(ok(folder.path(), &["inspect", "out/plan.json"]).contains("deposited length"));
+}

@@ -13,6 +13,7 @@ use crate::text::Language;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
 use crate::view3d::View3d;
+use beadwright::bead::library::BeadLibrary;
 use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::Reach;
@@ -58,6 +59,8 @@ pub struct Studio {
     pub(crate) steps: Option<(usize, Vec<Steps>)>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
+    /// Measured beads to look at.
+    pub(crate) beads: Option<BeadLibrary>,
     /// The project of a run that did not end well.
     pub(crate) lost: Option<Project>,
     pub(crate) chinese: bool,
@@ -103,6 +106,7 @@ impl Studio {
             steps: None,
             reach_job: None,
             reach: None,
+            beads: None,
             kept: Project::default(),
         };
         studio.apply_theme();
@@ -335,8 +339,9 @@ impl Studio {
             Ask::Open => self.open(path),
             Ask::SaveProject => self.save_to(path),
             Ask::SavePicture => self.save_picture(path),
+            Ask::OpenBeads => self.open_beads(path),
             Ask::OpenProfile => {
-                let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()));
+                let text = read_text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
                 match checked {
                     Ok(text) => self.set_profile("profile", Ok(text)),
@@ -347,6 +352,15 @@ impl Studio {
                 panels::export::What::Program(dialect) => self.export_program(&dialect, path),
                 panels::export::What::Paper(paper) => self.export_paper(paper, path),
             },
+        }
+    }
+
+    /// Shows a bead library, as `beadwright bead fit` writes it.
+    pub fn open_beads(&mut self, path: &Path) {
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        match read_text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
+            Ok(library) => self.beads = Some(library),
+            Err(error) => self.complain(error),
         }
     }
 
@@ -438,6 +452,10 @@ impl Studio {
             }
         }
     }
+}
+
+fn read_text(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()))
 }
 
 /// A project with another strategy.

@@ -54,6 +54,8 @@ pub enum Ask {
     SavePicture,
     /// A profile to take.
     OpenProfile,
+    /// A bead library to look at.
+    OpenBeads,
 }
 
 /// Asks in the system's own dialog; none when the person thinks better of it.
@@ -64,7 +66,7 @@ pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<(Ask, Option<PathBuf>)> 
     // The dialog is made here, as some systems want it on the first thread, and waited for elsewhere.
     let answer: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match what {
         Ask::Open => Box::pin(dialog.clone().add_filter("STL, IGES, BWP", &models).pick_file()),
-        Ask::OpenProfile => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
+        Ask::OpenProfile | Ask::OpenBeads => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
         Ask::Folder => Box::pin(dialog.clone().pick_folder()),
         Ask::SaveProject => Box::pin(named("bwp").save_file()),
         Ask::SavePicture => Box::pin(named("png").save_file()),
@@ -89,7 +91,7 @@ pub fn reach(
 ) -> Job<Result<Reach, String>> {
     Job::start(ctx, move || {
         let cell = Cell::built_in(&cell).map_err(|error| error.to_string())?;
-        let track = Track::of(&layers, profile.travel.clearance, profile.travel.speed);
+        let track = Track::of(&layers, &profile);
         Ok(robot::reach(&cell, cell.part, &track))
     })
 }

@@ -5,12 +5,15 @@
 //! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and
 //! no arc: `Weld` then only tells the way, since no `ArcOn` came before it.
 
+mod spread;
+
 use crate::fill::PassKind;
 use crate::plan::{Layer, Pass};
 use crate::profile::{Follow, Profile, Program};
 use crate::weld::{Pause, Torch, path};
 use glam::DVec3;
 use planar::arcs::{Fit, Piece};
+use spread::Spread;
 
 /// Coordinates of a program are multiples of this, mm.
 pub const RESOLUTION_MM: f64 = 1e-3;
@@ -116,13 +119,15 @@ pub struct Programmer {
     feed: Option<f64>,
     sets_feed: bool,
     dry: bool,
+    spread: Option<Spread>,
 }
 
 impl Programmer {
     /// Passes as they are planned; travels go `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
-        Self { clearance, torch, fit: None, speed_tolerance: 0.0, feed: None, sets_feed: false, dry: false }
+        let (spread, feed) = (None, None);
+        Self { clearance, torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
     }
 
     /// Everything as the profile says.
@@ -133,10 +138,19 @@ impl Programmer {
         programmer.with_fit(&profile.program)
     }
 
+    /// As the profile says, but with every point of the passes.
+    pub fn unfitted(profile: &Profile) -> Self {
+        Self { fit: None, spread: None, ..Self::of(profile) }
+    }
+
     /// Fits straight pieces and arcs as the profile says; without a tolerance every point is kept.
     pub fn with_fit(mut self, program: &Program) -> Self {
         // What dropping close points may have moved comes on top.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
+        // Merging points and fitting pieces each take half of it.
+        let time = program.min_point_time;
+        self.spread = (time > 0.0 && tolerance > 0.0).then_some(Spread { time, tolerance: tolerance / 2.0 });
+        let tolerance = if self.spread.is_some() { tolerance / 2.0 } else { tolerance };
         self.speed_tolerance = program.speed_tolerance;
         self.fit = (tolerance > 0.0).then_some(Fit { tolerance, arcs: program.arcs, grid: RESOLUTION_MM });
         self
@@ -167,6 +181,7 @@ impl Programmer {
     fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
+        self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
         let [(start, _), (_, first), ..] = moves[..] else { return };
         let approach = self.torch.approach(start);
         self.set_feed(self.torch.speed_and_feed(first).1, out);

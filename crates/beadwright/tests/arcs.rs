@@ -11,7 +11,9 @@ use beadwright::task::Task;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-const FITTED: profile::Program = profile::Program { chord_tolerance: 0.05, arcs: true, speed_tolerance: 0.0 };
+fn fitted() -> profile::Program {
+    profile::Program { chord_tolerance: 0.05, arcs: true, ..profile::Program::default() }
+}
 
 fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
     let mut profile = Profile::built_in(profile).unwrap();
@@ -135,18 +137,18 @@ fn propellers_take_a_third_of_the_moves_along_the_same_path() {
         for strategy in ["contour", "hybrid"] {
             let plan = planned(&mesh, "cmt-al2319-kuka", strategy);
             let case = format!("{name} {strategy}");
-            let (before, after) = compare(&case, &plan, &FITTED);
-            let lines = compare(&case, &plan, &profile::Program { arcs: false, ..FITTED }).1;
+            let (before, after) = compare(&case, &plan, &fitted());
+            let lines = compare(&case, &plan, &profile::Program { arcs: false, ..fitted() }).1;
             println!("{case}: {before} moves, {after} fitted, {lines} with lines only");
             if strategy == "contour" {
                 assert!(before >= 3 * after, "{case}: {before} moves became {after}");
                 continue;
             }
             // The hybrid's speed follows its width from place to place, and no move spans a change of it.
-            let level = profile::Program { speed_tolerance: 0.11, ..FITTED };
+            let level = profile::Program { speed_tolerance: 0.11, ..fitted() };
             let level = compare(&case, &plan, &level).1;
             println!("{case}: {level} with speeds of 11 % one");
-            let even = compare(&case, &of_one_speed(plan), &FITTED);
+            let even = compare(&case, &of_one_speed(plan), &fitted());
             println!("{case}: {} moves, {} fitted, of one speed", even.0, even.1);
             assert!(before >= 2 * level && level < after && even.0 >= 3 * even.1, "{case}: {level}, {even:?}");
         }
@@ -157,4 +159,39 @@ fn propellers_take_a_third_of_the_moves_along_the_same_path() {
 fn of_one_speed(mut plan: Plan) -> Plan {
     plan.layers.iter_mut().flat_map(|l| &mut l.passes).for_each(|pass| pass.speed = Along::Same(8.0));
     plan
+}
+
+/// A controller that takes a point every 0.1 s gets none sooner where the tolerance allows it, on the same path with the
+/// same time.
+#[test]
+fn points_are_as_far_apart_as_the_controller_needs() {
+    let plan = planned(&example::find("cross").unwrap().mesh(), "cmt-al2319-kuka", "hybrid");
+    let straight = profile::Program { chord_tolerance: 0.2, ..profile::Program::default() };
+    let spread = profile::Program { min_point_time: 0.1, ..straight.clone() };
+    let (before, after) = (programs(&plan, &straight), programs(&plan, &spread));
+    let exact = programs(&plan, &profile::Program::default());
+    let times = |programs: &[Vec<Instruction>]| -> Vec<f64> {
+        let (mut at, mut times) = (DVec3::ZERO, Vec::new());
+        for instruction in programs.iter().flatten() {
+            match *instruction {
+                Instruction::Travel { to } => at = to,
+                Instruction::Weld { to, speed, .. } => {
+                    times.push(at.distance(to) / speed);
+                    at = to;
+                }
+                _ => {}
+            }
+        }
+        times
+    };
+    let short = |times: &[f64]| times.iter().filter(|t| **t < 0.1).count();
+    let (b, a, e) = (times(&before), times(&after), times(&exact));
+    println!("{} short of {}, then {} of {}", short(&b), b.len(), short(&a), a.len());
+    assert!(short(&b) >= 20 && 4 * short(&a) <= short(&b), "{} {}", short(&b), short(&a));
+    assert!((a.iter().sum::<f64>() / e.iter().sum::<f64>() - 1.0).abs() < 1e-3);
+    for (line, exact) in after.iter().zip(&exact) {
+        for (line, points) in traced(line).iter().zip(traced(exact)) {
+            assert!(farthest(&points, line) <= 0.2, "{}", farthest(&points, line));
+        }
+    }
 }

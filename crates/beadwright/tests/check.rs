@@ -172,6 +172,23 @@ fn towers_stacked_starts_and_large_layers_are_found() {
 }
 
 #[test]
+fn points_too_dense_for_the_controller_are_found() {
+    let mut profile = profile("cmt-al2319-kuka", "contour");
+    let mut layers = planned("cross", &profile, 1);
+    let z = layers[0].z;
+    // A zigzag of 0.2 mm that no tolerance of 0.05 mm smooths, 28 ms a move at 10 mm/s.
+    let zigzag = (0..40).map(|i| DVec3::new(0.2 * f64::from(i), 0.2 * f64::from(i % 2), z)).collect();
+    layers[0].passes[0].points = zigzag;
+    assert!(!found(&layers, &profile).contains(&"dense-points"));
+    (profile.program.chord_tolerance, profile.program.min_point_time) = (0.05, 0.012);
+    assert!(!found(&layers, &profile).contains(&"dense-points"));
+    profile.program.min_point_time = 0.05;
+    assert!(found(&layers, &profile).contains(&"dense-points"));
+    profile.program.chord_tolerance = 0.5;
+    assert!(!found(&layers, &profile).contains(&"dense-points"), "{:?}", found(&layers, &profile));
+}
+
+#[test]
 fn every_check_tells_what_why_and_what_to_do() {
     for check in &CHECKS {
         for text in [check.what, check.why, check.example, check.remedy] {

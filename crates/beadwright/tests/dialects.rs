@@ -6,7 +6,7 @@ mod readers;
 use beadwright::fill::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::plan::{self, Layer};
-use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, Profile, RapidArc};
+use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, KrlArc, Profile, RapidArc};
 use beadwright::readback::{ArcCodes, Options, read};
 use beadwright::task::Task;
 use beadwright::{example, post};
@@ -95,6 +95,9 @@ fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
     let mut plain = profile();
     plain.rapid.as_mut().unwrap().arc = RapidArc::Plain;
     let plain = written("rapid", "demo", job, &plain);
+    let mut arctech = profile();
+    arctech.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    let arctech = written("krl", "demo", job, &arctech);
     let (krl, rapid, fanuc, inform) = (write("krl"), write("rapid"), write("fanuc"), write("inform"));
     let (urscript, marlin) = (write("urscript"), write("marlin"));
     let print = readers::marlin::run(&marlin["demo.gcode"]);
@@ -108,6 +111,7 @@ fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
         ("inform", inform.clone(), readers::inform::run(&inform, "DEMO")),
         ("urscript", urscript.clone(), readers::urscript::run(&urscript["demo.script"], 1)),
         ("marlin", marlin, printed),
+        ("krl-arctech", arctech.clone(), readers::krl::run(&arctech, "DEMO", "no output")),
     ];
     for (name, file) in [("gcode-linuxcnc", "demo.nc"), ("gcode-fanuc", "demo.nc"), ("gcode-siemens", "demo.MPF")] {
         let files = written("gcode", "demo", job, &flavour(&name[6..]));
@@ -182,7 +186,7 @@ fn what_the_project_reads_is_the_same() {
         },
         ..Options::default()
     };
-    let mains = ["DEMO.src", "demo.mod", "demo.mod", "", "", "", "", "demo.nc", "demo.nc", "demo.MPF"];
+    let mains = ["DEMO.src", "demo.mod", "demo.mod", "", "", "", "", "DEMO.src", "demo.nc", "demo.nc", "demo.MPF"];
     for ((name, files, motion), main) in all().iter().zip(mains).filter(|(_, main)| !main.is_empty()) {
         let mut find = |name: &str| {
             [name.to_owned(), format!("{name}.src"), format!("{name}.mod")].iter().find_map(|n| files.get(n)).cloned()
@@ -192,6 +196,64 @@ fn what_the_project_reads_is_the_same() {
         // It takes chords within 0.01 mm of an arc.
         let off = (totals.deposited_length_mm / motion.weld_length() - 1.0).abs();
         assert!(off < 5e-4, "{name}: {} for {}", totals.deposited_length_mm, motion.weld_length());
+    }
+}
+
+/// A form of ArcTech stands where the arc is lit, where the speed changes and where the arc ends, and nowhere else.
+#[test]
+fn arctech_switches_speeds_where_they_change() {
+    let mut profile = profile();
+    profile.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    let mut job = job();
+    for pass in job.iter_mut().flat_map(|l| &mut l.passes) {
+        if let Along::Each(speeds) = &mut pass.speed {
+            speeds.iter_mut().for_each(|s| *s = s.max(7.0));
+        }
+    }
+    let count = |profile: &Profile| {
+        let files = written("krl", "demo", &job, profile);
+        readers::krl::run(&files, "DEMO", "no output");
+        let (src, dat) = (&files["DEMO_L001.src"], &files["DEMO_L001.dat"]);
+        let forms = ["ARCON", "ARCSWI", "ARCOFF"].map(|word| src.matches(&format!(";FOLD {word} ")).count());
+        (forms, dat.matches("DECL stArcDat_T WDAT").count())
+    };
+    // Both passes begin at one speed, and the crater is one set.
+    assert_eq!(count(&profile), ([2, 1, 2], 3));
+    profile.program.speed_tolerance = 0.3;
+    // The levelled speed of the line is its own.
+    assert_eq!(count(&profile), ([2, 0, 2], 3));
+    profile.krl.as_mut().unwrap().arctech.as_mut().unwrap().version = "3.3.3".to_owned();
+    let error = Profile::parse(&toml::to_string(&profile).unwrap()).unwrap_err().to_string();
+    assert!(error.contains("krl.arctech.version = \"3.3.3\""), "{error}");
+    profile.krl.as_mut().unwrap().arctech = None;
+    let error = Profile::parse(&toml::to_string(&profile).unwrap()).unwrap_err().to_string();
+    assert!(error.contains("krl.arc = \"arctech\"") && error.contains("[krl.arctech]"), "{error}");
+}
+
+#[test]
+fn the_krl_reader_refuses_what_arctech_would() {
+    let mut profile = profile();
+    profile.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    let good = written("krl", "demo", &job(), &profile);
+    let taken = |files: &Files| std::panic::catch_unwind(|| readers::krl::run(files, "DEMO", "no output")).is_ok();
+    assert!(taken(&good));
+    for (file, old, new) in [
+        ("DEMO_L001.src", "LIN XP1\r\n", "LIN XP1 C_DIS\r\n"),
+        ("DEMO_L001.src", "(#ArcOffAfterMoveStd, WDAT2", "(#ArcOffAfterMoveStd, WDAT1"),
+        ("DEMO_L001.src", "DO ArcMainNG(#ArcOffMoveStd, WDAT2", "DO ArcMainNG(#ArcOffMoveStd, WDAT1"),
+        ("DEMO_L001.src", "$VEL.CP = 0.008000", "$VEL.CP = 0.080000"),
+        ("DEMO_L001.src", ";ENDFOLD\r\n", ""),
+        ("DEMO_L001.src", "FDAT_ACT = FP1\r\n", ""),
+        ("DEMO_L001.dat", "DECL FDAT FP3=", "DECL FDAT FP30="),
+        ("DEMO_L001.dat", "DECL stArcDat_T WDAT2=", "DECL stArcDat_T WDAT3="),
+        ("DEMO_L001.dat", "Velocity 0.008000", "Velocity 0.009000"),
+        ("DEMO_L002.dat", "303030366", "303030367"),
+    ] {
+        let mut bad = good.clone();
+        let text = bad.get_mut(file).unwrap();
+        *text = text.replacen(old, new, 1);
+        assert_ne!(*text, good[file], "{old:?} does not stand in {file}");
+        assert!(!taken(&bad), "{old:?} became {new:?} in {file}, and the reader took it");
     }
 }
 

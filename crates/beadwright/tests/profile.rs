@@ -162,6 +162,8 @@ fn only_optional_keys_may_be_missing() {
         "fill.perimeters_first",
         "fill.infill_density",
         "fill.solid_layers",
+        "krl.arc",
+        "krl.arctech",
         "rapid.tool_frame",
         "rapid.part_frame",
         "urscript.tool_frame",
@@ -420,6 +422,9 @@ fn tolerances_of_programs_are_checked() {
         ("chord_tolerance = 3.0", "chord_tolerance", "half a bead width"),
         ("arcs = true", "[program]", "needs a tolerance"),
         ("speed_tolerance = 0.5", "speed_tolerance", "of the speed"),
+        ("torch_angle = 361.0", "torch_angle", "between -360 and 360 °"),
+        ("min_point_time = 1.5", "min_point_time", "between 0 and 1 s"),
+        ("min_point_time = 0.012", "[program]", "needs a tolerance"),
     ] {
         let edited = with(lines);
         check_text(&edited, line_of(&edited, line), &["program.", "is impossible", part]);

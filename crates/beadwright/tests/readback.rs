@@ -447,7 +447,9 @@ fn rapid_outputs_and_loaded_modules() {
 #[test]
 fn errors_tell_the_line_and_the_remedy() {
     let error = |text: &str| try_read(text, &Options::default()).unwrap_err().to_string();
-    assert!(error("solid cube\nfacet normal 0 0 1\n").contains("neither G-code, KRL nor RAPID"));
+    assert!(
+        error("solid cube\nfacet normal 0 0 1\n").contains("neither G-code, KRL, RAPID, FANUC TP, INFORM nor URScript")
+    );
     assert!(error("").contains("neither"));
     for text in ["G1 X0 Y0 Z0\nM3\nG1 X1.2.3\n", "G1 X0 Y0 Z0\nM3\nG1 X#1 Y5\n", "G28\nG1 Z1 E1\nG1 X[#1+2] E1\n"] {
         assert!(error(text).starts_with("line 3: \"X"), "{}", error(text));

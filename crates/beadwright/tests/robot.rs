@@ -34,7 +34,8 @@ fn track(points: &[[f64; 3]]) -> Track {
     let pass =
         Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), speed: Along::Same(10.0) };
     let layer = Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
-    Track::of(&[layer], 20.0, 100.0)
+    // Travels 20 mm above at 100 mm/s.
+    Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap())
 }
 
 fn square() -> Track {
@@ -139,7 +140,7 @@ fn propeller() -> Track {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let mesh = example::find("propeller").unwrap().mesh();
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
-    Track::of(&plan.layers, profile.travel.clearance, profile.travel.speed)
+    Track::of(&plan.layers, &profile)
 }
 
 #[test]
@@ -284,6 +285,39 @@ fn a_suggested_place_is_better() {
     }
     let long = self::track(&[[-4000.0, 0.0, 2.0], [4000.0, 0.0, 2.0]]);
     assert_eq!(robot::suggest(&cell, cell.part, &long), None);
+}
+
+/// A part that sticks out on the far side of a table is turned towards the robot.
+#[test]
+fn a_table_brings_the_part_near() {
+    let with_table = |table: &str| Cell::parse(&format!("{}\n[table]\n{table}", BUILT_IN[0].1)).unwrap();
+    let cell = with_table("axis = [1600.0, 0.0]\ndirection = -1\nlimits = [-180.0, 180.0]\n");
+    let far = track(&[[300.0, -50.0, 2.0], [500.0, -50.0, 2.0], [500.0, 50.0, 2.0]]);
+    let start = place(1600.0, 0.0, 500.0, 0.0);
+    assert!(!robot::reach(&cell, start, &far).is_reachable());
+    let found = robot::turn_table(&cell, start, &far).unwrap();
+    assert!(found.unturned.is_none() && found.margin > 10.0 && found.angle.abs() > 45.0, "{found:?}");
+    assert!(robot::reach(&cell, found.place, &far).is_reachable());
+    // The axis is where it was, and the table's positive direction is clockwise.
+    assert_eq!(found.place.position, start.position);
+    assert!((found.place.rotation + found.angle).rem_euclid(360.0) < 1e-9, "{found:?}");
+    let turned = place(1700.0, 0.0, 500.0, 10.0).turned_about(cell.table.as_ref().unwrap(), 90.0);
+    assert!(DVec3::from(turned.position).distance(DVec3::new(1600.0, -100.0, 500.0)) < 1e-9, "{turned:?}");
+    assert!((turned.rotation + 80.0).abs() < 1e-9);
+    // A part in the middle is as well anywhere, and stays; limits are kept; without a table nothing is turned.
+    let middle = robot::turn_table(&cell, cell.part, &square()).unwrap();
+    assert_eq!((middle.angle, Some(middle.margin)), (0.0, middle.unturned));
+    let narrow = with_table("axis = [1600.0, 0.0]\ndirection = 1\nlimits = [-20.0, 20.0]\n");
+    assert!(robot::turn_table(&narrow, start, &far).is_none_or(|t| t.angle.abs() <= 20.0));
+    assert_eq!(robot::turn_table(&kuka(), start, &far), None);
+    for (table, word) in [
+        ("axis = [1e9, 0.0]\ndirection = 1\nlimits = [-20.0, 20.0]", "table.axis"),
+        ("axis = [0.0, 0.0]\ndirection = 2\nlimits = [-20.0, 20.0]", "table.direction"),
+        ("axis = [0.0, 0.0]\ndirection = 1\nlimits = [20.0, -20.0]", "table.limits"),
+    ] {
+        let error = Cell::parse(&format!("{}\n[table]\n{table}\n", BUILT_IN[0].1)).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
 }
 
 #[test]

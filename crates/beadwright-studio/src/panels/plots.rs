@@ -2,10 +2,10 @@
 
 use crate::app::Studio;
 use crate::jobs;
-use beadwright::bead::library::BeadLibrary;
+use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::{Reach, cell};
 use eframe::egui::{ComboBox, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Points of a curve that are drawn.
 const POINTS: usize = 2000;
@@ -28,7 +28,35 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let seconds = |i: usize| studio.plan.layers[i].passes.iter().map(|pass| pass.seconds()).sum();
     curve(ui, studio.t("plot-time"), x, planned(&seconds));
     ui.separator();
+    beads(studio, ui);
+    ui.separator();
     joints(studio, ui);
+}
+
+/// Width/height of a bead library over its inputs.
+fn beads(studio: &mut Studio, ui: &mut Ui) {
+    if ui.button(studio.t("open-beads")).clicked() {
+        studio.ask(jobs::Ask::OpenBeads);
+    }
+    let Some(library) = &studio.beads else { return };
+    let found = bead_window::plot(library);
+    ui.label(studio.t("plot-lambda")).on_hover_text(&found.title);
+    drawn(ui, "lambda", &found);
+}
+
+/// A plot of the library's pages, here.
+fn drawn(ui: &mut Ui, id: &str, found: &page::Plot) {
+    let plot = Plot::new(id).height(1.5 * HEIGHT).legend(Legend::default()).allow_scroll(false);
+    plot.x_axis_label(&*found.x).y_axis_label(&*found.y).show(ui, |plot| {
+        for curve in &found.curves {
+            let points: PlotPoints<'_> = curve.points.iter().map(|p| [p.x, p.y]).collect();
+            plot.line(Line::new(curve.name.clone(), points));
+        }
+        for (low, high, word) in &found.bands {
+            plot.hline(HLine::new(word.clone(), *low).style(LineStyle::dashed_loose()));
+            plot.hline(HLine::new(word.clone(), *high).style(LineStyle::dashed_loose()));
+        }
+    });
 }
 
 fn curve(ui: &mut Ui, title: &'static str, x: &'static str, points: Vec<[f64; 2]>) {
@@ -88,6 +116,3 @@ fn joint_curve(reach: &Reach, joint: usize) -> PlotPoints<'static> {
     let points = timed.filter_map(|(seconds, pose)| Some([seconds, pose.as_ref()?.joints[joint]]));
     points.step_by(step).collect::<Vec<_>>().into()
 }
-
-#[allow(dead_code)]
-fn unused(_: &BeadLibrary) {}

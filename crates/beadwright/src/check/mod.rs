@@ -6,6 +6,7 @@
 mod air;
 mod bead_width;
 mod crossing;
+mod dense_points;
 mod heat_input;
 mod layers;
 mod outside;
@@ -30,7 +31,7 @@ use serde::Serialize;
 use std::borrow::Borrow;
 
 /// The checks.
-pub const CHECKS: [Check; 16] = [
+pub const CHECKS: [Check; 17] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
@@ -47,6 +48,7 @@ pub const CHECKS: [Check; 16] = [
     towers::CHECK,
     stacked_starts::CHECK,
     program_size::CHECK,
+    dense_points::CHECK,
 ];
 
 /// A check.

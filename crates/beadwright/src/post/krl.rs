@@ -1,11 +1,13 @@
 //! KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on, `NAME.dat` holds the home position.
 //!
 //! One module a layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The
-//! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`.
+//! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`. With `arc = "arctech"` the forms of
+//! ArcTech Basic switch it, whose data stand in a `.dat` beside each layer's module.
 
+use super::arctech::{Forms, Target};
 use super::{Chunk, Post, Values, ascii, crater_lines};
 use crate::number::{fixed, push_fixed};
-use crate::profile::{Krl, Profile};
+use crate::profile::{Krl, KrlArc, Process, Profile};
 use crate::program::{Instruction, LayerProgram};
 use glam::DVec3;
 
@@ -21,9 +23,11 @@ pub struct KukaKrl {
     name: String,
     comment: String,
     krl: Krl,
+    process: Process,
     values: Values,
     travel_speed: f64,
-    wire_feed_speed: f64,
+    /// Angle of the turn table, E1, °.
+    table: Option<f64>,
     digits: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
@@ -35,8 +39,9 @@ impl KukaKrl {
         let name = module_name(part);
         let comment = format!("{}, {}", ascii(part), ascii(&profile.name));
         let values = Values::new(&name, profile);
-        let (travel_speed, wire_feed_speed) = (profile.travel.speed, profile.process.wire_feed_speed);
-        Self { name, comment, krl, values, travel_speed, wire_feed_speed, digits: 3, speed: 0.0 }
+        let (process, travel_speed) = (profile.process.clone(), profile.travel.speed);
+        let table = profile.program.table_angle;
+        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0 }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -61,6 +66,57 @@ impl KukaKrl {
             push_fixed(text, speed / 1000.0, 6);
             text.push_str("\r\n");
         }
+    }
+
+    fn forms(&self) -> Option<Forms> {
+        let arctech = self.krl.arctech.as_ref().filter(|_| self.krl.arc == KrlArc::Arctech)?;
+        Some(Forms::new(arctech, &self.krl, &self.process, self.travel_speed))
+    }
+
+    /// One of a layer's instructions where the forms of ArcTech switch the arc: a form moves to its point itself.
+    fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
+        let next_speed = all[i + 1..].iter().find_map(|next| match next {
+            Instruction::Weld { speed, .. } => Some(*speed),
+            _ => None,
+        });
+        match (all[i], next_speed) {
+            // ARCON goes there.
+            (Instruction::Travel { .. }, Some(_)) if matches!(all[i + 1], Instruction::ArcOn { .. }) => {}
+            (Instruction::ArcOn { pass, kind }, Some(speed)) => {
+                self.values.set("pass", pass);
+                text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
+                if let Some(&Instruction::Travel { to }) = i.checked_sub(1).and_then(|before| all.get(before)) {
+                    forms.on(text, &self.aggregate(to), speed);
+                }
+                self.go_on(text, speed);
+            }
+            (Instruction::Weld { to, circle, speed, last }, next) => {
+                let (via, to) = (circle.map(|c| self.aggregate(c.via)), self.aggregate(to));
+                let target = Target { via: via.as_deref(), to: &to };
+                match next.filter(|_| !last) {
+                    None => forms.off(text, target),
+                    Some(next) if krl_speed(next) != krl_speed(speed) => {
+                        forms.switch(text, target, next);
+                        self.go_on(text, next);
+                    }
+                    Some(_) => self.instruction(text, all[i]),
+                }
+            }
+            (Instruction::ArcOff { .. }, _) => self.speed = 0.0,
+            (other, _) => self.instruction(text, other),
+        }
+    }
+
+    /// Sets the speed of the plain motions behind a form, which has set it for the forms only.
+    fn go_on(&mut self, text: &mut String, speed: f64) {
+        self.speed = 0.0;
+        self.set_speed(text, speed);
+    }
+
+    fn aggregate(&self, to: DVec3) -> String {
+        let mut text = String::new();
+        self.pose(&mut text, to);
+        text
     }
 
     fn lin(&self, text: &mut String, to: DVec3, blend: bool) {
@@ -93,6 +149,10 @@ impl KukaKrl {
             text.push_str(axis);
             push_fixed(text, angle, 4);
         }
+        if let Some(angle) = self.table {
+            text.push_str(",E1 ");
+            push_fixed(text, angle, 4);
+        }
         text.push('}');
     }
 
@@ -115,12 +175,12 @@ impl KukaKrl {
                 }
             }
             Instruction::WireFeed { ratio } => {
-                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
                 self.lines(text, &self.krl.wire_feed);
             }
             Instruction::Crater { seconds, ratio } => {
                 if let Some(ratio) = ratio {
-                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
                     self.lines(text, crater_lines(&self.krl.crater, &self.krl.wire_feed));
                 }
                 wait(text, seconds);
@@ -167,14 +227,24 @@ impl Post for KukaKrl {
         text.reserve(program.instructions.len() * 70);
         text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
         self.lines(&mut text, &self.krl.layer_start);
-        for &instruction in &program.instructions {
-            self.instruction(&mut text, instruction);
+        let mut forms = self.forms();
+        for i in 0..program.instructions.len() {
+            match &mut forms {
+                Some(forms) => self.with_forms(&mut text, forms, &program.instructions, i),
+                None => self.instruction(&mut text, program.instructions[i]),
+            }
         }
         text.push_str("END\r\n");
-        vec![
-            Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") },
-            Chunk { file: format!("{module}.src"), text },
-        ]
+        let data = forms.map(|forms| Chunk {
+            file: format!("{module}.dat"),
+            text: format!(
+                "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {module}\r\n{}ENDDAT\r\n",
+                self.comment,
+                forms.declarations()
+            ),
+        });
+        let main = Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") };
+        [main, Chunk { file: format!("{module}.src"), text }].into_iter().chain(data).collect()
     }
 
     fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
@@ -191,6 +261,11 @@ impl Post for KukaKrl {
 
 fn wait(text: &mut String, seconds: f64) {
     text.push_str(&format!("WAIT SEC {}\r\n", fixed(seconds, 3)));
+}
+
+/// A speed as it is written, millionths of a m/s.
+fn krl_speed(speed: f64) -> i64 {
+    (speed * 1000.0).round() as i64
 }
 
 /// A legal module name: letters, digits and `_`, not beginning with a digit, no keyword, at most 24 characters.

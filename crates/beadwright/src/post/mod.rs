@@ -12,12 +12,14 @@
 //! | [`inform`] | Yaskawa INFORM: a main job, and one job a layer |
 //! | [`urscript`] | URScript: one file, a function a layer |
 
+mod arctech;
 pub mod fanuc;
 pub mod gcode;
 pub mod inform;
 pub mod krl;
 pub mod marlin;
 mod needs;
+mod orientation;
 pub mod rapid;
 mod split;
 pub mod urscript;
@@ -61,6 +63,11 @@ pub enum PostError {
     /// No such post.
     #[error("there is no post \"{0}\". The posts are {known}.", known = NAMES.join(", "))]
     Unknown(String),
+    /// The profile has a turn table that the post does not write.
+    #[error(
+        "the post \"{0}\" does not write the turn table of program.table_angle; krl and rapid do. Take the key out, and turn the table by hand."
+    )]
+    NoTable(String),
     /// The profile lacks what the post needs.
     #[error(transparent)]
     Profile(#[from] ProfileError),
@@ -74,9 +81,14 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
     needs::check(name, profile)?;
     // In front, since long names lose their end.
     let part = &*if profile.is_dry_run() { format!("dry_{part}") } else { part.to_owned() };
+    let angle = profile.program.torch_angle;
+    if profile.program.table_angle.is_some() && NAMES.contains(&name) && !["krl", "rapid"].contains(&name) {
+        return Err(PostError::NoTable(name.to_owned()));
+    }
     match name {
         "krl" => {
-            let section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
+            let mut section = profile.krl.clone().ok_or_else(|| no_section(profile, "krl"))?;
+            section.orientation = orientation::zyx(section.orientation, angle);
             Ok(Box::new(krl::KukaKrl::new(part, profile, section)))
         }
         "gcode" => {
@@ -88,19 +100,23 @@ pub fn post(name: &str, part: &str, profile: &Profile) -> Result<Box<dyn Post>, 
             Ok(Box::new(marlin::MarlinGcode::new(part, profile, section)))
         }
         "rapid" => {
-            let section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
+            let mut section = profile.rapid.clone().ok_or_else(|| no_section(profile, "rapid"))?;
+            section.orientation = orientation::quaternion(section.orientation, angle);
             Ok(Box::new(rapid::AbbRapid::new(part, profile, section)))
         }
         "fanuc" => {
-            let section = profile.fanuc.clone().ok_or_else(|| no_section(profile, "fanuc"))?;
+            let mut section = profile.fanuc.clone().ok_or_else(|| no_section(profile, "fanuc"))?;
+            section.orientation = orientation::xyz(section.orientation, angle);
             Ok(Box::new(fanuc::FanucTp::new(part, profile, section)))
         }
         "inform" => {
-            let section = profile.inform.clone().ok_or_else(|| no_section(profile, "inform"))?;
+            let mut section = profile.inform.clone().ok_or_else(|| no_section(profile, "inform"))?;
+            section.orientation = orientation::xyz(section.orientation, angle);
             Ok(Box::new(inform::YaskawaInform::new(part, profile, section)))
         }
         "urscript" => {
-            let section = profile.urscript.clone().ok_or_else(|| no_section(profile, "urscript"))?;
+            let mut section = profile.urscript.clone().ok_or_else(|| no_section(profile, "urscript"))?;
+            section.orientation = orientation::vector(section.orientation, angle);
             Ok(Box::new(urscript::UniversalScript::new(part, profile, section)))
         }
         _ => Err(PostError::Unknown(name.to_owned())),

@@ -1,6 +1,6 @@
 //! What a profile asks of a dialect, beside the dialect's own section: refused here in words, so that no post has to.
 
-use crate::profile::{Follow, Profile, ProfileError, RapidArc};
+use crate::profile::{Follow, KrlArc, Profile, ProfileError, RapidArc};
 
 /// Lines of a dialect's section that others rely on.
 struct Lines<'a> {
@@ -18,6 +18,9 @@ pub(super) fn check(name: &str, profile: &Profile) -> Result<(), ProfileError> {
     }
     if name == "marlin" {
         return printer(profile);
+    }
+    if name == "krl" && profile.krl.as_ref().is_some_and(|krl| krl.arc == KrlArc::Arctech) {
+        return arctech(profile);
     }
     let Some(lines) = lines(name, profile) else { return Ok(()) };
     let ends = &profile.start_stop;
@@ -53,6 +56,22 @@ fn printer(profile: &Profile) -> Result<(), ProfileError> {
     }
     if profile.start_stop.wire_retract > 0.0 {
         return cannot("a start_stop.wire_retract", "Take marlin.retract_length instead.");
+    }
+    Ok(())
+}
+
+/// The forms of ArcTech have their own data for the end of a pass, and set the wire feed by the weld's own set.
+fn arctech(profile: &Profile) -> Result<(), ProfileError> {
+    let cannot = |what, remedy| Err(ProfileError::Cannot { post: "krl", what, remedy });
+    if profile.process.follow == Follow::WireFeed {
+        return cannot("process.follow = \"wire-feed\" with arc = \"arctech\"", "Take process.follow = \"speed\".");
+    }
+    if profile.start_stop.crater_fill_time > 0.0 {
+        return cannot("a start_stop.crater_fill_time with arc = \"arctech\"", "Take krl.arctech.crater.time instead.");
+    }
+    if profile.start_stop.wire_retract > 0.0 {
+        let remedy = "Take krl.arctech.crater.burnback_time instead.";
+        return cannot("a start_stop.wire_retract with arc = \"arctech\"", remedy);
     }
     Ok(())
 }

@@ -25,6 +25,8 @@ pub struct AbbRapid {
     values: Values,
     travel_speed: f64,
     orientation: String,
+    /// External axes of all targets.
+    axes: String,
     digits: usize,
 }
 
@@ -43,8 +45,9 @@ impl AbbRapid {
         let values = Values::new(&name, profile);
         let rapid = with_ends(rapid, profile);
         let orientation = data::quaternion(&rapid.orientation);
+        let axes = data::external_axes(profile.program.table_angle);
         let (process, travel_speed) = (profile.process.clone(), profile.travel.speed);
-        Self { name, comment, rapid, process, values, travel_speed, orientation, digits: 3 }
+        Self { name, comment, rapid, process, values, travel_speed, orientation, axes, digits: 3 }
     }
 
     fn numbered(&self, prefix: &str, index: usize) -> String {
@@ -129,10 +132,10 @@ impl AbbRapid {
         text.push_str(word);
         text.push(' ');
         if let Some(via) = via {
-            data::push_target(text, via, &self.orientation);
+            data::push_target(text, via, &self.orientation, &self.axes);
             text.push(',');
         }
-        data::push_target(text, to, &self.orientation);
+        data::push_target(text, to, &self.orientation, &self.axes);
         text.push_str(&format!(",{between},{zone},{}\\WObj:={};\r\n", self.rapid.tool, self.rapid.wobj));
     }
 

@@ -1,6 +1,6 @@
 //! The profile of a dry run: programs that only move.
 
-use super::{FanucSpeed, Profile, RapidArc};
+use super::{FanucSpeed, KrlArc, Profile, RapidArc};
 
 impl Profile {
     /// The profile for programs that only move: the same ways at the same speeds, but arc, gas and wire never on. The
@@ -10,6 +10,9 @@ impl Profile {
         self.name.push_str(", DRY RUN");
         if let Some(rapid) = &mut self.rapid {
             rapid.arc = RapidArc::Plain;
+        }
+        if let Some(krl) = &mut self.krl {
+            krl.arc = KrlArc::Outputs;
         }
         // The weld schedule gives no speed while nothing is welded.
         if let Some(fanuc) = self.fanuc.as_mut().filter(|fanuc| fanuc.speed == FanucSpeed::WeldSpeed) {

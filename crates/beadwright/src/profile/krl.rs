@@ -1,5 +1,7 @@
 //! KUKA KRL in profiles.
 
+use super::arctech::{ArcTech, KrlArc};
+use super::limits::{Broken, Range};
 use serde::{Deserialize, Serialize};
 
 /// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
@@ -19,6 +21,12 @@ pub struct Krl {
     pub ptp_speed: f64,
     /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
     pub blend: f64,
+    /// What switches the arc: `outputs`, the lines `arc_on` and `arc_off`, or `arctech`, the forms of ArcTech Basic; default
+    /// outputs.
+    #[serde(default)]
+    pub arc: KrlArc,
+    /// Data of ArcTech Basic; needed for `arc = "arctech"`.
+    pub arctech: Option<ArcTech>,
     /// Lines at the beginning of the main program.
     pub start: Vec<String>,
     /// Lines at the beginning of every layer.
@@ -38,4 +46,28 @@ pub struct Krl {
     pub crater: Vec<String>,
     /// Lines at the end of the main program.
     pub end: Vec<String>,
+}
+
+impl Krl {
+    /// Ranges of the numbers.
+    pub(super) fn ranges(&self) -> Vec<Range> {
+        let mut ranges = vec![
+            ("krl.tool", self.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)"),
+            ("krl.base", self.base.into(), 1.0, 32.0, "(index into BASE_DATA)"),
+            ("krl.ptp_speed", self.ptp_speed, 1.0, 100.0, "%"),
+            ("krl.blend", self.blend, 0.0, 50.0, "mm"),
+        ];
+        ranges.extend(self.orientation.map(|angle| ("krl.orientation", angle, -360.0, 360.0, "°")));
+        ranges.extend(self.arctech.iter().flat_map(|arctech| arctech.ranges()));
+        ranges
+    }
+
+    /// The first text that a controller would refuse.
+    pub(super) fn broken(&self) -> Option<Broken> {
+        if self.arc == KrlArc::Arctech && self.arctech.is_none() {
+            let reason = "a table [krl.arctech] with the data of the package is needed.".to_owned();
+            return Some(Broken { key: "krl.arc".to_owned(), value: "\"arctech\"".to_owned(), reason });
+        }
+        self.arctech.as_ref().and_then(ArcTech::broken)
+    }
 }

@@ -122,16 +122,11 @@ pub(super) fn ranges(p: &Profile) -> Vec<Range> {
         ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
         ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),
         ("program.speed_tolerance", p.program.speed_tolerance, 0.0, 0.3, "of the speed"),
+        ("program.min_point_time", p.program.min_point_time, 0.0, 1.0, "s"),
+        ("program.torch_angle", p.program.torch_angle, -360.0, 360.0, "°"),
+        ("program.table_angle", p.program.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°"),
     ];
-    if let Some(krl) = &p.krl {
-        ranges.extend([
-            ("krl.tool", krl.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)"),
-            ("krl.base", krl.base.into(), 1.0, 32.0, "(index into BASE_DATA)"),
-            ("krl.ptp_speed", krl.ptp_speed, 1.0, 100.0, "%"),
-            ("krl.blend", krl.blend, 0.0, 50.0, "mm"),
-        ]);
-        ranges.extend(krl.orientation.map(|angle| ("krl.orientation", angle, -360.0, 360.0, "°")));
-    }
+    ranges.extend(p.krl.iter().flat_map(|krl| krl.ranges()));
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));
         let number = gcode.program_number.unwrap_or(1);
@@ -189,7 +184,8 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     }
     let rapid = p.rapid.as_ref().and_then(|rapid| rapid.broken());
     let fanuc = || p.fanuc.as_ref().and_then(|fanuc| fanuc.broken());
-    rapid.or_else(fanuc).or_else(|| p.inform.as_ref().and_then(|inform| inform.broken()))
+    let krl = || p.krl.as_ref().and_then(|krl| krl.broken());
+    rapid.or_else(krl).or_else(fanuc).or_else(|| p.inform.as_ref().and_then(|inform| inform.broken()))
 }
 
 impl Program {
@@ -200,6 +196,9 @@ impl Program {
         }
         if self.arcs && self.chord_tolerance == 0.0 {
             return Some("arcs = true needs a tolerance, such as 0.05 mm.");
+        }
+        if self.min_point_time > 0.0 && self.chord_tolerance == 0.0 {
+            return Some("min_point_time needs a tolerance within which points are merged, such as 0.05 mm.");
         }
         let coarse = gcode.is_some_and(|g| g.decimals < 3);
         (self.arcs && coarse).then_some("arcs = true needs 3 gcode.decimals or more: the radius must be kept.")

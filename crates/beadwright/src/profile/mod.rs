@@ -3,6 +3,7 @@
 //! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
 //! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
 
+mod arctech;
 mod check;
 mod dry_run;
 pub mod edit;
@@ -20,6 +21,7 @@ mod reasons;
 mod start_stop;
 mod urscript;
 
+pub use arctech::{ArcTech, ArcTechCrater, ArcTechStrike, ArcTechWeld, KrlArc};
 pub use check::CheckLimits;
 pub use fanuc::{Fanuc, FanucSpeed};
 pub use gcode::{Gcode, GcodeComments};
@@ -326,6 +328,16 @@ pub struct Program {
     /// Speeds along a pass that differ by no more than this part become one, with the same time along it: fewer changes,
     /// longer moves; default 0.
     pub speed_tolerance: f64,
+    /// Least time between two points of a pass, s: nearer ones are merged where that keeps the chord tolerance, since
+    /// controllers read ahead only so fast (KRC4 interpolates every 0.012 s); default 0: none are.
+    pub min_point_time: f64,
+    /// Turn of the torch about its own axis, on top of the orientation in the robot's section, °: counter-clockwise seen from
+    /// behind the torch. Robots only; `beadwright reach` tells the best one. Default 0.
+    pub torch_angle: f64,
+    /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` tells the best one. The
+    /// part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other posts refuse it.
+    /// Left out where there is no table.
+    pub table_angle: Option<f64>,
 }
 
 /// What a number of a profile can be.

@@ -40,6 +40,9 @@ const HARMLESS: [&str; 26] = [
     "IMPORT",
 ];
 
+/// Programs of the system that move nothing.
+const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
+
 /// Branches and loops, by their first words.
 const CONTROL: [&str; 11] =
     ["IF", "ELSE", "FOR", "WHILE", "LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
@@ -228,13 +231,13 @@ impl Reader<'_> {
             self.sources[source].targets.insert(word.to_ascii_uppercase(), target);
         } else if CONTROL.iter().any(is) {
             self.trace.note(&word.to_ascii_uppercase(), "is not followed: its lines were read once", number);
-        } else if rest.starts_with('(') && !is(&"BAS") {
+        } else if rest.starts_with('(') && !SYSTEM.iter().any(is) {
             return self.call(word, rest, number, source, depth);
         } else if rest.starts_with(['.', '[', '=']) {
             if rest.starts_with('.') {
                 self.trace.note(word, "is changed in a part, which is not understood", number);
             }
-        } else if !HARMLESS.iter().chain(&CONTROL_REST).any(is) && !flat.starts_with("TRIGGERWHEN") {
+        } else if !HARMLESS.iter().chain(&CONTROL_REST).chain(&SYSTEM).any(is) && !flat.starts_with("TRIGGERWHEN") {
             self.trace.note(word, "is not understood and was left out", number);
         }
         Ok(())

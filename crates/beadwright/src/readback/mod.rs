@@ -1,9 +1,9 @@
-//! Programs read back: G-code, KRL and RAPID, ours and anyone's, as moves with and without metal.
+//! Programs read back, ours and anyone's, as moves with and without metal: G-code, KRL, RAPID, FANUC TP, INFORM, URScript.
 //!
 //! | part | holds |
 //! | --- | --- |
 //! | [`read`] | tells the dialect by the text and reads the moves |
-//! | `gcode`, `krl`, `rapid` | the dialects, one file each |
+//! | `gcode`, `krl`, `rapid`, `fanuc`, `inform`, `urscript` | the dialects, one file each |
 //! | `block`, `hints` | the words of a line of G-code; what its comments tell |
 //! | `words` | numbers, names and patterns of the robots' languages |
 //! | `trace` | the moves as they come: places, flattened arcs, notes |
@@ -13,13 +13,16 @@
 //! once, variables and expressions are not evaluated. Whatever is not understood ends in [`Program::notes`].
 
 mod block;
+mod fanuc;
 mod gcode;
 mod hints;
+mod inform;
 mod krl;
 mod layers;
 mod module;
 mod rapid;
 mod trace;
+mod urscript;
 mod words;
 
 pub use layers::{ReadLayer, ReadPass, Totals};
@@ -37,6 +40,12 @@ pub enum Dialect {
     Krl,
     /// ABB RAPID.
     Rapid,
+    /// FANUC TP as ASCII.
+    Fanuc,
+    /// Yaskawa INFORM.
+    Inform,
+    /// URScript of Universal Robots.
+    Urscript,
 }
 
 impl Dialect {
@@ -46,6 +55,9 @@ impl Dialect {
             Self::Gcode => "G-code",
             Self::Krl => "KRL",
             Self::Rapid => "RAPID",
+            Self::Fanuc => "FANUC TP",
+            Self::Inform => "INFORM",
+            Self::Urscript => "URScript",
         }
     }
 }
@@ -98,8 +110,8 @@ pub struct Program {
 
 /// Codes that light and end the arc, besides those that a dialect knows by itself.
 ///
-/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE` or
-/// `SetDO doArc,1`. Case and blanks do not matter.
+/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`, `SetDO doArc,1`
+/// or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ArcCodes {
     /// Light the arc.
@@ -115,6 +127,8 @@ pub struct Options {
     pub arc: ArcCodes,
     /// Diameter of a printer's filament, mm. Without it the program's comments tell, or else it is 1.75 mm.
     pub filament_diameter: Option<f64>,
+    /// Whether `V=` in INFORM counts cm/min, as controllers can be set to, and not mm/s; jobs do not tell.
+    pub inform_cm_per_min: bool,
 }
 
 /// A line of the program, or of one of its modules.
@@ -140,7 +154,7 @@ impl fmt::Display for Place {
 pub enum ReadError {
     /// No dialect fits.
     #[error(
-        "this is neither G-code, KRL nor RAPID: no line begins with a word such as G1, with DEF or with MODULE. Give the main program itself, as text."
+        "this is neither G-code, KRL, RAPID, FANUC TP, INFORM nor URScript: no line begins with a word such as G1, with DEF, MODULE, /PROG, /JOB or def. Give the main program itself, as text."
     )]
     UnknownDialect,
     /// A number is expected.
@@ -188,7 +202,7 @@ pub enum ReadError {
 }
 
 /// Reads a program. `module` finds the text of another module by its name as the program writes it: a KRL
-/// subprogram (`PART_L001`), its data (`PART_L001.dat`), a RAPID module or procedure (`L001`).
+/// subprogram (`PART_L001`), its data (`PART_L001.dat`), a RAPID module or procedure (`L001`), a FANUC program, a job.
 ///
 /// # Errors
 /// [`ReadError`] when the dialect is unknown, a number is malformed, a called module is missing or no move lays
@@ -202,17 +216,30 @@ pub fn read(
         Dialect::Gcode => gcode::read(text, options),
         Dialect::Krl => krl::read(text, module, options),
         Dialect::Rapid => rapid::read(text, module, options),
+        Dialect::Fanuc => fanuc::read(text, module, options),
+        Dialect::Inform => inform::read(text, module, options),
+        Dialect::Urscript => urscript::read(text, module, options),
     }
 }
 
-/// The first line that is typical of a dialect decides.
-fn dialect(text: &str) -> Option<Dialect> {
+/// The language of a program, if it is one of those that can be read: the first line that is typical of one decides.
+pub fn dialect(text: &str) -> Option<Dialect> {
     const KRL: [&str; 9] = ["DEF", "DEFDAT", "DEFFCT", "LIN", "PTP", "SLIN", "SPTP", "$VEL", "$OUT"];
     const RAPID: [&str; 9] = ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
+    // Calls: in RAPID no bracket follows a move.
+    const URSCRIPT: [&str; 5] = ["movel(", "movej(", "movep(", "movec(", "set_tcp("];
     text.trim_start_matches('\u{feff}').lines().map(str::trim).find_map(|line| {
         let line = words::strip_word(line, "GLOBAL").or_else(|| words::strip_word(line, "LOCAL")).unwrap_or(line);
         let begins = |word: &&str| words::strip_word(line, word).is_some();
-        if line.starts_with('&') || line.starts_with(";FOLD") || KRL.iter().any(&begins) {
+        if words::strip_word(line, "/PROG").is_some() {
+            Some(Dialect::Fanuc)
+        } else if line == "/JOB" {
+            Some(Dialect::Inform)
+        } else if (line.starts_with("def ") && words::before_comment(line, '#').trim_end().ends_with(':'))
+            || URSCRIPT.iter().any(|w| line.starts_with(w))
+        {
+            Some(Dialect::Urscript)
+        } else if line.starts_with('&') || line.starts_with(";FOLD") || KRL.iter().any(&begins) {
             Some(Dialect::Krl)
         } else if RAPID.iter().any(begins) {
             Some(Dialect::Rapid)

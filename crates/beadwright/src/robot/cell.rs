@@ -23,8 +23,11 @@ pub struct Cell {
     pub arm: ArmTable,
     /// Tool frame on the flange.
     pub torch: Torch,
-    /// Frame of the part in the robot's.
+    /// Frame of the part in the robot's; on a turn table, while that stands at 0°.
     pub part: PartPlace,
+    /// Turn table that carries the part; optional.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<Table>,
 }
 
 /// A six-axis arm with parallel base and spherical wrist. Lengths in mm, angles in °.
@@ -75,6 +78,18 @@ pub struct PartPlace {
     pub position: [f64; 3],
     /// Turn about the vertical, °.
     pub rotation: f64,
+}
+
+/// A turn table with a vertical axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Where its axis stands, seen from the foot of the robot: x and y, mm.
+    pub axis: [f64; 2],
+    /// 1 where its positive direction is counter-clockwise seen from above, −1 where not.
+    pub direction: i8,
+    /// Least and greatest angle, °.
+    pub limits: [f64; 2],
 }
 
 /// Why a cell was refused.
@@ -181,6 +196,10 @@ impl Cell {
         ranges.extend(self.torch.position.map(|v| ("torch.position", v, -5e3, 5e3, "mm")));
         ranges.extend(self.torch.rotation.map(|v| ("torch.rotation", v, -360.0, 360.0, "°")));
         ranges.extend(self.part.position.map(|v| ("part.position", v, -1e5, 1e5, "mm")));
+        if let Some(table) = &self.table {
+            ranges.extend(table.axis.map(|v| ("table.axis", v, -1e5, 1e5, "mm")));
+            ranges.extend(table.limits.map(|v| ("table.limits", v, -7200.0, 7200.0, "°")));
+        }
         // Written so that NaN is out of range too.
         if let Some((key, value, low, high, unit)) =
             ranges.into_iter().find(|&(_, v, low, high, _)| !(v >= low && v <= high))
@@ -189,6 +208,13 @@ impl Cell {
         }
         if let Some(sign) = a.signs.iter().find(|s| s.abs() != 1) {
             return Some(("arm.signs", sign.to_string(), "each sign is 1 or -1.".to_owned()));
+        }
+        if let Some(table) = self.table.as_ref().filter(|t| t.direction.abs() != 1) {
+            return Some(("table.direction", table.direction.to_string(), "it is 1 or -1.".to_owned()));
+        }
+        if let Some(table) = self.table.as_ref().filter(|t| t.limits[0] >= t.limits[1]) {
+            let reason = "the least angle comes first, then the greatest.".to_owned();
+            return Some(("table.limits", format!("{:?}", table.limits), reason));
         }
         let swapped = a.limits.iter().find(|[low, high]| low >= high);
         swapped.map(|pair| {
@@ -202,6 +228,15 @@ impl PartPlace {
     pub fn base_from_part(&self) -> Frame {
         Frame { position: DVec3::from(self.position), rotation: DQuat::from_rotation_z(self.rotation.to_radians()) }
     }
+
+    /// The place when the table under the part stands at that angle, °.
+    pub fn turned_about(&self, table: &Table, angle: f64) -> Self {
+        let turn = f64::from(table.direction) * angle;
+        let axis = DVec3::new(table.axis[0], table.axis[1], 0.0);
+        let position = axis + DQuat::from_rotation_z(turn.to_radians()) * (DVec3::from(self.position) - axis);
+        Self { position: position.to_array(), rotation: super::arm::turned_near(self.rotation + turn, 0.0) }
+    }
+
     /// The place in words.
     pub fn sentence(&self) -> String {
         let [x, y, z] = self.position;

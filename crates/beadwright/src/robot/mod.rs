@@ -9,7 +9,7 @@
 //!    the best least margin the one that turns least;
 //! 3. every point is walked with that course: angles, margins, speeds, [findings](finding) (`walk.rs`).
 //!
-//! [`suggest()`] searches for a place of the part with more room.
+//! [`suggest()`] searches for a place of the part with more room, [`turn_table`] for the angle of a table under it.
 //!
 //! Not looked at: collisions of arm, torch and part, cables, and the load's dynamics.
 
@@ -18,14 +18,16 @@ pub mod cell;
 pub mod finding;
 pub mod page;
 pub mod suggest;
+pub mod table;
 pub mod track;
 mod turn;
 mod walk;
 
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
-pub use cell::{Cell, CellError, PartPlace};
+pub use cell::{Cell, CellError, PartPlace, Table};
 pub use finding::{Finding, Trouble};
 pub use suggest::{Suggestion, suggest};
+pub use table::{TableAngle, turn_table};
 pub use track::{Stop, Track};
 pub use walk::{Pose, Reach, Turning, reach};
 

@@ -20,7 +20,7 @@ const COARSE: usize = 12;
 /// Torch angles that are tried from there on: those of the walk.
 const FINE: usize = super::turn::ANGLES;
 /// Less gain in margin than this is not worth moving a part, °.
-const WORTH_MOVING: f64 = 5.0;
+pub(super) const WORTH_MOVING: f64 = 5.0;
 /// Steps of the refinement, mm and °; the last ones are the grain of the answer.
 const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
 
@@ -123,7 +123,13 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
 }
 
 /// The best least margin over branches and torch angles; none where a point is beyond reach or a limit in all of them.
-fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3], angles: usize) -> Option<Suggestion> {
+pub(super) fn judge(
+    arm: &Arm,
+    tool_from_flange: &Frame,
+    place: PartPlace,
+    points: &[DVec3],
+    angles: usize,
+) -> Option<Suggestion> {
     let base_from_part = place.base_from_part();
     let angle = |k: usize| k as f64 * 360.0 / angles as f64;
     let mut least = vec![[f64::INFINITY; Branch::COUNT]; angles];
@@ -154,7 +160,7 @@ fn judge(arm: &Arm, tool_from_flange: &Frame, place: PartPlace, points: &[DVec3]
 }
 
 /// The outermost stops of a few layers, in each direction upwards and downwards.
-fn outermost(track: &Track) -> Vec<DVec3> {
+pub(super) fn outermost(track: &Track) -> Vec<DVec3> {
     let mut layers: Vec<&[super::Stop]> = track.stops.chunk_by(|a, b| a.layer == b.layer).collect();
     let count = layers.len();
     if count > LAYERS {

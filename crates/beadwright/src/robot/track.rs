@@ -1,6 +1,7 @@
 //! The way of the torch through a plan, travels included, in pieces short enough to be checked point by point.
 
 use crate::plan::Layer;
+use crate::profile::Profile;
 use crate::program::{Instruction, Programmer};
 use glam::DVec3;
 use serde::Serialize;
@@ -34,10 +35,10 @@ pub struct Track {
 }
 
 impl Track {
-    /// The way through a plan's layers, with travels `clearance` (mm) above them at `travel_speed` (mm/s).
-    pub fn of<L: Borrow<Layer>>(layers: &[L], clearance: f64, travel_speed: f64) -> Self {
-        let mut track = Self::default();
-        let mut programmer = Programmer::new(clearance);
+    /// The way through a plan's layers, as the programs made with the profile go it.
+    pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Self {
+        let (mut track, travel_speed) = (Self::default(), profile.travel.speed);
+        let mut programmer = Programmer::unfitted(profile);
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
         }

@@ -35,6 +35,13 @@ pub struct Turning {
     pub single_margin: f64,
 }
 
+impl Turning {
+    /// The torch angle to plan with, `program.torch_angle`, -180 to 180°; none where no single angle reaches all.
+    pub fn program_angle(&self) -> Option<f64> {
+        (self.single_margin >= 0.0).then(|| turned_near(self.single, 0.0))
+    }
+}
+
 /// What a walk has found.
 #[derive(Debug, Clone)]
 pub struct Reach {

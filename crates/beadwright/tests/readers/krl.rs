@@ -1,7 +1,8 @@
-//! A reader of KRL modules: follows the calls of the main program and checks the grammar that matters.
+//! A reader of KRL modules: follows the calls of the main program and checks the grammar that matters. The arc is switched
+//! by an output, or by the forms of ArcTech, whose data must be declared and used.
 
 use super::{Machine, Motion, Point};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Runs the program `main` (file names with extension as keys). `arc` is the line that switches the arc, without its
 /// value: `$OUT[2]`.
@@ -11,7 +12,17 @@ pub fn run(files: &BTreeMap<String, String>, main: &str, arc: &str) -> Motion {
     }
     let data = &files[&format!("{main}.dat")];
     assert!(data.contains(&format!("DEFDAT {main}\r\n")) && data.contains("DECL E6AXIS XHOME={A1 "));
-    let mut machine = Reader { files, arc, machine: Machine::default(), speed: None, blended: false, homes: 0 };
+    let mut machine = Reader {
+        files,
+        arc,
+        machine: Machine::default(),
+        speed: None,
+        blended: false,
+        homes: 0,
+        seam: None,
+        triggers: Vec::new(),
+        used: BTreeSet::new(),
+    };
     machine.module(main);
     assert_eq!(machine.homes, 2, "a program begins and ends at home");
     machine.machine.finish()
@@ -30,8 +41,12 @@ fn check_module(file: &str, text: &str) {
     let begins = if file.ends_with(".dat") { format!("DEFDAT {name}") } else { format!("DEF {name}( )") };
     assert_eq!(lines[head], begins);
     assert_eq!(lines[lines.len() - 2], if file.ends_with(".dat") { "ENDDAT" } else { "END" });
-    let folds = |word: &str| lines.iter().filter(|l| l.trim_start().starts_with(word)).count();
-    assert_eq!(folds(";FOLD"), folds(";ENDFOLD"));
+    let mut depth = 0_i32;
+    for line in lines.iter().map(|l| l.trim_start()) {
+        depth += i32::from(line.starts_with(";FOLD")) - i32::from(line.starts_with(";ENDFOLD"));
+        assert!((0..=2).contains(&depth), "{file}: {line}");
+    }
+    assert_eq!(depth, 0, "{file}: folds");
     for (open, close) in [('{', '}'), ('(', ')')] {
         assert!(lines.iter().all(|l| l.matches(open).count() == l.matches(close).count()), "{file}: unbalanced");
     }
@@ -50,29 +65,27 @@ struct Reader<'a> {
     /// Whether the last motion was blended.
     blended: bool,
     homes: usize,
+    /// Speed of the seam as ArcTech has it, mm/s.
+    seam: Option<f64>,
+    /// Triggers that wait for the next motion.
+    triggers: Vec<&'a str>,
+    /// Data of the module that were used.
+    used: BTreeSet<String>,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     fn module(&mut self, name: &str) {
-        let text = self.files.get(&format!("{name}.src")).unwrap_or_else(|| panic!("{name}.src is missing"));
+        let files = self.files;
+        let text = files.get(&format!("{name}.src")).unwrap_or_else(|| panic!("{name}.src is missing"));
+        let data = declared(files.get(&format!("{name}.dat")).map_or("", |t| t));
+        let outside = std::mem::take(&mut self.used);
         for line in text.split("\r\n").map(str::trim) {
             if line.is_empty() || line.starts_with(['&', ';']) || line.starts_with("DEF") || line == "END" {
                 continue;
             } else if let Some(value) = line.strip_prefix("$VEL.CP = ") {
-                let speed: f64 = value.parse().unwrap();
-                assert!(speed > 0.0 && speed <= 2.0, "$VEL.CP = {speed}");
-                self.speed = Some(speed * 1000.0);
-            } else if let Some(rest) = line.strip_prefix("LIN ") {
-                let (point, blend) = rest.split_once('}').unwrap();
-                self.machine.move_to(coordinates(point), self.speed.unwrap());
-                self.blended = blend.trim() == "C_DIS";
-                assert!(self.blended || blend.is_empty(), "{line}");
-            } else if let Some(rest) = line.strip_prefix("CIRC ") {
-                let (via, rest) = rest.split_once("},").unwrap();
-                let (point, blend) = rest.split_once('}').unwrap();
-                self.machine.arc_to(coordinates(via), coordinates(point), self.speed.unwrap());
-                self.blended = blend.trim() == "C_DIS";
-                assert!(self.blended || blend.is_empty(), "{line}");
+                self.set_speed(value);
+            } else if line.starts_with("LIN ") || line.starts_with("CIRC ") {
+                self.motion(line, &data);
             } else if let Some(value) = line.strip_prefix(self.arc).and_then(|l| l.strip_prefix(" = ")) {
                 assert!(!self.blended, "the arc is switched after a blended point");
                 match value {
@@ -89,14 +102,117 @@ impl Reader<'_> {
             } else if line == "PTP XHOME" {
                 assert!(!self.machine.burns());
                 self.homes += 1;
-            } else if KNOWN.iter().any(|k| line.starts_with(k)) {
+            } else if KNOWN.iter().any(|k| line.starts_with(k)) && !line.contains("CP_PARAMS") {
                 continue;
-            } else {
+            } else if !self.arctech(line, &data) {
                 let called = line.strip_suffix("( )").unwrap_or_else(|| panic!("unknown statement: {line}"));
                 self.module(called);
             }
         }
+        let unused: Vec<_> = data.keys().filter(|k| *k != "XHOME" && !self.used.contains(*k)).collect();
+        assert!(unused.is_empty(), "{name}.dat declares what nothing uses: {unused:?}");
+        self.used = outside;
     }
+
+    fn set_speed(&mut self, value: &str) {
+        let speed: f64 = value.parse().unwrap();
+        assert!(speed > 0.0 && speed <= 2.0, "$VEL.CP = {speed}");
+        self.speed = Some(speed * 1000.0);
+        assert!(self.seam.is_none() || self.seam == self.speed, "another speed than that of the seam: {value}");
+    }
+
+    fn motion(&mut self, line: &str, data: &BTreeMap<String, String>) {
+        let (word, rest) = line.split_once(' ').unwrap();
+        let (rest, blended) = rest.strip_suffix(" C_DIS").map_or((rest, false), |rest| (rest, true));
+        let poses: Vec<Point> = if rest.starts_with('{') {
+            rest.split("},").map(|pose| coordinates(pose.trim_end_matches('}'))).collect()
+        } else {
+            rest.split(", ").map(|name| coordinates(self.data(name, data).trim_end_matches('}'))).collect()
+        };
+        match (word, &poses[..]) {
+            ("LIN", [to]) => self.machine.move_to(*to, self.speed.unwrap()),
+            ("CIRC", [via, to]) => self.machine.arc_to(*via, *to, self.speed.unwrap()),
+            _ => panic!("{line}"),
+        }
+        self.blended = blended;
+    }
+
+    /// The declaration of a name in the module's own data.
+    fn data<'b>(&mut self, name: &str, data: &'b BTreeMap<String, String>) -> &'b str {
+        self.used.insert(name.to_owned());
+        data.get(name).unwrap_or_else(|| panic!("{name} is not declared"))
+    }
+
+    /// A statement of a form: whether it is one.
+    fn arctech(&mut self, line: &'a str, data: &BTreeMap<String, String>) -> bool {
+        if let Some(name) = line.strip_prefix("LDAT_ACT = ").or_else(|| line.strip_prefix("FDAT_ACT = ")) {
+            self.data(name, data);
+        } else if let Some(speed) = line.strip_prefix("BAS(#CP_PARAMS, ").and_then(|l| l.strip_suffix(')')) {
+            match self.seam.filter(|_| speed == "gArcBasVelDefinition") {
+                Some(seam) => self.speed = Some(seam),
+                None => self.set_speed(speed),
+            }
+        } else if line.starts_with("TRIGGER WHEN ") {
+            assert!(line.ends_with(" PRIO = -1"), "{line}");
+            self.triggers.push(line);
+        } else if let Some(rest) = line.strip_prefix("ArcMainNG(#") {
+            self.main_ng(rest.strip_suffix(')').unwrap(), data);
+        } else {
+            return line == "$BWDSTART = FALSE" || line == "SET_CD_PARAMS (0)";
+        }
+        true
+    }
+
+    fn main_ng(&mut self, call: &str, data: &BTreeMap<String, String>) {
+        let (what, names) = call.split_once(", ").unwrap();
+        let sets: Vec<&str> = names.split(", ").map(|name| self.data(name, data)).collect();
+        let group = |name: &str| sets[0].contains(&format!("{name} {{JobModeId[] \""));
+        let velocity =
+            || sets[0].split("Velocity ").nth(1).map(|v| v.split(',').next().unwrap().parse::<f64>().unwrap());
+        assert!(sets[1..].iter().all(|s| s.contains("Info {Version 303030366}")), "{call}");
+        match what {
+            "ArcOnBeforeMoveStd" => self.expect_triggers(&["#PreDefinition", "#GasPreflow", "#ArcOnMoveStd"], names),
+            "ArcSwiBeforeMoveStd" => self.expect_triggers(&["#ArcSwiMoveStd"], names),
+            "ArcOffBeforeMoveStd" => self.expect_triggers(&["#ArcOffBeforeOffStd", "#ArcOffMoveStd"], names),
+            "ArcOnAfterMoveStd" => {
+                assert!(!self.blended && group("Strike") && group("Weld"), "{call}");
+                self.machine.arc_on();
+                self.seam = velocity().map(|v| v * 1000.0);
+            }
+            "ArcSwiAfterMoveStd" => {
+                assert!(self.machine.burns() && group("Weld") && !group("Strike"), "{call}");
+                self.seam = velocity().map(|v| v * 1000.0);
+            }
+            "ArcOffAfterMoveStd" => {
+                assert!(!self.blended && group("Crater"), "{call}");
+                self.machine.arc_off();
+                (self.seam, self.speed) = (None, None);
+            }
+            _ => panic!("{call}"),
+        }
+    }
+
+    /// The triggers in front of a form's motion, with its data.
+    fn expect_triggers(&mut self, wanted: &[&str], names: &str) {
+        let triggers = std::mem::take(&mut self.triggers);
+        assert_eq!(triggers.len(), wanted.len(), "{triggers:?}");
+        for (trigger, what) in triggers.iter().zip(wanted) {
+            assert!(trigger.contains(&format!("DO ArcMainNG({what}, {names})")), "{trigger}");
+        }
+    }
+}
+
+/// Names that a data list declares, with their values.
+fn declared(text: &str) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    for line in text.split("\r\n").filter(|l| l.starts_with("DECL ")) {
+        let (left, value) = line.split_once('=').unwrap();
+        let [_, kind, name] = left.split(' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
+        assert!(["E6AXIS", "E6POS", "FDAT", "LDAT", "stArcDat_T"].contains(&kind) && name.len() <= 24, "{line}");
+        assert!(kind != "stArcDat_T" || value.starts_with(&format!("{{WdatId[] \"{name}\",")), "{line}");
+        assert!(found.insert(name.to_owned(), value.to_owned()).is_none(), "{name} is declared twice");
+    }
+    found
 }
 
 /// `{X 1.0,Y 2.0,Z 3.0,A …` to a point; every component has its decimals.

@@ -7,6 +7,11 @@ use glam::DVec3;
 /// Six external axes that are not there.
 const NO_AXES: &str = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]";
 
+/// The external axes of a target: the angle of a turn table (°) in the first place, if there is one.
+pub(super) fn external_axes(table: Option<f64>) -> String {
+    table.map_or(NO_AXES.to_owned(), |angle| NO_AXES.replacen("9E+09", &fixed(angle, 4), 1))
+}
+
 /// Numbers with `decimals` between brackets.
 fn list(values: &[f64], decimals: usize) -> String {
     let texts: Vec<String> = values.iter().map(|&v| fixed(v, decimals)).collect();
@@ -26,7 +31,7 @@ fn pose(frame: &[f64; 7]) -> String {
 }
 
 /// A robtarget; its configuration is unknown here, which `ConfL \Off` allows.
-pub(super) fn push_target(text: &mut String, to: DVec3, orientation: &str) {
+pub(super) fn push_target(text: &mut String, to: DVec3, orientation: &str, axes: &str) {
     text.push_str("[[");
     push_fixed(text, to.x, 3);
     text.push(',');
@@ -36,7 +41,7 @@ pub(super) fn push_target(text: &mut String, to: DVec3, orientation: &str) {
     text.push_str("],");
     text.push_str(orientation);
     text.push_str(",[0,0,0,0],");
-    text.push_str(NO_AXES);
+    text.push_str(axes);
     text.push(']');
 }
 
