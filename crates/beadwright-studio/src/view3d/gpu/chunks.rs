@@ -1,0 +1,289 @@
+//! The layers on the graphics card, in print order, so that any range of layers is one draw.
+//!
+//! Layers lie in chunks of about [`CHUNK`] segments, since buffers have a largest size. When layers come or change,
+//! only what lies behind the first change is sent again; when only the colours change, only the values.
+
+use super::globals::role;
+use super::growing::Growing;
+use crate::view3d::beads::{Bead, Cap, LayerBeads};
+use crate::view3d::palette::KINDS;
+use crate::view3d::scene::Scene;
+use crate::view3d::style::{Colour, Style};
+use bytemuck::{Pod, Zeroable};
+use eframe::egui_wgpu::wgpu;
+use std::ops::Range;
+
+/// A chunk is full from this number of segments on.
+const CHUNK: usize = 1 << 19;
+
+/// Layers of more segments would not fit in a buffer of 256 MiB and are not drawn.
+const LARGEST_LAYER: usize = 8_000_000;
+
+/// Stands for a segment without a value.
+const MISSING: f32 = -2e30;
+
+/// A point that is no bead.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Point {
+    pub at: [f32; 3],
+    pub role: u32,
+}
+
+/// Numbers of beads, caps, vertices of travels and dots; those of a chunk up to some layer.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Counts {
+    beads: usize,
+    caps: usize,
+    travels: usize,
+    dots: usize,
+}
+
+/// What is drawn of a chunk.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Ranges {
+    pub beads: Range<u32>,
+    pub caps: Range<u32>,
+    pub travels: Range<u32>,
+    pub dots: Range<u32>,
+}
+
+/// What the values of a layer depend on besides the layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ValueKey {
+    colour: Colour,
+    segments_before: usize,
+    seconds_before: f64,
+    supplied: u64,
+}
+
+#[derive(Debug)]
+struct Slot {
+    layer: usize,
+    id: u64,
+    ends: Counts,
+    values: Option<ValueKey>,
+}
+
+/// Some layers, one behind another.
+#[derive(Debug)]
+pub(super) struct Chunk {
+    slots: Vec<Slot>,
+    /// With one bead in front that is not drawn: a bead looks at the one before it.
+    pub beads: Growing,
+    pub bead_values: Growing,
+    pub caps: Growing,
+    pub cap_values: Growing,
+    pub travels: Growing,
+    pub dots: Growing,
+}
+
+type Card<'a> = (&'a wgpu::Device, &'a wgpu::Queue);
+
+/// Brings the chunks to the state of the scene.
+pub(super) fn sync(chunks: &mut Vec<Chunk>, card: Card<'_>, scene: &Scene, colour: Colour) {
+    let wanted: Vec<(usize, &LayerBeads)> =
+        scene.present().map(|(i, l)| (i, &**l)).filter(|(_, l)| l.len() <= LARGEST_LAYER).collect();
+    let slots = chunks.iter().flat_map(|chunk| &chunk.slots);
+    let same = slots.zip(&wanted).take_while(|(slot, (i, layer))| slot.layer == *i && slot.id == layer.id).count();
+    truncate(chunks, same);
+    let mut rest = &wanted[same..];
+    while !rest.is_empty() {
+        if chunks.last().is_none_or(|chunk| chunk.ends().beads >= CHUNK) {
+            chunks.push(Chunk::new());
+        }
+        let Some(chunk) = chunks.last_mut() else { return };
+        let mut room = CHUNK.saturating_sub(chunk.ends().beads);
+        let fitting = rest.iter().take_while(|(_, layer)| {
+            let fits = room > 0;
+            room = room.saturating_sub(layer.len());
+            fits
+        });
+        let (now, later) = rest.split_at(fitting.count().max(1));
+        chunk.append(card, now);
+        rest = later;
+    }
+    send_values(chunks, card, scene, colour);
+}
+
+/// Forgets all but the first `layers`.
+fn truncate(chunks: &mut Vec<Chunk>, layers: usize) {
+    let mut left = layers;
+    chunks.retain_mut(|chunk| {
+        let keep = left.min(chunk.slots.len());
+        chunk.slots.truncate(keep);
+        left -= keep;
+        keep > 0
+    });
+}
+
+fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colour) {
+    let (mut segments, mut seconds) = (0, 0.0);
+    for chunk in chunks {
+        let (mut begin, mut run) = (Counts::default(), Run::default());
+        for slot in &mut chunk.slots {
+            let (here, ends) = (begin, slot.ends);
+            begin = ends;
+            let Some(layer) = scene.layer(slot.layer) else { continue };
+            let supplied = scene.values(slot.layer).filter(|_| colour == Colour::HeightError);
+            let key = ValueKey {
+                colour,
+                segments_before: if colour == Colour::Order { segments } else { 0 },
+                seconds_before: if colour == Colour::Time { seconds } else { 0.0 },
+                supplied: supplied.map_or(0, |values| values.id),
+            };
+            segments += layer.len();
+            seconds += layer.seconds();
+            if slot.values.replace(key) == Some(key) {
+                run.send(card, &mut chunk.bead_values, &mut chunk.cap_values);
+                continue;
+            }
+            if run.beads.is_empty() {
+                run.first = here;
+            }
+            let from = run.beads.len();
+            values_of(layer, &key, supplied.map(|values| &*values.of), &mut run.beads);
+            run.caps.extend(layer.cap_segments.iter().map(|&s| run.beads[from + s as usize]));
+        }
+        run.send(card, &mut chunk.bead_values, &mut chunk.cap_values);
+    }
+}
+
+/// Values of layers that lie one behind another, to be sent together.
+#[derive(Default)]
+struct Run {
+    first: Counts,
+    beads: Vec<f32>,
+    caps: Vec<f32>,
+}
+
+impl Run {
+    fn send(&mut self, card: Card<'_>, beads: &mut Growing, caps: &mut Growing) {
+        beads.write(card, self.first.beads, &self.beads);
+        caps.write(card, self.first.caps, &self.caps);
+        self.beads.clear();
+        self.caps.clear();
+    }
+}
+
+fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: &mut Vec<f32>) {
+    match key.colour {
+        Colour::Speed => out.extend(&layer.speeds),
+        Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
+        Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
+        Colour::HeightError => out.extend((0..layer.len()).map(|i| {
+            let value = supplied.and_then(|values| values.get(i)).copied().unwrap_or(MISSING);
+            if value.is_finite() { value } else { MISSING }
+        })),
+        Colour::Kind => {
+            for pass in layer.passes() {
+                let kind = KINDS.iter().position(|k| *k == pass.kind).unwrap_or_default();
+                out.extend(std::iter::repeat_n(kind as f32, pass.segments.len()));
+            }
+        }
+    }
+}
+
+impl Chunk {
+    fn new() -> Self {
+        Self {
+            slots: Vec::new(),
+            beads: Growing::new("beads"),
+            bead_values: Growing::new("values of beads"),
+            caps: Growing::new("caps"),
+            cap_values: Growing::new("values of caps"),
+            travels: Growing::new("travels"),
+            dots: Growing::new("starts and ends"),
+        }
+    }
+
+    fn ends(&self) -> Counts {
+        self.slots.last().map(|slot| slot.ends).unwrap_or_default()
+    }
+
+    fn append(&mut self, card: Card<'_>, layers: &[(usize, &LayerBeads)]) {
+        let begin = self.ends();
+        let segments = layers.iter().map(|(_, layer)| layer.len()).sum::<usize>();
+        let mut beads: Vec<Bead> = Vec::with_capacity(segments + 1);
+        let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Point>) = Default::default();
+        // In front of the first bead stands one that is not drawn.
+        let pad = usize::from(begin.beads == 0);
+        beads.resize(pad, Bead::zeroed());
+        for (index, layer) in layers {
+            beads.extend_from_slice(&layer.beads);
+            caps.extend_from_slice(&layer.caps);
+            marks(layer, &mut travels, &mut dots);
+            let ends = Counts {
+                beads: begin.beads + beads.len() - pad,
+                caps: begin.caps + caps.len(),
+                travels: begin.travels + travels.len(),
+                dots: begin.dots + dots.len(),
+            };
+            self.slots.push(Slot { layer: *index, id: layer.id, ends, values: None });
+        }
+        self.beads.write(card, begin.beads + 1 - pad, &beads);
+        self.caps.write(card, begin.caps, &caps);
+        self.travels.write(card, begin.travels, &travels);
+        self.dots.write(card, begin.dots, &dots);
+    }
+
+    /// What the style shows of this chunk.
+    pub(super) fn ranges(&self, scene: &Scene, style: &Style) -> Ranges {
+        let first = self.slots.partition_point(|slot| slot.layer < *style.layers.start());
+        let last = self.slots.partition_point(|slot| slot.layer <= *style.layers.end());
+        if first >= last {
+            return Ranges::default();
+        }
+        let end_of = |slots: usize| slots.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
+        let (begin, mut end, top) = (end_of(first), end_of(last), &self.slots[last - 1]);
+        if let (Some(limit), Some(layer)) = (style.segments_of_last, scene.layer(top.layer))
+            && top.layer == *style.layers.end()
+        {
+            end = partly(end_of(last - 1), layer, limit);
+        }
+        let range = |of: fn(&Counts) -> usize| of(&begin) as u32..of(&end) as u32;
+        Ranges {
+            beads: range(|c| c.beads),
+            caps: range(|c| c.caps),
+            travels: range(|c| c.travels),
+            dots: range(|c| c.dots),
+        }
+    }
+
+    /// Where the segments of a layer and their caps lie in this chunk.
+    pub(super) fn place(&self, layer: &LayerBeads, index: usize, segments: Range<usize>) -> Option<Ranges> {
+        let slot = self.slots.iter().position(|slot| slot.layer == index)?;
+        let begin = slot.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
+        let caps = |segment: usize| begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segment);
+        let beads = (begin.beads + segments.start) as u32..(begin.beads + segments.end) as u32;
+        Some(Ranges { beads, caps: caps(segments.start) as u32..caps(segments.end) as u32, ..Ranges::default() })
+    }
+}
+
+/// Where a layer ends of which only so many segments are shown.
+fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
+    let begun = || layer.passes().iter().filter(|pass| !pass.segments.is_empty() && pass.segments.start < segments);
+    let dots = begun().map(|pass| 1 + usize::from(pass.segments.end <= segments)).sum::<usize>();
+    Counts {
+        beads: begin.beads + segments.min(layer.len()),
+        caps: begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segments),
+        travels: begin.travels + 6 * begun().filter(|pass| pass.travel.is_some()).count(),
+        dots: begin.dots + dots,
+    }
+}
+
+/// Travels as lines, and starts and ends of passes as dots.
+fn marks(layer: &LayerBeads, travels: &mut Vec<Point>, dots: &mut Vec<Point>) {
+    for pass in layer.passes() {
+        let (Some(first), Some(last)) =
+            (layer.beads.get(pass.segments.start), layer.beads[pass.segments.clone()].last())
+        else {
+            continue;
+        };
+        for leg in pass.travel.iter().flat_map(|legs| legs.windows(2)).flatten() {
+            travels.push(Point { at: leg.as_vec3().into(), role: role::TRAVEL });
+        }
+        dots.push(Point { at: first.from().into(), role: role::START });
+        dots.push(Point { at: last.to().into(), role: role::END });
+    }
+}

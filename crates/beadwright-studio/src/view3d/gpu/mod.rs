@@ -1,0 +1,374 @@
+//! The graphics card: what lies on it, and how a picture is made there.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `chunks` | the layers in print order |
+//! | `surface` | the model and the torch |
+//! | `growing` | a buffer that grows at its end |
+//! | `globals` | what all shaders are told |
+//! | `pipelines` | how each kind of thing is drawn |
+//! | `target` | where it is drawn into |
+//! | `*.wgsl` | the shaders |
+
+mod chunks;
+mod globals;
+mod growing;
+mod pipelines;
+mod surface;
+mod target;
+
+use super::camera::Camera;
+use super::palette;
+use super::pick::Pick;
+use super::scene::Scene;
+use super::style::{Colour, Style};
+use chunks::{Chunk, Ranges};
+use eframe::egui_wgpu::{RenderState, wgpu};
+use globals::Globals;
+use growing::Growing;
+use pipelines::Pipelines;
+use surface::Surface;
+pub(super) use target::Target;
+use wgpu::util::DeviceExt as _;
+
+/// How fine a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Quality {
+    /// Strips across a bead.
+    pub strips: u32,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Whether ends and corners are round.
+    pub caps: bool,
+}
+
+/// Beads as they are, a pass that stands out, and a segment that stands out.
+const LOOKS: usize = 3;
+
+/// How much of the colour of what stands out is laid over the beads.
+const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
+
+/// The colour of what stands out.
+const ACCENT: [f32; 3] = [1.0, 0.20, 0.56];
+
+/// Triangles of the fan of a cap; the shader knows the number too.
+const RIM: u16 = 10;
+
+/// All that lies on the graphics card.
+#[derive(Debug)]
+pub(super) struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// Whether there is no graphics card but a processor that draws.
+    pub software: bool,
+    layout: wgpu::BindGroupLayout,
+    globals: [wgpu::Buffer; LOOKS],
+    bindings: [wgpu::BindGroup; LOOKS],
+    map: wgpu::Texture,
+    map_of: Option<(Colour, bool)>,
+    fan: wgpu::Buffer,
+    pipelines: Vec<Pipelines>,
+    chunks: Vec<Chunk>,
+    synced: Option<(u64, Colour)>,
+    surface: Option<Surface>,
+    surface_version: Option<u64>,
+    torch: Growing,
+}
+
+impl Gpu {
+    pub(super) fn new(state: &RenderState) -> Self {
+        let (device, queue) = (state.device.clone(), state.queue.clone());
+        let layout = layout(&device);
+        let map = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("colour map"),
+            size: wgpu::Extent3d { width: palette::STEPS as u32, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let globals = std::array::from_fn(|_| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("globals"),
+                size: size_of::<Globals>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        let view = map.create_view(&wgpu::TextureViewDescriptor::default());
+        let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &view));
+        let fan: Vec<u16> = (0..RIM).flat_map(|i| [0, i + 1, (i + 1) % RIM + 1]).collect();
+        let contents = bytemuck::cast_slice(&fan);
+        let usage = wgpu::BufferUsages::INDEX;
+        let fan = wgpu::util::BufferInitDescriptor { label: Some("fan"), contents, usage };
+        Self {
+            software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            fan: device.create_buffer_init(&fan),
+            device,
+            queue,
+            layout,
+            globals,
+            bindings,
+            map,
+            map_of: None,
+            pipelines: Vec::new(),
+            chunks: Vec::new(),
+            synced: None,
+            surface: None,
+            surface_version: None,
+            torch: Growing::new("torch"),
+        }
+    }
+
+    /// A place for a picture of that many pixels, as near to it as the card allows.
+    pub(super) fn target(&self, pixels: [u32; 2], samples: u32) -> Target {
+        let most = self.device.limits().max_texture_dimension_2d;
+        Target::new(&self.device, pixels.map(|n| n.clamp(1, most)), samples)
+    }
+
+    /// Sends what has changed since the last picture.
+    pub(super) fn sync(&mut self, scene: &Scene, style: &Style) {
+        let state = (scene.version(), style.colour);
+        if self.synced != Some(state) {
+            chunks::sync(&mut self.chunks, (&self.device, &self.queue), scene, style.colour);
+            self.synced = Some(state);
+        }
+        if self.surface_version != Some(scene.mesh_version()) {
+            self.surface_version = Some(scene.mesh_version());
+            self.surface = scene.mesh().and_then(|mesh| Surface::new(&self.device, mesh, scene.mesh_version()));
+        }
+        if self.map_of != Some((style.colour, style.dark)) {
+            self.map_of = Some((style.colour, style.dark));
+            let colours = palette::map(style.colour, style.dark);
+            let texels: Vec<u8> = colours.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+            let row = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texels.len() as u32),
+                rows_per_image: None,
+            };
+            self.queue.write_texture(self.map.as_image_copy(), &texels, row, self.map.size());
+        }
+    }
+
+    /// Renders a picture.
+    pub(super) fn draw(&mut self, scene: &Scene, style: &Style, camera: &Camera, quality: Quality, target: &Target) {
+        self.sync(scene, style);
+        let mut globals = Globals::new(scene, style, camera, target.pixels, quality.strips);
+        for (buffer, part) in self.globals.iter().zip(ACCENTS) {
+            let [r, g, b] = ACCENT;
+            globals.accent = [r, g, b, part];
+            self.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
+        }
+        let torch = style.torch.map(surface::torch).unwrap_or_default();
+        self.torch.write((&self.device, &self.queue), 0, &torch);
+        if !self.pipelines.iter().any(|p| p.samples == target.samples) {
+            self.pipelines.push(Pipelines::new(&self.device, &self.layout, target.samples));
+        }
+        let mut encoder =
+            self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("3-D view") });
+        if let Some(pipelines) = self.pipelines.iter().find(|p| p.samples == target.samples) {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("3-D view"),
+                color_attachments: &[Some(colour(target, style.dark))],
+                depth_stencil_attachment: Some(depth(target)),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &self.bindings[0], &[]);
+            self.draw_all(&mut pass, pipelines, scene, style, quality, torch.len() as u32);
+        }
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// Solid things first, then what is laid over them.
+    fn draw_all(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+        style: &Style,
+        quality: Quality,
+        torch_vertices: u32,
+    ) {
+        let ranges: Vec<Ranges> = self.chunks.iter().map(|chunk| chunk.ranges(scene, style)).collect();
+        let drawn = || self.chunks.iter().zip(&ranges);
+        let any_bead = style.beads && ranges.iter().any(|r| !r.beads.is_empty());
+        let surface = self.surface.as_ref().filter(|_| style.mesh);
+        if let Some(surface) = surface.filter(|_| !any_bead) {
+            draw_surface(pass, &pipelines.opaque, surface);
+        }
+        if style.beads {
+            drawn().for_each(|(chunk, range)| draw_beads(pass, pipelines, &self.fan, chunk, range, quality));
+            self.draw_highlight(pass, pipelines, scene, style, quality);
+        }
+        if let Some(torch) = self.torch.from(0).filter(|_| torch_vertices > 0) {
+            pass.set_pipeline(&pipelines.solid);
+            pass.set_vertex_buffer(0, torch);
+            pass.draw(0..torch_vertices, 0..1);
+        }
+        for (chunk, range) in drawn() {
+            draw_points(pass, &pipelines.dot, chunk.dots.from(0).filter(|_| style.starts), 0..4, range.dots.clone());
+            let travels = chunk.travels.from(0).filter(|_| style.travels);
+            draw_points(pass, &pipelines.line, travels, range.travels.clone(), 0..1);
+        }
+        pass.set_pipeline(&pipelines.ground);
+        pass.draw(0..4, 0..1);
+        if let Some(surface) = surface {
+            if any_bead {
+                draw_surface(pass, &pipelines.glass, surface);
+            }
+            draw_points(pass, &pipelines.line, Some(surface.edges.slice(..)), 0..surface.edge_vertices, 0..1);
+        }
+    }
+
+    /// Draws a pass and a segment of it over themselves, in the colour of what stands out.
+    fn draw_highlight(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        pipelines: &Pipelines,
+        scene: &Scene,
+        style: &Style,
+        quality: Quality,
+    ) {
+        let Some(Pick { layer, pass: number, segment }) = style.highlight else { return };
+        let Some(beads) = scene.layer(layer) else { return };
+        let Some(span) = beads.passes().get(number) else { return };
+        let shown = style.shown(layer, beads.len());
+        for (look, segments) in [(1, span.segments.clone()), (2, segment..segment + 1)] {
+            let segments = segments.start.min(shown)..segments.end.min(shown);
+            pass.set_bind_group(0, &self.bindings[look], &[]);
+            for chunk in &self.chunks {
+                if let Some(ranges) = chunk.place(beads, layer, segments.clone()) {
+                    draw_beads(pass, pipelines, &self.fan, chunk, &ranges, quality);
+                }
+            }
+        }
+        pass.set_bind_group(0, &self.bindings[0], &[]);
+    }
+
+    /// Waits until all that was drawn is done.
+    pub(super) fn wait(&self) -> Result<(), String> {
+        target::wait(&self.device)
+    }
+
+    /// The pixels of a picture, row by row: red, green, blue, alpha.
+    pub(super) fn read(&self, target: &Target) -> Result<Vec<u8>, String> {
+        target.read(&self.device, &self.queue)
+    }
+}
+
+fn draw_beads(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipelines: &Pipelines,
+    fan: &wgpu::Buffer,
+    chunk: &Chunk,
+    ranges: &Ranges,
+    quality: Quality,
+) {
+    const BEAD: u64 = size_of::<super::beads::Bead>() as u64;
+    if let (Some(before), Some(here), Some(values)) =
+        (chunk.beads.from(0), chunk.beads.from(BEAD), chunk.bead_values.from(0))
+        && !ranges.beads.is_empty()
+    {
+        pass.set_pipeline(&pipelines.ribbon);
+        pass.set_vertex_buffer(0, here);
+        pass.set_vertex_buffer(1, before);
+        pass.set_vertex_buffer(2, here.buffer().slice(2 * BEAD..));
+        pass.set_vertex_buffer(3, values);
+        pass.draw(0..2 * (quality.strips + 1), ranges.beads.clone());
+    }
+    if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))
+        && quality.caps
+        && !ranges.caps.is_empty()
+    {
+        pass.set_pipeline(&pipelines.cap);
+        pass.set_vertex_buffer(0, caps);
+        pass.set_vertex_buffer(1, values);
+        pass.set_index_buffer(fan.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..3 * u32::from(RIM), 0, ranges.caps.clone());
+    }
+}
+
+fn draw_surface(pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, surface: &Surface) {
+    pass.set_pipeline(pipeline);
+    pass.set_vertex_buffer(0, surface.vertices.slice(..));
+    pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
+    pass.draw_indexed(0..surface.count, 0, 0..1);
+}
+
+fn draw_points(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    points: Option<wgpu::BufferSlice<'_>>,
+    vertices: std::ops::Range<u32>,
+    instances: std::ops::Range<u32>,
+) {
+    if let Some(points) = points.filter(|_| !vertices.is_empty() && !instances.is_empty()) {
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, points);
+        pass.draw(vertices, instances);
+    }
+}
+
+/// The ground of a picture.
+pub(super) fn background(dark: bool) -> palette::Rgb {
+    if dark { [26, 28, 32] } else { [243, 245, 248] }
+}
+
+fn colour(target: &Target, dark: bool) -> wgpu::RenderPassColorAttachment<'_> {
+    let [r, g, b] = background(dark).map(|c| f64::from(c) / 255.0);
+    wgpu::RenderPassColorAttachment {
+        view: target.many.as_ref().unwrap_or(&target.view),
+        depth_slice: None,
+        resolve_target: target.many.as_ref().map(|_| &target.view),
+        ops: wgpu::Operations {
+            load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+            store: if target.many.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+        },
+    }
+}
+
+fn depth(target: &Target) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
+    wgpu::RenderPassDepthStencilAttachment { view: &target.depth, depth_ops: Some(ops), stencil_ops: None }
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    };
+    let globals = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let map = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("3-D view"),
+        entries: &[entry(0, globals), entry(1, map)],
+    })
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    globals: &wgpu::Buffer,
+    map: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("3-D view"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: globals.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
+        ],
+    })
+}
