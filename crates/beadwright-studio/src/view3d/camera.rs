@@ -159,17 +159,26 @@ impl Camera {
             let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
             DVec3::new(pick(0), pick(1), pick(2))
         });
-        self.target = (low + high) / 2.0;
-        // In perspective the middle of the box is not the middle of its picture.
+        self.fit_points(&corners, size);
+    }
+
+    /// Moves so that points (mm) fill the picture; the direction stays.
+    pub fn fit_points(&mut self, points: &[DVec3], size: DVec2) {
+        let bounds = points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
+        if !(bounds.0 + bounds.1).is_finite() {
+            return;
+        }
+        self.target = (bounds.0 + bounds.1) / 2.0;
+        // In perspective the middle of a body is not the middle of its picture.
         for _ in 0..4 {
-            self.distance = self.distance_to_see(&corners, size);
-            let seen = corners.iter().filter_map(|&c| self.project(c, size));
+            self.distance = self.distance_to_see(points, size);
+            let seen = points.iter().filter_map(|&c| self.project(c, size));
             let (first, last) = seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
             if first.is_finite() && last.is_finite() {
                 self.pan(size / 2.0 - (first + last) / 2.0, size);
             }
         }
-        self.distance = self.distance_to_see(&corners, size);
+        self.distance = self.distance_to_see(points, size);
     }
 
     /// The least distance at which all points are in the picture, mm.

@@ -4,7 +4,7 @@ use super::beads::{LayerBeads, fresh_id};
 use super::pace::along;
 use super::style::Colour;
 use beadwright::model::Mesh;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// Values for the segments of a layer.
@@ -22,6 +22,13 @@ pub struct Scene {
     values: Vec<Option<Values>>,
     version: u64,
     mesh_version: u64,
+}
+
+/// Sides of the prism of [`Scene::outline`].
+const SIDES: usize = 16;
+
+fn side_normal(side: usize) -> DVec2 {
+    DVec2::from_angle(side as f64 * std::f64::consts::TAU / SIDES as f64)
 }
 
 /// Where the torch is at a time.
@@ -113,6 +120,28 @@ impl Scene {
         let beads = self.present().filter_map(|(_, layer)| layer.bounds());
         let beads = beads.map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
         mesh.into_iter().chain(beads).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
+    /// Corners of an upright prism of 16 sides around model and beads, mm: what a camera has to see.
+    pub fn outline(&self) -> Vec<DVec3> {
+        let Some((low, high)) = self.bounds() else { return Vec::new() };
+        let mut reach = [f64::NEG_INFINITY; SIDES];
+        let mut add = |point: DVec3, radius: f64| {
+            for (side, reach) in reach.iter_mut().enumerate() {
+                *reach = reach.max(point.truncate().dot(side_normal(side)) + radius);
+            }
+        };
+        self.mesh.iter().flat_map(|mesh| &mesh.vertices).for_each(|&vertex| add(vertex, 0.0));
+        for bead in self.present().flat_map(|(_, layer)| layer.beads()) {
+            add(bead.from().as_dvec3(), f64::from(bead.width()) / 2.0);
+            add(bead.to().as_dvec3(), f64::from(bead.width()) / 2.0);
+        }
+        let corner = |side: usize| {
+            let (a, b) = (side_normal(side), side_normal((side + 1) % SIDES));
+            let (p, q) = (reach[side], reach[(side + 1) % SIDES]);
+            DVec2::new(p * b.y - q * a.y, a.x * q - b.x * p) / a.perp_dot(b)
+        };
+        (0..SIDES).flat_map(|side| [corner(side).extend(low.z), corner(side).extend(high.z)]).collect()
     }
 
     /// Number of segments.

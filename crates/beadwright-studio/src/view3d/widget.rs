@@ -119,8 +119,8 @@ impl View3d {
         if response.double_clicked() {
             self.fit = true;
         }
-        if let Some(bounds) = scene.bounds().filter(|_| self.fit) {
-            self.camera.fit(bounds, size);
+        if self.fit && scene.bounds().is_some() {
+            self.camera.fit_points(&scene.outline(), size);
             self.fit = false;
         }
         let mut shown = Shown { picked: None, clicked: response.clicked(), hovered: None, rendered: false, response };

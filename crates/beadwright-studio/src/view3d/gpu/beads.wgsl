@@ -101,8 +101,6 @@ fn ribbon(
     return out;
 }
 
-const RIM: u32 = 10u;
-
 @vertex
 fn cap(
     @builtin(vertex_index) vertex: u32,
@@ -110,7 +108,7 @@ fn cap(
     @location(1) size: vec2<f32>,
     @location(2) value: f32,
 ) -> BeadVertex {
-    // The vertices of a fan as a strip: rim, middle, rim, rim, middle, rim …
+    // The vertices of a fan: the lower byte is the angle in steps of 1.5°, the next one the ring.
     var half = vec3(size.x, size.x, size.y) * 0.5;
     let centre = top - vec3(0.0, 0.0, half.z);
     let viewer = to_viewer(centre);
@@ -122,11 +120,10 @@ fn cap(
     let reach = half.x;
     half = half * max(1.0, 0.6 * pixel / reach);
 
-    let in_middle = vertex == 0u;
-    let angle = f32(vertex) * (6.2831853 / f32(RIM));
-    let place = select(vec2(cos(angle), sin(angle)), vec2(0.0), in_middle);
+    let angle = f32(vertex & 255u) * radians(1.5);
+    let place = vec2(cos(angle), sin(angle)) * (f32(vertex >> 8u) * 0.5);
     let rim = i * place.x + j * place.y;
-    let spot = select(rim, front, in_middle);
+    let spot = rim + front * sqrt(max(0.0, 1.0 - dot(place, place)));
 
     let flat_width = mix(half.x, half.z, globals.values.w);
     let shape = vec3(flat_width, flat_width, half.z) / half.z;

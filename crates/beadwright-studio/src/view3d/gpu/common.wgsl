@@ -8,6 +8,8 @@ struct Globals {
     light: vec4<f32>,
     // Between light and viewer, for the gloss.
     gloss: vec4<f32>,
+    // Direction to the viewer, from the middle of the picture.
+    back: vec4<f32>,
     // Width and height in pixels; size of a pixel in mm (at distance 1 in perspective); nudge of depth towards the viewer.
     screen: vec4<f32>,
     // Lowest value of the colour map, 1 / its range, width of a strip of a bead (2 = all of it), roundness.
@@ -44,5 +46,7 @@ fn shaded(colour: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let direct = max(dot(normal, globals.light.xyz), 0.0);
     let sky = 0.5 + 0.5 * normal.z;
     let gloss = pow(max(dot(normal, globals.gloss.xyz), 0.0), 28.0);
-    return colour * (0.30 + 0.16 * sky + 0.62 * direct) + vec3(0.10 * gloss);
+    // A weak light from the viewer, so that nothing that is seen is black.
+    let fill = max(dot(normal, globals.back.xyz), 0.0);
+    return colour * (0.24 + 0.12 * sky + 0.24 * fill + 0.52 * direct) + vec3(0.10 * gloss);
 }

@@ -25,6 +25,7 @@ pub(super) struct Globals {
     eye: [f32; 4],
     light: [f32; 4],
     gloss: [f32; 4],
+    back: [f32; 4],
     screen: [f32; 4],
     values: [f32; 4],
     ground: [f32; 4],
@@ -55,6 +56,7 @@ impl Globals {
             eye: eye.as_vec4().into(),
             light: light.extend(0.0).as_vec4().into(),
             gloss: (light + back).normalize().extend(0.0).as_vec4().into(),
+            back: back.extend(0.0).as_vec4().into(),
             screen: v4(size.x, size.y, camera.height() / size.y * at_one, nudge),
             values: v4(low, per_range, 2.0 / f64::from(strips), ROUNDNESS),
             ground: ground(scene),
@@ -92,7 +94,7 @@ fn roles(dark: bool) -> [[f32; 4]; 8] {
         rgba([222, 62, 54], 1.0),
         rgba([196, 200, 206], 1.0),
         rgba([208, 138, 84], 1.0),
-        rgba(by_theme([150, 166, 188], [148, 164, 186]), 1.0),
+        rgba(by_theme([160, 176, 198], [172, 188, 210]), 1.0),
         rgba(by_theme([150, 158, 170], [96, 104, 118]), if dark { 0.34 } else { 0.42 }),
     ]
 }

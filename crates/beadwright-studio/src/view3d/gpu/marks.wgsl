@@ -29,7 +29,10 @@ fn dot_mark(
     const RADIUS: f32 = 4.5;
     let place = vec2(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
     var out: MarkVertex;
-    let clip = nudged(globals.clip_from_world * vec4(at, 1.0), 12.0);
+    // Drawn as if it lay so much nearer that the bead under it does not cut it.
+    let lifted = globals.clip_from_world * vec4(at + to_viewer(at) * (1.0 + 2.0 * RADIUS * pixel_at(at)), 1.0);
+    let flat = globals.clip_from_world * vec4(at, 1.0);
+    let clip = vec4(flat.xy, lifted.z / lifted.w * flat.w, flat.w);
     let offset = place * RADIUS * 2.0 / globals.screen.xy * clip.w;
     out.clip = vec4(clip.xy + offset, clip.zw);
     out.colour = globals.roles[role];

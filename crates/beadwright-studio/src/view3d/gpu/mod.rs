@@ -51,9 +51,6 @@ const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
 /// The colour of what stands out.
 const ACCENT: [f32; 3] = [1.0, 0.20, 0.56];
 
-/// Triangles of the fan of a cap; the shader knows the number too.
-const RIM: u16 = 10;
-
 /// All that lies on the graphics card.
 #[derive(Debug)]
 pub(super) struct Gpu {
@@ -66,7 +63,8 @@ pub(super) struct Gpu {
     bindings: [wgpu::BindGroup; LOOKS],
     map: wgpu::Texture,
     map_of: Option<(Colour, bool)>,
-    fan: wgpu::Buffer,
+    /// Coarse and fine.
+    fans: [(wgpu::Buffer, u32); 2],
     pipelines: Vec<Pipelines>,
     chunks: Vec<Chunk>,
     synced: Option<(u64, Colour)>,
@@ -99,13 +97,9 @@ impl Gpu {
         });
         let view = map.create_view(&wgpu::TextureViewDescriptor::default());
         let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &view));
-        let fan: Vec<u16> = (0..RIM).flat_map(|i| [0, i + 1, (i + 1) % RIM + 1]).collect();
-        let contents = bytemuck::cast_slice(&fan);
-        let usage = wgpu::BufferUsages::INDEX;
-        let fan = wgpu::util::BufferInitDescriptor { label: Some("fan"), contents, usage };
         Self {
             software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
-            fan: device.create_buffer_init(&fan),
+            fans: [fan(&device, 10, &[2]), fan(&device, 20, &[1, 2])],
             device,
             queue,
             layout,
@@ -137,7 +131,7 @@ impl Gpu {
         }
         if self.surface_version != Some(scene.mesh_version()) {
             self.surface_version = Some(scene.mesh_version());
-            self.surface = scene.mesh().and_then(|mesh| Surface::new(&self.device, mesh, scene.mesh_version()));
+            self.surface = scene.mesh().and_then(|mesh| Surface::new(&self.device, mesh));
         }
         if self.map_of != Some((style.colour, style.dark)) {
             self.map_of = Some((style.colour, style.dark));
@@ -199,7 +193,7 @@ impl Gpu {
             draw_surface(pass, &pipelines.opaque, surface);
         }
         if style.beads {
-            drawn().for_each(|(chunk, range)| draw_beads(pass, pipelines, &self.fan, chunk, range, quality));
+            drawn().for_each(|(chunk, range)| draw_beads(pass, pipelines, self.fan(quality), chunk, range, quality));
             self.draw_highlight(pass, pipelines, scene, style, quality);
         }
         if let Some(torch) = self.torch.from(0).filter(|_| torch_vertices > 0) {
@@ -240,11 +234,16 @@ impl Gpu {
             pass.set_bind_group(0, &self.bindings[look], &[]);
             for chunk in &self.chunks {
                 if let Some(ranges) = chunk.place(beads, layer, segments.clone()) {
-                    draw_beads(pass, pipelines, &self.fan, chunk, &ranges, quality);
+                    draw_beads(pass, pipelines, self.fan(quality), chunk, &ranges, quality);
                 }
             }
         }
         pass.set_bind_group(0, &self.bindings[0], &[]);
+    }
+
+    /// The fan that fits the strips of a ribbon: it goes through the same points.
+    fn fan(&self, quality: Quality) -> &(wgpu::Buffer, u32) {
+        &self.fans[usize::from(quality.strips > 2)]
     }
 
     /// Waits until all that was drawn is done.
@@ -258,10 +257,32 @@ impl Gpu {
     }
 }
 
+/// The triangles of a cap seen from the viewer, from the middle through rings to the rim; with their number of indices.
+/// An index is the ring (2 is the rim) × 256 + the angle in steps of 1.5°.
+fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) {
+    let vertex = |ring: u16, side: u16| ring << 8 | (side % sides * (240 / sides));
+    let mut indices: Vec<u16> = Vec::new();
+    for side in 0..sides {
+        let mut inner = 0;
+        for &ring in rings {
+            let (a, b) = (vertex(ring, side), vertex(ring, side + 1));
+            if inner == 0 {
+                indices.extend([0, a, b]);
+            } else {
+                indices.extend([vertex(inner, side), a, b, vertex(inner, side), b, vertex(inner, side + 1)]);
+            }
+            inner = ring;
+        }
+    }
+    let (contents, usage) = (bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
+    let buffer = wgpu::util::BufferInitDescriptor { label: Some("fan"), contents, usage };
+    (device.create_buffer_init(&buffer), indices.len() as u32)
+}
+
 fn draw_beads(
     pass: &mut wgpu::RenderPass<'_>,
     pipelines: &Pipelines,
-    fan: &wgpu::Buffer,
+    fan: &(wgpu::Buffer, u32),
     chunk: &Chunk,
     ranges: &Ranges,
     quality: Quality,
@@ -285,8 +306,8 @@ fn draw_beads(
         pass.set_pipeline(&pipelines.cap);
         pass.set_vertex_buffer(0, caps);
         pass.set_vertex_buffer(1, values);
-        pass.set_index_buffer(fan.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..3 * u32::from(RIM), 0, ranges.caps.clone());
+        pass.set_index_buffer(fan.0.slice(..), wgpu::IndexFormat::Uint16);
+        pass.draw_indexed(0..fan.1, 0, ranges.caps.clone());
     }
 }
 

@@ -12,7 +12,6 @@ const SMOOTH_COS: f64 = 0.866;
 /// The model on the graphics card.
 #[derive(Debug)]
 pub(super) struct Surface {
-    pub version: u64,
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub count: u32,
@@ -22,7 +21,7 @@ pub(super) struct Surface {
 
 impl Surface {
     /// Sends a model; `None` where it has no triangles or is too large for a buffer.
-    pub(super) fn new(device: &wgpu::Device, mesh: &Mesh, version: u64) -> Option<Self> {
+    pub(super) fn new(device: &wgpu::Device, mesh: &Mesh) -> Option<Self> {
         let vertices: Vec<[f32; 3]> = mesh.vertices.iter().map(|v| v.as_vec3().into()).collect();
         let edges = edges(mesh);
         let sizes = [size_of_val(&vertices[..]), size_of_val(&mesh.triangles[..]), size_of_val(&edges[..])];
@@ -33,7 +32,6 @@ impl Surface {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         Some(Self {
-            version,
             vertices: buffer("model", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
             indices: buffer("triangles", bytemuck::cast_slice(&mesh.triangles), wgpu::BufferUsages::INDEX),
             count: mesh.triangles.len() as u32 * 3,
