@@ -11,7 +11,9 @@ use beadwright::task::Task;
 use beadwright_studio::view3d::{
     Camera, Colour, LayerBeads, Pace, Pick, Scene, StandardView, Style, View3d, headless, palette, pick,
 };
+use eframe::egui;
 use eframe::egui_wgpu::RenderState;
+use egui_kittest::{Harness, kittest::Queryable as _};
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -324,4 +326,95 @@ fn pictures() {
         scene.set_values(index, values);
     }
     shoot(&scene, "l-error.png", Iso, 1.0, Style { colour: Colour::HeightError, ..plain });
+}
+
+/// A window that holds nothing but the view.
+struct Window {
+    view: View3d,
+    scene: Scene,
+    style: Style,
+    rendered: usize,
+    picked: Option<Pick>,
+    hovered: Option<Pick>,
+    with_adapter: bool,
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let state = frame.wgpu_render_state().filter(|_| self.with_adapter);
+        let shown = self.view.show(ui, state, &self.scene, &self.style, "3-D view");
+        self.rendered += usize::from(shown.rendered);
+        self.picked = shown.picked.or(self.picked);
+        self.hovered = shown.hovered;
+    }
+}
+
+fn window(with_adapter: bool) -> Harness<'static, Window> {
+    let (_, scene) = planned("star", &profile());
+    let style = Style { mesh: false, ..Style::default() };
+    let window =
+        Window { view: View3d::default(), scene, style, rendered: 0, picked: None, hovered: None, with_adapter };
+    Harness::builder().with_size(egui::vec2(640.0, 480.0)).wgpu().build_eframe(|_| window)
+}
+
+#[test]
+fn the_view_turns_zooms_and_picks_and_rests() {
+    if renderer().is_none() {
+        return;
+    }
+    let mut harness = window(true);
+    harness.run_steps(6);
+    let rendered = harness.state().rendered;
+    assert_eq!(rendered, 1, "nothing changed after the first picture");
+    let middle = harness.get_by_label("3-D view").rect().center();
+
+    harness.hover_at(middle);
+    harness.run_steps(2);
+    let below = harness.state().hovered;
+    assert!(below.is_some(), "a bead lies in the middle of the star");
+    assert_eq!(harness.state().rendered, rendered, "a pointer changes nothing");
+
+    let before = harness.state().view.camera;
+    harness.drag_at(middle);
+    harness.run_steps(1);
+    harness.hover_at(middle + egui::vec2(90.0, 20.0));
+    harness.run_steps(2);
+    harness.drop_at(middle + egui::vec2(90.0, 20.0));
+    harness.run_steps(4);
+    let turned = harness.state().view.camera;
+    assert!((before.yaw - turned.yaw).abs() > 0.3 && turned.target == before.target);
+    assert!(harness.state().rendered > rendered);
+    assert_eq!(harness.state().picked, None, "a drag is no click");
+
+    harness.hover_at(middle);
+    harness.run_steps(1);
+    let line = egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: egui::vec2(0.0, 3.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    };
+    harness.event(line);
+    harness.run_steps(20);
+    assert!(harness.state().view.camera.distance < 0.98 * turned.distance);
+
+    harness.drag_at(middle);
+    harness.run_steps(1);
+    harness.drop_at(middle);
+    harness.run_steps(3);
+    assert!(harness.state().picked.is_some());
+    harness.render().unwrap().save(PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("widget.png")).unwrap();
+}
+
+#[test]
+fn without_an_adapter_the_view_says_so() {
+    if renderer().is_none() {
+        return;
+    }
+    let mut harness = window(false);
+    harness.run_steps(3);
+    assert_eq!(harness.state().rendered, 0);
+    let sentence = harness.state().view.no_adapter.clone();
+    assert!(harness.query_by_label(&sentence).is_some());
 }

@@ -48,5 +48,5 @@ fn shaded(colour: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let gloss = pow(max(dot(normal, globals.gloss.xyz), 0.0), 28.0);
     // A weak light from the viewer, so that nothing that is seen is black.
     let fill = max(dot(normal, globals.back.xyz), 0.0);
-    return colour * (0.24 + 0.12 * sky + 0.24 * fill + 0.52 * direct) + vec3(0.10 * gloss);
+    return colour * (0.25 + 0.12 * sky + 0.18 * fill + 0.57 * direct) + vec3(0.10 * gloss);
 }

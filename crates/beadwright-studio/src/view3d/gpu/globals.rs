@@ -35,7 +35,7 @@ pub(super) struct Globals {
 }
 
 /// How much rounder beads are shaded than they are: 0 as they are, 1 as circles.
-const ROUNDNESS: f64 = 0.45;
+const ROUNDNESS: f64 = 0.6;
 
 /// How much nearer lines are drawn than the surfaces they lie on, as a part of their depth.
 const NUDGE: [f64; 2] = [3e-4, 2e-6];

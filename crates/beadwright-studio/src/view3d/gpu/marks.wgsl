@@ -19,22 +19,22 @@ fn line_colour(in: MarkVertex) -> @location(0) vec4<f32> {
     return vec4(in.colour.rgb * in.colour.a, in.colour.a);
 }
 
-// A round dot of a few pixels that faces the viewer.
+// A round dot of a few pixels: it lies on the bead, or faces a viewer who looks from the side.
 @vertex
 fn dot_mark(
     @builtin(vertex_index) vertex: u32,
     @location(0) at: vec3<f32>,
     @location(1) role: u32,
 ) -> MarkVertex {
-    const RADIUS: f32 = 4.5;
+    const RADIUS: f32 = 5.0;
     let place = vec2(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+    let viewer = to_viewer(at);
+    let normal = normalize(mix(viewer, vec3(0.0, 0.0, 1.0), smoothstep(0.0, 0.4, viewer.z)));
+    let helper = select(vec3(0.0, 0.0, 1.0), vec3(0.0, 1.0, 0.0), abs(normal.z) > 0.9);
+    let i = normalize(cross(helper, normal));
+    let offset = (i * place.x + cross(normal, i) * place.y) * (RADIUS * pixel_at(at));
     var out: MarkVertex;
-    // Drawn as if it lay so much nearer that the bead under it does not cut it.
-    let lifted = globals.clip_from_world * vec4(at + to_viewer(at) * (1.0 + 2.0 * RADIUS * pixel_at(at)), 1.0);
-    let flat = globals.clip_from_world * vec4(at, 1.0);
-    let clip = vec4(flat.xy, lifted.z / lifted.w * flat.w, flat.w);
-    let offset = place * RADIUS * 2.0 / globals.screen.xy * clip.w;
-    out.clip = vec4(clip.xy + offset, clip.zw);
+    out.clip = nudged(globals.clip_from_world * vec4(at + normal * 0.3 + offset, 1.0), 2.0);
     out.colour = globals.roles[role];
     out.place = place;
     return out;
