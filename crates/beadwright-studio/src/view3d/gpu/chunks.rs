@@ -16,6 +16,9 @@ use std::ops::Range;
 /// A chunk is full from this number of segments on.
 const CHUNK: usize = 1 << 19;
 
+/// Layers are drawn together up to this number of segments.
+const PIECE: u32 = 4096;
+
 /// Layers of more segments would not fit in a buffer of 256 MiB and are not drawn.
 const LARGEST_LAYER: usize = 8_000_000;
 
@@ -42,7 +45,8 @@ struct Counts {
 /// What is drawn of a chunk.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Ranges {
-    pub beads: Range<u32>,
+    /// Beads, in pieces of whole layers one above another: what is nearest is best drawn first.
+    pub beads: Vec<Range<u32>>,
     pub caps: Range<u32>,
     pub travels: Range<u32>,
     pub dots: Range<u32>,
@@ -243,11 +247,23 @@ impl Chunk {
         }
         let range = |of: fn(&Counts) -> usize| of(&begin) as u32..of(&end) as u32;
         Ranges {
-            beads: range(|c| c.beads),
+            beads: self.pieces(first..last, range(|c| c.beads)),
             caps: range(|c| c.caps),
             travels: range(|c| c.travels),
             dots: range(|c| c.dots),
         }
+    }
+
+    /// A range of beads cut between layers into pieces of some thousand segments.
+    fn pieces(&self, slots: Range<usize>, beads: Range<u32>) -> Vec<Range<u32>> {
+        let (mut pieces, mut start) = (Vec::new(), beads.start);
+        for end in self.slots[slots].iter().map(|slot| (slot.ends.beads as u32).min(beads.end)) {
+            if end - start >= PIECE || (end == beads.end && end > start) {
+                pieces.push(start..end);
+                start = end;
+            }
+        }
+        pieces
     }
 
     /// Where the segments of a layer and their caps lie in this chunk.
@@ -256,7 +272,11 @@ impl Chunk {
         let begin = slot.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
         let caps = |segment: usize| begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segment);
         let beads = (begin.beads + segments.start) as u32..(begin.beads + segments.end) as u32;
-        Some(Ranges { beads, caps: caps(segments.start) as u32..caps(segments.end) as u32, ..Ranges::default() })
+        Some(Ranges {
+            caps: caps(segments.start) as u32..caps(segments.end) as u32,
+            beads: vec![beads],
+            ..Ranges::default()
+        })
     }
 }
 

@@ -170,7 +170,7 @@ impl Gpu {
                 ..Default::default()
             });
             pass.set_bind_group(0, &self.bindings[0], &[]);
-            self.draw_all(&mut pass, pipelines, scene, style, quality, torch.len() as u32);
+            self.draw_all(&mut pass, pipelines, scene, style, quality, camera.pitch > 0.0, torch.len() as u32);
         }
         self.queue.submit([encoder.finish()]);
     }
@@ -183,17 +183,25 @@ impl Gpu {
         scene: &Scene,
         style: &Style,
         quality: Quality,
+        from_above: bool,
         torch_vertices: u32,
     ) {
-        let ranges: Vec<Ranges> = self.chunks.iter().map(|chunk| chunk.ranges(scene, style)).collect();
-        let drawn = || self.chunks.iter().zip(&ranges);
-        let any_bead = style.beads && ranges.iter().any(|r| !r.beads.is_empty());
+        let mut drawn: Vec<(&Chunk, Ranges)> =
+            self.chunks.iter().map(|chunk| (chunk, chunk.ranges(scene, style))).collect();
+        if from_above {
+            // What is hidden is shaded for nothing if it comes first.
+            drawn.reverse();
+            drawn.iter_mut().for_each(|(_, ranges)| ranges.beads.reverse());
+        }
+        let any_bead = style.beads && drawn.iter().any(|(_, r)| !r.beads.is_empty());
         let surface = self.surface.as_ref().filter(|_| style.mesh);
         if let Some(surface) = surface.filter(|_| !any_bead) {
             draw_surface(pass, &pipelines.opaque, surface);
         }
         if style.beads {
-            drawn().for_each(|(chunk, range)| draw_beads(pass, pipelines, self.fan(quality), chunk, range, quality));
+            drawn
+                .iter()
+                .for_each(|(chunk, range)| draw_beads(pass, pipelines, self.fan(quality), chunk, range, quality));
             self.draw_highlight(pass, pipelines, scene, style, quality);
         }
         if let Some(torch) = self.torch.from(0).filter(|_| torch_vertices > 0) {
@@ -201,7 +209,7 @@ impl Gpu {
             pass.set_vertex_buffer(0, torch);
             pass.draw(0..torch_vertices, 0..1);
         }
-        for (chunk, range) in drawn() {
+        for (chunk, range) in &drawn {
             draw_points(pass, &pipelines.dot, chunk.dots.from(0).filter(|_| style.starts), 0..4, range.dots.clone());
             let travels = chunk.travels.from(0).filter(|_| style.travels);
             draw_points(pass, &pipelines.line, travels, range.travels.clone(), 0..1);
@@ -297,7 +305,9 @@ fn draw_beads(
         pass.set_vertex_buffer(1, before);
         pass.set_vertex_buffer(2, here.buffer().slice(2 * BEAD..));
         pass.set_vertex_buffer(3, values);
-        pass.draw(0..2 * (quality.strips + 1), ranges.beads.clone());
+        for beads in &ranges.beads {
+            pass.draw(0..2 * (quality.strips + 1), beads.clone());
+        }
     }
     if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))
         && quality.caps
