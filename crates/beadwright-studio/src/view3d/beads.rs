@@ -16,6 +16,13 @@ pub(super) const BLOCK: usize = 64;
 /// Cosine of the sharpest bend at which two segments are mitred; sharper ones get a round joint. 50°.
 const MITRE_COS: f32 = 0.643;
 
+/// Rough beads leave the true ones by less than this part of the width, and turn from them by less than 25°.
+const ROUGH: f32 = 0.12;
+const ROUGH_COS: f32 = 0.906;
+
+/// At most so many segments more than one become a rough one.
+const MOST_MERGED: usize = 24;
+
 /// A straight piece of a bead, as the graphics card reads it; mm.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -90,6 +97,10 @@ pub struct LayerBeads {
     pub(super) caps: Vec<Cap>,
     /// The segment with which each cap appears.
     pub(super) cap_segments: Vec<u32>,
+    /// The same beads with fewer segments, for a view in motion.
+    pub(super) rough: Vec<Bead>,
+    /// The last segment that each of them stands for.
+    pub(super) rough_segments: Vec<u32>,
     /// Lowest and highest corner of what every [`BLOCK`] segments fill, mm.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
     seconds: f64,
@@ -115,6 +126,8 @@ impl LayerBeads {
             passes: Vec::with_capacity(layer.passes.len()),
             caps: Vec::new(),
             cap_segments: Vec::new(),
+            rough: Vec::new(),
+            rough_segments: Vec::new(),
             boxes: Vec::new(),
             seconds: 0.0,
             end: from,
@@ -145,6 +158,7 @@ impl LayerBeads {
         self.seconds = if start.is_some() { clock + pace.after } else { travel_start };
         let segments = first..self.beads.len();
         self.join(segments.clone());
+        self.roughen(segments.clone());
         let kind = pass.kind;
         self.passes.push(PassSpan { kind, segments, travel_start, arrival, arc_start, end: self.seconds, travel });
         self.end = end.or(self.end);
@@ -166,6 +180,21 @@ impl LayerBeads {
                 self.caps.push(Cap { at: here.to, width: here.width.abs(), height: here.height });
                 self.cap_segments.push(i as u32);
             }
+        }
+    }
+
+    /// Makes one segment of several, as long as it stays on the bead.
+    fn roughen(&mut self, segments: Range<usize>) {
+        let mut first = segments.start;
+        while first < segments.end {
+            let mut last = first;
+            while last + 1 < segments.end && last - first < MOST_MERGED && merges(&self.beads[first..=last + 1]) {
+                last += 1;
+            }
+            let (begin, end) = (self.beads[first], self.beads[last]);
+            self.rough.push(Bead { to: end.to, height: end.height, ..begin });
+            self.rough_segments.push(last as u32);
+            first = last + 1;
         }
     }
 
@@ -226,6 +255,16 @@ impl LayerBeads {
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.boxes.iter().copied().reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
     }
+}
+
+/// Whether beads one behind another are about one straight bead.
+fn merges(beads: &[Bead]) -> bool {
+    let [first, between @ .., last] = beads else { return true };
+    let (start, way) = (first.from(), (last.to() - first.from()).normalize_or_zero());
+    let near = |bead: &Bead| (bead.from() - start).cross(way).length() < ROUGH * first.width();
+    let alike = |bead: &Bead| (bead.width() / first.width() - 1.0).abs() < 0.1 && bead.width < 0.0;
+    let ahead = self::way(first).dot(way).min(self::way(last).dot(way)) > ROUGH_COS;
+    way != Vec3::ZERO && ahead && between.iter().chain([last]).all(|bead| near(bead) && alike(bead))
 }
 
 fn way(bead: &Bead) -> Vec3 {

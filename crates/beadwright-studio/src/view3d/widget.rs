@@ -242,7 +242,7 @@ impl View3d {
     ) -> Result<(u32, u32, Vec<u8>), String> {
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         let target = gpu.target(size, 4);
-        let quality = Quality { strips: 4, samples: 4, caps: true };
+        let quality = Quality { strips: 4, samples: 4, exact: true };
         gpu.draw(scene, style, &self.camera, quality, &target);
         Ok((target.pixels[0], target.pixels[1], gpu.read(&target)?))
     }
@@ -273,15 +273,15 @@ impl View3d {
 }
 
 fn coarse_quality() -> Quality {
-    Quality { strips: 1, samples: 1, caps: false }
+    Quality { strips: 1, samples: 1, exact: false }
 }
 
 fn fine_quality(software: bool, moving: bool, segments: usize) -> Quality {
     if !software {
-        return Quality { strips: 4, samples: 4, caps: true };
+        return Quality { strips: 4, samples: 4, exact: true };
     }
     let samples = if !moving && segments < SMOOTH_BELOW { 4 } else { 1 };
-    Quality { strips: 2, samples, caps: true }
+    Quality { strips: 2, samples, exact: true }
 }
 
 /// Makes a picture known to egui, in the place of the one before.

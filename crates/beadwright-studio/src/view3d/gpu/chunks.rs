@@ -37,6 +37,7 @@ pub(super) struct Point {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Counts {
     beads: usize,
+    rough: usize,
     caps: usize,
     travels: usize,
     dots: usize,
@@ -47,6 +48,8 @@ struct Counts {
 pub(super) struct Ranges {
     /// Beads, in pieces of whole layers one above another: what is nearest is best drawn first.
     pub beads: Vec<Range<u32>>,
+    /// Rough beads, likewise.
+    pub rough: Vec<Range<u32>>,
     pub caps: Range<u32>,
     pub travels: Range<u32>,
     pub dots: Range<u32>,
@@ -76,6 +79,9 @@ pub(super) struct Chunk {
     /// With one bead in front that is not drawn: a bead looks at the one before it.
     pub beads: Growing,
     pub bead_values: Growing,
+    /// With one in front, too.
+    pub rough: Growing,
+    pub rough_values: Growing,
     pub caps: Growing,
     pub cap_values: Growing,
     pub travels: Growing,
@@ -139,7 +145,7 @@ fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colo
             segments += layer.len();
             seconds += layer.seconds();
             if slot.values.replace(key) == Some(key) {
-                run.send(card, &mut chunk.bead_values, &mut chunk.cap_values);
+                run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
                 continue;
             }
             if run.beads.is_empty() {
@@ -148,8 +154,9 @@ fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colo
             let from = run.beads.len();
             values_of(layer, &key, supplied.map(|values| &*values.of), &mut run.beads);
             run.caps.extend(layer.cap_segments.iter().map(|&s| run.beads[from + s as usize]));
+            run.rough.extend(layer.rough_segments.iter().map(|&s| run.beads[from + s as usize]));
         }
-        run.send(card, &mut chunk.bead_values, &mut chunk.cap_values);
+        run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
     }
 }
 
@@ -158,14 +165,17 @@ fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colo
 struct Run {
     first: Counts,
     beads: Vec<f32>,
+    rough: Vec<f32>,
     caps: Vec<f32>,
 }
 
 impl Run {
-    fn send(&mut self, card: Card<'_>, beads: &mut Growing, caps: &mut Growing) {
+    fn send(&mut self, card: Card<'_>, [beads, rough, caps]: [&mut Growing; 3]) {
         beads.write(card, self.first.beads, &self.beads);
+        rough.write(card, self.first.rough, &self.rough);
         caps.write(card, self.first.caps, &self.caps);
         self.beads.clear();
+        self.rough.clear();
         self.caps.clear();
     }
 }
@@ -194,6 +204,8 @@ impl Chunk {
             slots: Vec::new(),
             beads: Growing::new("beads"),
             bead_values: Growing::new("values of beads"),
+            rough: Growing::new("rough beads"),
+            rough_values: Growing::new("values of rough beads"),
             caps: Growing::new("caps"),
             cap_values: Growing::new("values of caps"),
             travels: Growing::new("travels"),
@@ -213,12 +225,15 @@ impl Chunk {
         // In front of the first bead stands one that is not drawn.
         let pad = usize::from(begin.beads == 0);
         beads.resize(pad, Bead::zeroed());
+        let mut rough = beads.clone();
         for (index, layer) in layers {
             beads.extend_from_slice(&layer.beads);
+            rough.extend_from_slice(&layer.rough);
             caps.extend_from_slice(&layer.caps);
             marks(layer, &mut travels, &mut dots);
             let ends = Counts {
                 beads: begin.beads + beads.len() - pad,
+                rough: begin.rough + rough.len() - pad,
                 caps: begin.caps + caps.len(),
                 travels: begin.travels + travels.len(),
                 dots: begin.dots + dots.len(),
@@ -226,6 +241,7 @@ impl Chunk {
             self.slots.push(Slot { layer: *index, id: layer.id, ends, values: None });
         }
         self.beads.write(card, begin.beads + 1 - pad, &beads);
+        self.rough.write(card, begin.rough + 1 - pad, &rough);
         self.caps.write(card, begin.caps, &caps);
         self.travels.write(card, begin.travels, &travels);
         self.dots.write(card, begin.dots, &dots);
@@ -247,7 +263,8 @@ impl Chunk {
         }
         let range = |of: fn(&Counts) -> usize| of(&begin) as u32..of(&end) as u32;
         Ranges {
-            beads: self.pieces(first..last, range(|c| c.beads)),
+            beads: self.pieces(first..last, range(|c| c.beads), |c| c.beads),
+            rough: self.pieces(first..last, range(|c| c.rough), |c| c.rough),
             caps: range(|c| c.caps),
             travels: range(|c| c.travels),
             dots: range(|c| c.dots),
@@ -255,9 +272,9 @@ impl Chunk {
     }
 
     /// A range of beads cut between layers into pieces of some thousand segments.
-    fn pieces(&self, slots: Range<usize>, beads: Range<u32>) -> Vec<Range<u32>> {
+    fn pieces(&self, slots: Range<usize>, beads: Range<u32>, of: fn(&Counts) -> usize) -> Vec<Range<u32>> {
         let (mut pieces, mut start) = (Vec::new(), beads.start);
-        for end in self.slots[slots].iter().map(|slot| (slot.ends.beads as u32).min(beads.end)) {
+        for end in self.slots[slots].iter().map(|slot| (of(&slot.ends) as u32).min(beads.end)) {
             if end - start >= PIECE || (end == beads.end && end > start) {
                 pieces.push(start..end);
                 start = end;
@@ -271,6 +288,9 @@ impl Chunk {
         let slot = self.slots.iter().position(|slot| slot.layer == index)?;
         let begin = slot.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
         let caps = |segment: usize| begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segment);
+        let rough = |segment: usize| begin.rough + layer.rough_segments.partition_point(|&s| (s as usize) < segment);
+        let covering = rough(segments.start) as u32..(rough(segments.end.saturating_sub(1)) + 1) as u32;
+        let rough = if segments.is_empty() { Vec::new() } else { vec![covering] };
         let beads = (begin.beads + segments.start) as u32..(begin.beads + segments.end) as u32;
         Some(Ranges {
             caps: caps(segments.start) as u32..caps(segments.end) as u32,
@@ -286,6 +306,7 @@ fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
     let dots = begun().map(|pass| 1 + usize::from(pass.segments.end <= segments)).sum::<usize>();
     Counts {
         beads: begin.beads + segments.min(layer.len()),
+        rough: begin.rough + layer.rough_segments.partition_point(|&s| (s as usize) < segments),
         caps: begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segments),
         travels: begin.travels + 6 * begun().filter(|pass| pass.travel.is_some()).count(),
         dots: begin.dots + dots,

@@ -38,8 +38,8 @@ pub(super) struct Quality {
     pub strips: u32,
     /// Samples a pixel.
     pub samples: u32,
-    /// Whether ends and corners are round.
-    pub caps: bool,
+    /// Whether ends and corners are round, and every segment is drawn.
+    pub exact: bool,
 }
 
 /// Beads as they are, a pass that stands out, and a segment that stands out.
@@ -191,7 +191,10 @@ impl Gpu {
         if from_above {
             // What is hidden is shaded for nothing if it comes first.
             drawn.reverse();
-            drawn.iter_mut().for_each(|(_, ranges)| ranges.beads.reverse());
+            for (_, ranges) in &mut drawn {
+                ranges.beads.reverse();
+                ranges.rough.reverse();
+            }
         }
         let any_bead = style.beads && drawn.iter().any(|(_, r)| !r.beads.is_empty());
         let surface = self.surface.as_ref().filter(|_| style.mesh);
@@ -296,21 +299,25 @@ fn draw_beads(
     quality: Quality,
 ) {
     const BEAD: u64 = size_of::<super::beads::Bead>() as u64;
-    if let (Some(before), Some(here), Some(values)) =
-        (chunk.beads.from(0), chunk.beads.from(BEAD), chunk.bead_values.from(0))
-        && !ranges.beads.is_empty()
+    let (buffer, values, pieces) = if quality.exact {
+        (&chunk.beads, &chunk.bead_values, &ranges.beads)
+    } else {
+        (&chunk.rough, &chunk.rough_values, &ranges.rough)
+    };
+    if let (Some(before), Some(here), Some(values)) = (buffer.from(0), buffer.from(BEAD), values.from(0))
+        && pieces.iter().any(|beads| !beads.is_empty())
     {
         pass.set_pipeline(&pipelines.ribbon);
         pass.set_vertex_buffer(0, here);
         pass.set_vertex_buffer(1, before);
         pass.set_vertex_buffer(2, here.buffer().slice(2 * BEAD..));
         pass.set_vertex_buffer(3, values);
-        for beads in &ranges.beads {
+        for beads in pieces {
             pass.draw(0..2 * (quality.strips + 1), beads.clone());
         }
     }
     if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))
-        && quality.caps
+        && quality.exact
         && !ranges.caps.is_empty()
     {
         pass.set_pipeline(&pipelines.cap);
