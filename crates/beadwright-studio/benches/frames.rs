@@ -35,7 +35,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let profile = Profile::built_in("cmt-al2319-kuka")?;
     let import = model::import(&example::find("vase").ok_or("there is no vase")?.stl(), &Task::default())?;
     let layers = plan("vase", &import.mesh, &profile, &Task::default())?.layers;
-    println!("caps {:?}", layers.iter().map(|l| l.passes.len()).sum::<usize>());
     println!("segments  build  upload  frame full  moving  pick longest  VmHWM MiB");
     for segments in wanted {
         measure(&state, &layers, &Pace::of(&profile), segments)?;
@@ -55,12 +54,10 @@ fn measure(state: &RenderState, layers: &[Layer], pace: &Pace, segments: usize) 
     let upload = view.time_frame(state, &scene, &style, PIXELS, false)?.upload;
     let mut median = |moving: bool| -> Result<f64, String> {
         let mut times = Vec::with_capacity(FRAMES);
-        let cpu = cpu();
         for _ in 0..FRAMES {
             view.camera.orbit(DVec2::new(11.0, 3.0));
             times.push(view.time_frame(state, &scene, &style, PIXELS, moving)?.render);
         }
-        println!("cpu ms per frame, moving {moving}: {}", (crate::cpu() - cpu) * 10 / FRAMES as u64);
         times.sort_by(f64::total_cmp);
         Ok(times[FRAMES / 2])
     };
@@ -117,10 +114,4 @@ fn peak_mib() -> u64 {
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
     kib.unwrap_or_default() / 1024
-}
-
-fn cpu() -> u64 {
-    let s = std::fs::read_to_string("/proc/self/stat").unwrap();
-    let f: Vec<&str> = s.rsplit(')').next().unwrap().split_whitespace().collect();
-    f[11].parse::<u64>().unwrap() + f[12].parse::<u64>().unwrap()
 }

@@ -325,7 +325,13 @@ fn pictures() {
         let values: Arc<[f32]> = beads.beads().iter().map(wave).collect();
         scene.set_values(index, values);
     }
-    shoot(&scene, "l-error.png", Iso, 1.0, Style { colour: Colour::HeightError, ..plain });
+    shoot(&scene, "l-error.png", Iso, 1.0, Style { colour: Colour::HeightError, ..plain.clone() });
+    for (part, strategy) in [("gear", "hybrid"), ("pot", "wall"), ("vase", "contour")] {
+        let mut profile = profile.clone();
+        strategy.clone_into(&mut profile.fill.strategy);
+        let (_, scene) = planned(part, &profile);
+        shoot(&scene, &format!("m-{part}.png"), Iso, 1.0, plain.clone());
+    }
 }
 
 /// A window that holds nothing but the view.
@@ -417,4 +423,40 @@ fn without_an_adapter_the_view_says_so() {
     assert_eq!(harness.state().rendered, 0);
     let sentence = harness.state().view.no_adapter.clone();
     assert!(harness.query_by_label(&sentence).is_some());
+}
+
+#[test]
+fn layers_that_come_in_any_order_give_the_same_picture() {
+    let Some(state) = renderer() else { return };
+    let (plan, whole) = planned("star", &profile());
+    let top = plan.layers.len() - 1;
+    let mut view = View3d::default();
+    view.camera.fit(whole.bounds().unwrap(), SIZE);
+    let camera = view.camera;
+    let shoot =
+        |view: &mut View3d, scene: &Scene, style: &Style| view.picture(&state, scene, style, [300, 240]).unwrap().2;
+    for colour in [Colour::Kind, Colour::Order, Colour::Time, Colour::Speed] {
+        let style = Style { colour, travels: true, starts: true, ..Style::default() };
+        let mut scene = Scene::default();
+        scene.set_mesh(whole.mesh().cloned());
+        for index in [top, 1, 0].into_iter().chain(2..=top) {
+            scene.set_layer(index, whole.layer(index).unwrap().clone());
+            shoot(&mut view, &scene, &style);
+        }
+        let mut fresh = View3d::default();
+        fresh.camera = camera;
+        assert!(shoot(&mut view, &scene, &style) == shoot(&mut fresh, &whole, &style), "{colour:?}");
+    }
+    // Part of the layers looks like a scene that holds no others.
+    let mut low = Scene::default();
+    low.set_mesh(whole.mesh().cloned());
+    (0..=3).for_each(|i| low.set_layer(i, whole.layer(i).unwrap().clone()));
+    let style = Style { layers: 0..=3, ..Style::default() };
+    assert!(shoot(&mut view, &whole, &style) == shoot(&mut view, &low, &Style::default()), "layers 0 to 3");
+    let none = Style { segments_of_last: Some(0), ..style.clone() };
+    let below = Style { layers: 0..=2, ..style };
+    assert!(shoot(&mut view, &whole, &none) == shoot(&mut view, &whole, &below), "nothing of layer 3");
+    whole.layers().iter().flatten().for_each(|layer| assert!(!layer.is_empty()));
+    let empty = Scene::default();
+    shoot(&mut view, &empty, &Style::default());
 }

@@ -16,9 +16,9 @@ pub(super) const BLOCK: usize = 64;
 /// Cosine of the sharpest bend at which two segments are mitred; sharper ones get a round joint. 50°.
 const MITRE_COS: f32 = 0.643;
 
-/// Rough beads leave the true ones by less than this part of the width, and turn from them by less than 25°.
-const ROUGH: f32 = 0.12;
-const ROUGH_COS: f32 = 0.906;
+/// Rough beads leave the true ones by less than this part of the width, and turn from them by less than 20°.
+pub(super) const ROUGH: f32 = 0.05;
+const ROUGH_COS: f32 = 0.94;
 
 /// At most so many segments more than one become a rough one.
 const MOST_MERGED: usize = 24;

@@ -16,7 +16,10 @@ pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, dark: bool) 
         return;
     }
     let ink = if dark { Color32::from_gray(200) } else { Color32::from_gray(60) };
-    axes(painter, pos2(rect.left() + 44.0, rect.bottom() - 44.0), camera, ink);
+    let corner = pos2(rect.left() + 48.0, rect.bottom() - 48.0);
+    let ground = if dark { Color32::from_black_alpha(110) } else { Color32::from_white_alpha(150) };
+    painter.circle_filled(corner, 40.0, ground);
+    axes(painter, corner, camera, ink);
     scale_bar(painter, rect, camera, ink);
 }
 

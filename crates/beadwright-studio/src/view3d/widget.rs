@@ -1,5 +1,6 @@
 //! The widget: the pointer turns, moves, zooms and picks, and a picture is rendered when something changed.
 
+use super::beads::ROUGH;
 use super::camera::Camera;
 use super::gpu::{Gpu, Quality, Target};
 use super::pick::{Pick, pick};
@@ -188,7 +189,11 @@ impl View3d {
         let camera = self.camera;
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         let coarse = moving && scene.segments() > COARSE_FROM[usize::from(gpu.software)];
-        let quality = if coarse { coarse_quality() } else { fine_quality(gpu.software, moving, scene.segments()) };
+        // Rough beads look the same from far away.
+        let pixel = camera.height() / f64::from(pixels[1]);
+        let exact = scene.segments() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
+        let quality =
+            if coarse { coarse_quality() } else { fine_quality(gpu.software, moving, scene.segments(), exact) };
         // Software draws a quarter of the pixels while it moves.
         let pixels = if coarse && gpu.software { pixels.map(|n| n.div_ceil(2)) } else { pixels };
         let key = Key { camera, pixels, style: style.clone(), version: scene.version(), quality };
@@ -242,7 +247,7 @@ impl View3d {
     ) -> Result<(u32, u32, Vec<u8>), String> {
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         let target = gpu.target(size, 4);
-        let quality = Quality { strips: 4, samples: 4, exact: true };
+        let quality = Quality { strips: 4, samples: 4, exact: true, caps: true };
         gpu.draw(scene, style, &self.camera, quality, &target);
         Ok((target.pixels[0], target.pixels[1], gpu.read(&target)?))
     }
@@ -272,16 +277,22 @@ impl View3d {
     }
 }
 
-fn coarse_quality() -> Quality {
-    Quality { strips: 1, samples: 1, exact: false }
+/// How far rough beads may leave the true ones, mm.
+fn rough_error(scene: &Scene) -> f64 {
+    let bead = scene.layers().iter().flatten().find_map(|layer| layer.beads().first());
+    bead.map_or(0.0, |bead| f64::from(ROUGH * bead.width()))
 }
 
-fn fine_quality(software: bool, moving: bool, segments: usize) -> Quality {
+fn coarse_quality() -> Quality {
+    Quality { strips: 2, samples: 1, exact: false, caps: true }
+}
+
+fn fine_quality(software: bool, moving: bool, segments: usize, exact: bool) -> Quality {
     if !software {
-        return Quality { strips: 4, samples: 4, exact: true };
+        return Quality { strips: 4, samples: 4, exact: true, caps: true };
     }
     let samples = if !moving && segments < SMOOTH_BELOW { 4 } else { 1 };
-    Quality { strips: 2, samples, exact: true }
+    Quality { strips: 2, samples, exact, caps: true }
 }
 
 /// Makes a picture known to egui, in the place of the one before.

@@ -36,7 +36,6 @@ fn roundness(half_width: f32, pixel: f32) -> f32 {
 @vertex
 fn ribbon(
     @builtin(vertex_index) vertex: u32,
-    @builtin(instance_index) instance: u32,
     @location(0) from_width: vec4<f32>,
     @location(1) to_height: vec4<f32>,
     @location(2) before: vec3<f32>,
@@ -90,10 +89,6 @@ fn ribbon(
     let round = roundness(reach, pixel);
     var out: BeadVertex;
     out.clip = globals.clip_from_world * vec4(world, 1.0);
-    if globals.values.z > 1.5 {
-        // A single strip lies in the middle of the bead, where neighbours meet in the same depth: later ones win.
-        out.clip.z = out.clip.z * (1.0 + 4e-6 * f32(instance & 255u));
-    }
     out.colour = bead_colour(value);
     out.place = vec2(across * round, 0.0);
     out.side = (n * (edge.x / flat_width) + z * (edge.y / half_height)) * half_height * across * round;

@@ -5,8 +5,8 @@
 
 use super::globals::role;
 use super::growing::Growing;
+use super::values::{ValueKey, send_values};
 use crate::view3d::beads::{Bead, Cap, LayerBeads};
-use crate::view3d::palette::KINDS;
 use crate::view3d::scene::Scene;
 use crate::view3d::style::{Colour, Style};
 use bytemuck::{Pod, Zeroable};
@@ -22,9 +22,6 @@ const PIECE: u32 = 4096;
 /// Layers of more segments would not fit in a buffer of 256 MiB and are not drawn.
 const LARGEST_LAYER: usize = 8_000_000;
 
-/// Stands for a segment without a value.
-const MISSING: f32 = -2e30;
-
 /// A point that is no bead.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -35,12 +32,12 @@ pub(super) struct Point {
 
 /// Numbers of beads, caps, vertices of travels and dots; those of a chunk up to some layer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Counts {
-    beads: usize,
-    rough: usize,
-    caps: usize,
-    travels: usize,
-    dots: usize,
+pub(super) struct Counts {
+    pub beads: usize,
+    pub rough: usize,
+    pub caps: usize,
+    pub travels: usize,
+    pub dots: usize,
 }
 
 /// What is drawn of a chunk.
@@ -55,27 +52,19 @@ pub(super) struct Ranges {
     pub dots: Range<u32>,
 }
 
-/// What the values of a layer depend on besides the layer.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct ValueKey {
-    colour: Colour,
-    segments_before: usize,
-    seconds_before: f64,
-    supplied: u64,
-}
-
+/// A layer in its chunk.
 #[derive(Debug)]
-struct Slot {
-    layer: usize,
+pub(super) struct Slot {
+    pub layer: usize,
     id: u64,
-    ends: Counts,
-    values: Option<ValueKey>,
+    pub ends: Counts,
+    pub values: Option<ValueKey>,
 }
 
 /// Some layers, one behind another.
 #[derive(Debug)]
 pub(super) struct Chunk {
-    slots: Vec<Slot>,
+    pub slots: Vec<Slot>,
     /// With one bead in front that is not drawn: a bead looks at the one before it.
     pub beads: Growing,
     pub bead_values: Growing,
@@ -88,7 +77,8 @@ pub(super) struct Chunk {
     pub dots: Growing,
 }
 
-type Card<'a> = (&'a wgpu::Device, &'a wgpu::Queue);
+/// The graphics card.
+pub(super) type Card<'a> = (&'a wgpu::Device, &'a wgpu::Queue);
 
 /// Brings the chunks to the state of the scene.
 pub(super) fn sync(chunks: &mut Vec<Chunk>, card: Card<'_>, scene: &Scene, colour: Colour) {
@@ -125,77 +115,6 @@ fn truncate(chunks: &mut Vec<Chunk>, layers: usize) {
         left -= keep;
         keep > 0
     });
-}
-
-fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colour) {
-    let (mut segments, mut seconds) = (0, 0.0);
-    for chunk in chunks {
-        let (mut begin, mut run) = (Counts::default(), Run::default());
-        for slot in &mut chunk.slots {
-            let (here, ends) = (begin, slot.ends);
-            begin = ends;
-            let Some(layer) = scene.layer(slot.layer) else { continue };
-            let supplied = scene.values(slot.layer).filter(|_| colour == Colour::HeightError);
-            let key = ValueKey {
-                colour,
-                segments_before: if colour == Colour::Order { segments } else { 0 },
-                seconds_before: if colour == Colour::Time { seconds } else { 0.0 },
-                supplied: supplied.map_or(0, |values| values.id),
-            };
-            segments += layer.len();
-            seconds += layer.seconds();
-            if slot.values.replace(key) == Some(key) {
-                run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
-                continue;
-            }
-            if run.beads.is_empty() {
-                run.first = here;
-            }
-            let from = run.beads.len();
-            values_of(layer, &key, supplied.map(|values| &*values.of), &mut run.beads);
-            run.caps.extend(layer.cap_segments.iter().map(|&s| run.beads[from + s as usize]));
-            run.rough.extend(layer.rough_segments.iter().map(|&s| run.beads[from + s as usize]));
-        }
-        run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
-    }
-}
-
-/// Values of layers that lie one behind another, to be sent together.
-#[derive(Default)]
-struct Run {
-    first: Counts,
-    beads: Vec<f32>,
-    rough: Vec<f32>,
-    caps: Vec<f32>,
-}
-
-impl Run {
-    fn send(&mut self, card: Card<'_>, [beads, rough, caps]: [&mut Growing; 3]) {
-        beads.write(card, self.first.beads, &self.beads);
-        rough.write(card, self.first.rough, &self.rough);
-        caps.write(card, self.first.caps, &self.caps);
-        self.beads.clear();
-        self.rough.clear();
-        self.caps.clear();
-    }
-}
-
-fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: &mut Vec<f32>) {
-    match key.colour {
-        Colour::Speed => out.extend(&layer.speeds),
-        Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
-        Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
-        Colour::HeightError => out.extend((0..layer.len()).map(|i| {
-            let value = supplied.and_then(|values| values.get(i)).copied().unwrap_or(MISSING);
-            if value.is_finite() { value } else { MISSING }
-        })),
-        Colour::Kind => {
-            for pass in layer.passes() {
-                let kind = KINDS.iter().position(|k| *k == pass.kind).unwrap_or_default();
-                out.extend(std::iter::repeat_n(kind as f32, pass.segments.len()));
-            }
-        }
-    }
 }
 
 impl Chunk {
@@ -295,6 +214,7 @@ impl Chunk {
         Some(Ranges {
             caps: caps(segments.start) as u32..caps(segments.end) as u32,
             beads: vec![beads],
+            rough,
             ..Ranges::default()
         })
     }

@@ -26,7 +26,7 @@ fn dot_mark(
     @location(0) at: vec3<f32>,
     @location(1) role: u32,
 ) -> MarkVertex {
-    const RADIUS: f32 = 5.0;
+    const RADIUS: f32 = 6.5;
     let place = vec2(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
     let viewer = to_viewer(at);
     let normal = normalize(mix(viewer, vec3(0.0, 0.0, 1.0), smoothstep(0.0, 0.4, viewer.z)));

@@ -3,6 +3,8 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `chunks` | the layers in print order |
+//! | `values` | what their colours are made of |
+//! | `draw` | the order in which things are drawn |
 //! | `surface` | the model and the torch |
 //! | `growing` | a buffer that grows at its end |
 //! | `globals` | what all shaders are told |
@@ -11,18 +13,20 @@
 //! | `*.wgsl` | the shaders |
 
 mod chunks;
+mod draw;
 mod globals;
 mod growing;
 mod pipelines;
 mod surface;
 mod target;
+mod values;
 
 use super::camera::Camera;
 use super::palette;
-use super::pick::Pick;
 use super::scene::Scene;
 use super::style::{Colour, Style};
-use chunks::{Chunk, Ranges};
+use chunks::Chunk;
+use draw::Shot;
 use eframe::egui_wgpu::{RenderState, wgpu};
 use globals::Globals;
 use growing::Growing;
@@ -38,8 +42,10 @@ pub(super) struct Quality {
     pub strips: u32,
     /// Samples a pixel.
     pub samples: u32,
-    /// Whether ends and corners are round, and every segment is drawn.
+    /// Whether every segment is drawn, and not rough ones.
     pub exact: bool,
+    /// Whether ends and corners are round.
+    pub caps: bool,
 }
 
 /// Beads as they are, a pass that stands out, and a segment that stands out.
@@ -165,91 +171,15 @@ impl Gpu {
         if let Some(pipelines) = self.pipelines.iter().find(|p| p.samples == target.samples) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("3-D view"),
-                color_attachments: &[Some(colour(target, style.dark))],
-                depth_stencil_attachment: Some(depth(target)),
+                color_attachments: &[Some(draw::colour(target, style.dark))],
+                depth_stencil_attachment: Some(draw::depth(target)),
                 ..Default::default()
             });
             pass.set_bind_group(0, &self.bindings[0], &[]);
-            self.draw_all(&mut pass, pipelines, scene, style, quality, camera.pitch > 0.0, torch.len() as u32);
+            let (from_above, torch_vertices) = (camera.pitch > 0.0, torch.len() as u32);
+            Shot { gpu: self, pipelines, scene, style, quality, from_above, torch_vertices }.draw(&mut pass);
         }
         self.queue.submit([encoder.finish()]);
-    }
-
-    /// Solid things first, then what is laid over them.
-    fn draw_all(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        pipelines: &Pipelines,
-        scene: &Scene,
-        style: &Style,
-        quality: Quality,
-        from_above: bool,
-        torch_vertices: u32,
-    ) {
-        let mut drawn: Vec<(&Chunk, Ranges)> =
-            self.chunks.iter().map(|chunk| (chunk, chunk.ranges(scene, style))).collect();
-        if from_above {
-            // What is hidden is shaded for nothing if it comes first.
-            drawn.reverse();
-            for (_, ranges) in &mut drawn {
-                ranges.beads.reverse();
-                ranges.rough.reverse();
-            }
-        }
-        let any_bead = style.beads && drawn.iter().any(|(_, r)| !r.beads.is_empty());
-        let surface = self.surface.as_ref().filter(|_| style.mesh);
-        if let Some(surface) = surface.filter(|_| !any_bead) {
-            draw_surface(pass, &pipelines.opaque, surface);
-        }
-        if style.beads {
-            drawn
-                .iter()
-                .for_each(|(chunk, range)| draw_beads(pass, pipelines, self.fan(quality), chunk, range, quality));
-            self.draw_highlight(pass, pipelines, scene, style, quality);
-        }
-        if let Some(torch) = self.torch.from(0).filter(|_| torch_vertices > 0) {
-            pass.set_pipeline(&pipelines.solid);
-            pass.set_vertex_buffer(0, torch);
-            pass.draw(0..torch_vertices, 0..1);
-        }
-        for (chunk, range) in &drawn {
-            draw_points(pass, &pipelines.dot, chunk.dots.from(0).filter(|_| style.starts), 0..4, range.dots.clone());
-            let travels = chunk.travels.from(0).filter(|_| style.travels);
-            draw_points(pass, &pipelines.line, travels, range.travels.clone(), 0..1);
-        }
-        pass.set_pipeline(&pipelines.ground);
-        pass.draw(0..4, 0..1);
-        if let Some(surface) = surface {
-            if any_bead {
-                draw_surface(pass, &pipelines.glass, surface);
-            }
-            draw_points(pass, &pipelines.line, Some(surface.edges.slice(..)), 0..surface.edge_vertices, 0..1);
-        }
-    }
-
-    /// Draws a pass and a segment of it over themselves, in the colour of what stands out.
-    fn draw_highlight(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        pipelines: &Pipelines,
-        scene: &Scene,
-        style: &Style,
-        quality: Quality,
-    ) {
-        let Some(Pick { layer, pass: number, segment }) = style.highlight else { return };
-        let Some(beads) = scene.layer(layer) else { return };
-        let Some(span) = beads.passes().get(number) else { return };
-        let shown = style.shown(layer, beads.len());
-        for (look, segments) in [(1, span.segments.clone()), (2, segment..segment + 1)] {
-            let segments = segments.start.min(shown)..segments.end.min(shown);
-            pass.set_bind_group(0, &self.bindings[look], &[]);
-            for chunk in &self.chunks {
-                if let Some(ranges) = chunk.place(beads, layer, segments.clone()) {
-                    draw_beads(pass, pipelines, self.fan(quality), chunk, &ranges, quality);
-                }
-            }
-        }
-        pass.set_bind_group(0, &self.bindings[0], &[]);
     }
 
     /// The fan that fits the strips of a ribbon: it goes through the same points.
@@ -290,86 +220,9 @@ fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) 
     (device.create_buffer_init(&buffer), indices.len() as u32)
 }
 
-fn draw_beads(
-    pass: &mut wgpu::RenderPass<'_>,
-    pipelines: &Pipelines,
-    fan: &(wgpu::Buffer, u32),
-    chunk: &Chunk,
-    ranges: &Ranges,
-    quality: Quality,
-) {
-    const BEAD: u64 = size_of::<super::beads::Bead>() as u64;
-    let (buffer, values, pieces) = if quality.exact {
-        (&chunk.beads, &chunk.bead_values, &ranges.beads)
-    } else {
-        (&chunk.rough, &chunk.rough_values, &ranges.rough)
-    };
-    if let (Some(before), Some(here), Some(values)) = (buffer.from(0), buffer.from(BEAD), values.from(0))
-        && pieces.iter().any(|beads| !beads.is_empty())
-    {
-        pass.set_pipeline(&pipelines.ribbon);
-        pass.set_vertex_buffer(0, here);
-        pass.set_vertex_buffer(1, before);
-        pass.set_vertex_buffer(2, here.buffer().slice(2 * BEAD..));
-        pass.set_vertex_buffer(3, values);
-        for beads in pieces {
-            pass.draw(0..2 * (quality.strips + 1), beads.clone());
-        }
-    }
-    if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))
-        && quality.exact
-        && !ranges.caps.is_empty()
-    {
-        pass.set_pipeline(&pipelines.cap);
-        pass.set_vertex_buffer(0, caps);
-        pass.set_vertex_buffer(1, values);
-        pass.set_index_buffer(fan.0.slice(..), wgpu::IndexFormat::Uint16);
-        pass.draw_indexed(0..fan.1, 0, ranges.caps.clone());
-    }
-}
-
-fn draw_surface(pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, surface: &Surface) {
-    pass.set_pipeline(pipeline);
-    pass.set_vertex_buffer(0, surface.vertices.slice(..));
-    pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
-    pass.draw_indexed(0..surface.count, 0, 0..1);
-}
-
-fn draw_points(
-    pass: &mut wgpu::RenderPass<'_>,
-    pipeline: &wgpu::RenderPipeline,
-    points: Option<wgpu::BufferSlice<'_>>,
-    vertices: std::ops::Range<u32>,
-    instances: std::ops::Range<u32>,
-) {
-    if let Some(points) = points.filter(|_| !vertices.is_empty() && !instances.is_empty()) {
-        pass.set_pipeline(pipeline);
-        pass.set_vertex_buffer(0, points);
-        pass.draw(vertices, instances);
-    }
-}
-
 /// The ground of a picture.
 pub(super) fn background(dark: bool) -> palette::Rgb {
     if dark { [26, 28, 32] } else { [243, 245, 248] }
-}
-
-fn colour(target: &Target, dark: bool) -> wgpu::RenderPassColorAttachment<'_> {
-    let [r, g, b] = background(dark).map(|c| f64::from(c) / 255.0);
-    wgpu::RenderPassColorAttachment {
-        view: target.many.as_ref().unwrap_or(&target.view),
-        depth_slice: None,
-        resolve_target: target.many.as_ref().map(|_| &target.view),
-        ops: wgpu::Operations {
-            load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-            store: if target.many.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
-        },
-    }
-}
-
-fn depth(target: &Target) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
-    wgpu::RenderPassDepthStencilAttachment { view: &target.depth, depth_ops: Some(ops), stencil_ops: None }
 }
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
