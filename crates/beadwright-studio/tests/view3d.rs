@@ -283,7 +283,7 @@ fn pictures() {
     let top = plan.layers.len() - 1;
     println!("{} segments, {} layers, strategy {}", scene.segments(), plan.layers.len(), plan.header.strategy);
     let mut view = View3d::default();
-    let mut shoot = |scene: &Scene, name: &str, side: StandardView, zoom: f64, style: Style| {
+    let shoot = |view: &mut View3d, scene: &Scene, name: &str, side: StandardView, zoom: f64, style: Style| {
         view.camera = Camera::default();
         view.camera.set_view(side);
         view.camera.fit_points(&scene.outline(), SIZE);
@@ -296,12 +296,19 @@ fn pictures() {
     };
     let plain = Style { mesh: false, ..Style::default() };
     use StandardView::{Front, Iso, Top};
-    shoot(&scene, "a-all.png", Iso, 1.0, plain.clone());
-    shoot(&scene, "b-layer.png", Top, 1.0, Style { layers: 3..=3, ..plain.clone() });
-    shoot(&scene, "c-close.png", Iso, 5.0, plain.clone());
-    shoot(&scene, "d-layer-close.png", Top, 6.0, Style { layers: 3..=3, ..plain.clone() });
-    shoot(&scene, "e-front.png", Front, 4.0, plain.clone());
-    shoot(&scene, "f-order-light.png", Iso, 1.0, Style { colour: Colour::Order, dark: false, ..plain.clone() });
+    shoot(&mut view, &scene, "a-all.png", Iso, 1.0, plain.clone());
+    shoot(&mut view, &scene, "b-layer.png", Top, 1.0, Style { layers: 3..=3, ..plain.clone() });
+    shoot(&mut view, &scene, "c-close.png", Iso, 5.0, plain.clone());
+    shoot(&mut view, &scene, "d-layer-close.png", Top, 6.0, Style { layers: 3..=3, ..plain.clone() });
+    shoot(&mut view, &scene, "e-front.png", Front, 4.0, plain.clone());
+    shoot(
+        &mut view,
+        &scene,
+        "f-order-light.png",
+        Iso,
+        1.0,
+        Style { colour: Colour::Order, dark: false, ..plain.clone() },
+    );
     let torch = scene.at_time(scene.total_seconds() * 0.4).unwrap();
     let playing = Style {
         travels: true,
@@ -312,25 +319,43 @@ fn pictures() {
         torch: Some(torch.point),
         ..plain.clone()
     };
-    shoot(&scene, "g-playing.png", Iso, 1.0, playing.clone());
-    shoot(&scene, "h-playing-light.png", Iso, 1.6, Style { dark: false, ..playing });
-    shoot(&scene, "i-mesh.png", Iso, 1.0, Style { beads: false, mesh: true, ..plain.clone() });
-    shoot(&scene, "j-mesh-light.png", Iso, 1.0, Style { beads: false, mesh: true, dark: false, ..plain.clone() });
+    shoot(&mut view, &scene, "g-playing.png", Iso, 1.0, playing.clone());
+    shoot(&mut view, &scene, "h-playing-light.png", Iso, 1.6, Style { dark: false, ..playing });
+    shoot(&mut view, &scene, "i-mesh.png", Iso, 1.0, Style { beads: false, mesh: true, ..plain.clone() });
+    shoot(
+        &mut view,
+        &scene,
+        "j-mesh-light.png",
+        Iso,
+        1.0,
+        Style { beads: false, mesh: true, dark: false, ..plain.clone() },
+    );
     let highlight =
         Some(Pick { layer: top, pass: 2, segment: scene.layer(top).unwrap().passes()[2].segments.start + 3 });
-    shoot(&scene, "k-highlight.png", Iso, 2.0, Style { highlight, colour: Colour::Time, ..plain.clone() });
+    shoot(&mut view, &scene, "k-highlight.png", Iso, 2.0, Style { highlight, colour: Colour::Time, ..plain.clone() });
     for index in 0..=top {
         let beads = scene.layer(index).unwrap();
         let wave = |b: &beadwright_studio::view3d::Bead| (b.from().x / 30.0).sin() * (b.from().y / 25.0).cos() * 0.4;
         let values: Arc<[f32]> = beads.beads().iter().map(wave).collect();
         scene.set_values(index, values);
     }
-    shoot(&scene, "l-error.png", Iso, 1.0, Style { colour: Colour::HeightError, ..plain.clone() });
+    shoot(&mut view, &scene, "l-error.png", Iso, 1.0, Style { colour: Colour::HeightError, ..plain.clone() });
+    let outline = scene.outline();
+    for (name, yaw, pitch, orthographic, layers) in [
+        ("n-below.png", -1.0, -0.5, false, 0..=top),
+        ("o-parallel.png", -1.57, 0.15, true, 0..=top),
+        ("p-far.png", -1.0, 0.6, false, 2..=5),
+    ] {
+        view.camera = Camera { yaw, pitch, orthographic, ..Camera::default() };
+        view.camera.fit_points(&outline, SIZE);
+        view.camera.distance *= if name == "p-far.png" { 6.0 } else { 1.0 };
+        save(name, &view.picture(&state, &scene, &Style { layers, ..plain.clone() }, [900, 700]).unwrap());
+    }
     for (part, strategy) in [("gear", "hybrid"), ("pot", "wall"), ("vase", "contour")] {
         let mut profile = profile.clone();
         strategy.clone_into(&mut profile.fill.strategy);
         let (_, scene) = planned(part, &profile);
-        shoot(&scene, &format!("m-{part}.png"), Iso, 1.0, plain.clone());
+        shoot(&mut view, &scene, &format!("m-{part}.png"), Iso, 1.0, plain.clone());
     }
 }
 
