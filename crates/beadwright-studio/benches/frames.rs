@@ -1,6 +1,7 @@
 //! Frame times of the 3-D view: `cargo bench -p beadwright-studio --bench frames [-- SEGMENTS…]`.
 //!
 //! The part is the vase, planned with a built-in profile, side by side until there are enough segments.
+//! *Far* shows all of it, *near* is four times nearer, where every segment is drawn; *moving* is what a drag shows.
 //! Prints a line for 200,000 and one for 1,000,000 segments, or for the numbers given. Works on any adapter.
 
 use beadwright::plan::{Layer, plan};
@@ -35,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let profile = Profile::built_in("cmt-al2319-kuka")?;
     let import = model::import(&example::find("vase").ok_or("there is no vase")?.stl(), &Task::default())?;
     let layers = plan("vase", &import.mesh, &profile, &Task::default())?.layers;
-    println!("segments  build  upload  frame full  moving  pick longest  VmHWM MiB");
+    println!("segments  build  upload  frame far  moving  near  pick longest  VmHWM MiB");
     for segments in wanted {
         measure(&state, &layers, &Pace::of(&profile), segments)?;
     }
@@ -52,7 +53,7 @@ fn measure(state: &RenderState, layers: &[Layer], pace: &Pace, segments: usize) 
     let size = DVec2::new(f64::from(PIXELS[0]), f64::from(PIXELS[1]));
     view.camera.fit(scene.bounds().ok_or("nothing is laid")?, size);
     let upload = view.time_frame(state, &scene, &style, PIXELS, false)?.upload;
-    let mut median = |moving: bool| -> Result<f64, String> {
+    let median = |view: &mut View3d, moving: bool| -> Result<f64, String> {
         let mut times = Vec::with_capacity(FRAMES);
         for _ in 0..FRAMES {
             view.camera.orbit(DVec2::new(11.0, 3.0));
@@ -61,15 +62,19 @@ fn measure(state: &RenderState, layers: &[Layer], pace: &Pace, segments: usize) 
         times.sort_by(f64::total_cmp);
         Ok(times[FRAMES / 2])
     };
-    let (full, moving) = (median(false)?, median(true)?);
+    let (full, moving) = (median(&mut view, false)?, median(&mut view, true)?);
+    let middle = view.camera.target;
+    view.camera.zoom(4.0, middle);
+    let near = median(&mut view, false)?;
     let longest = longest_pick(&scene, &style, &view, size);
     println!(
-        "{:8}  {:5.0}  {:6.0}  {:10.1}  {:6.1}  {longest:12.1}  {:9}",
+        "{:8}  {:5.0}  {:6.0}  {:9.1}  {:6.1}  {:4.0}  {longest:12.1}  {:9}",
         scene.segments(),
         build.as_secs_f64() * 1e3,
         upload * 1e3,
         full * 1e3,
         moving * 1e3,
+        near * 1e3,
         peak_mib(),
     );
     Ok(())
