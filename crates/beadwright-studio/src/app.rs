@@ -12,7 +12,7 @@ use crate::state::PlanState;
 use crate::text::Language;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
-use crate::view3d::View3d;
+use crate::view3d::{StandardView, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
@@ -203,7 +203,7 @@ impl Studio {
         self.project.seal();
         self.view.reset();
         self.flat.fit();
-        self.solid.fit_next();
+        self.solid.fit();
         self.replan();
     }
 
@@ -399,9 +399,12 @@ impl Studio {
             Action::Compare => self.view.mode = Mode::Compare,
             Action::Fit => {
                 self.flat.fit();
-                self.solid.fit_next();
+                self.solid.fit();
             }
-            Action::Top | Action::Front | Action::Right | Action::Corner => self.solid.look(action),
+            Action::Top => self.look(StandardView::Top),
+            Action::Front => self.look(StandardView::Front),
+            Action::Right => self.look(StandardView::Right),
+            Action::Corner => self.look(StandardView::Iso),
             Action::Up => self.view.step_layer(1, self.plan.layer_count()),
             Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
             Action::Play => self.view.playing = !self.view.playing && self.plan.summary.is_some(),
@@ -412,6 +415,26 @@ impl Studio {
             }
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    fn look(&mut self, from: StandardView) {
+        self.solid.camera.set_view(from);
+        self.solid.fit();
+    }
+
+    /// Writes a picture of the 3-D view.
+    pub fn save_picture(&mut self, path: &Path) {
+        const SIZE: [u32; 2] = [1920, 1200];
+        let Some(render_state) = &self.render_state else { return };
+        let style = panels::solid::style(self);
+        let picture = self.solid.picture(render_state, &self.plan.scene, &style, SIZE);
+        let written = picture.and_then(|(width, height, pixels)| {
+            image::save_buffer(path, &pixels, width, height, image::ColorType::Rgba8).map_err(|error| error.to_string())
+        });
+        match written {
+            Ok(()) => self.say(format!("{} {}", self.t("written"), path.display())),
+            Err(error) => self.complain(format!("{}: {error}", path.display())),
         }
     }
 

@@ -4,11 +4,12 @@
 //! it has read stays with it, so that a change of the profile does not read the model again.
 
 use crate::project::{Project, Source};
-use crate::view3d::beads::LayerBeads;
+use crate::view2d::height;
+use crate::view3d::{LayerBeads, Pace};
 use beadwright::check::{self, Finding};
 use beadwright::deposit::{Figures, Judge, Judgement};
 use beadwright::example;
-use beadwright::model::{Model, Part, PartError, Placement};
+use beadwright::model::{Mesh, Model, Part, PartError, Placement};
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Stage, Task};
@@ -25,8 +26,8 @@ const MAP_PIXELS: usize = 480;
 pub enum Event {
     /// How far a stage has come, 0 to 1.
     Progress(Stage, f64),
-    /// The model is read and placed; the profile it is planned with.
-    Part(Arc<Part>, Arc<Profile>),
+    /// The model is read and placed, with its mesh for the view; the profile it is planned with.
+    Part(Arc<Part>, Option<Arc<Mesh>>, Arc<Profile>),
     /// The layer in view, before the others.
     Preview(Arc<Layer>, Arc<LayerBeads>),
     /// The layers follow.
@@ -35,8 +36,8 @@ pub enum Event {
     Layer(Arc<Layer>, Arc<LayerBeads>),
     /// All layers are planned.
     Planned(Summary),
-    /// What the deposit model says of a layer.
-    Judged(usize, Arc<Judgement>),
+    /// What the deposit model says of a layer, and the height error at every piece, in nominal bead heights.
+    Judged(usize, Arc<Judgement>, Arc<[f32]>),
     /// What it says of all, and what the checks found.
     Checked(Figures, Vec<Finding>),
     /// Nothing more comes.
@@ -121,6 +122,7 @@ impl Drop for Planner {
 struct Kept {
     model: Option<(Source, Option<SystemTime>, Model)>,
     part: Option<(PartKey, Arc<Part>)>,
+    mesh: Option<(Arc<Part>, Arc<Mesh>)>,
 }
 
 /// What a placed part depends on, beside its model; the bead's width plays a part in the guess of units.
@@ -177,31 +179,47 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
     let profile = Profile::parse(&request.project.profile).map_err(|error| sentence(error.to_string()))?;
     let part = kept.part(&request.project, profile.bead.width, task)?;
     let profile = Arc::new(plan::profile_for(&part, &profile));
-    send(Event::Part(part.clone(), profile.clone()));
+    let known = kept.mesh.as_ref().filter(|(of, _)| Arc::ptr_eq(of, &part)).map(|(_, mesh)| mesh.clone());
+    let mesh = known.or_else(|| part.mesh().map(|mesh| Arc::new(mesh.clone())));
+    kept.mesh = mesh.clone().map(|mesh| (part.clone(), mesh));
+    send(Event::Part(part.clone(), mesh, profile.clone()));
     if let Some(layer) = plan::preview(&part, &profile, request.layer, task)? {
-        let beads = Arc::new(beads(&layer, &profile, None));
+        let beads = Arc::new(LayerBeads::of(&layer, &Pace::of(&profile), None));
         send(Event::Preview(Arc::new(layer), beads));
     }
-    let mut layers = Layers { send, profile: &profile, layers: Vec::new(), torch: None };
+    let mut layers = Layers { send, pace: Pace::of(&profile), layers: Vec::new(), torch: None };
     let summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
     let layers = layers.layers;
     send(Event::Planned(summary));
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
-    let each = |index: usize, judgement: Judgement| send(Event::Judged(index, Arc::new(judgement)));
+    let each = |index: usize, judgement: Judgement| {
+        let errors = errors(&layers[index], &judgement);
+        send(Event::Judged(index, Arc::new(judgement), errors));
+    };
     let judged = check::judge(&layers, judge, task, each)?;
     let total = judged.total;
     send(Event::Checked(total, check::check_judged(&layers, &profile, settings.nominal.rise, judged)));
     Ok(())
 }
 
-fn beads(layer: &Layer, profile: &Profile, from: Option<glam::DVec3>) -> LayerBeads {
-    LayerBeads::of(layer, profile.travel.speed, profile.travel.clearance, from)
+/// The height error in the middle of every piece, in nominal bead heights.
+fn errors(layer: &Layer, judgement: &Judgement) -> Arc<[f32]> {
+    let Some(map) = &judgement.picture else { return Arc::default() };
+    let at = |p: glam::DVec3| {
+        let pixel = ((p.truncate() - map.low) / map.pixel).floor();
+        let inside = pixel.cmpge(glam::DVec2::ZERO).all() && pixel.x < map.width as f64 && pixel.y < map.height as f64;
+        let value = inside.then(|| map.values.get(pixel.y as usize * map.width + pixel.x as usize)).flatten()?;
+        // A void has no height in the picture.
+        Some(height(*value).unwrap_or_default() - 1.0)
+    };
+    let pieces = layer.passes.iter().flat_map(|pass| pass.segments());
+    pieces.map(|s| at((s.from + s.to) / 2.0).unwrap_or_default() as f32).collect()
 }
 
 struct Layers<'a> {
     send: &'a (dyn Fn(Event) + Sync),
-    profile: &'a Profile,
+    pace: Pace,
     layers: Vec<Arc<Layer>>,
     torch: Option<glam::DVec3>,
 }
@@ -215,7 +233,7 @@ impl Sink for Layers<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        let beads = Arc::new(beads(&layer, self.profile, self.torch));
+        let beads = Arc::new(LayerBeads::of(&layer, &self.pace, self.torch));
         self.torch = beads.end().or(self.torch);
         let layer = Arc::new(layer);
         self.layers.push(layer.clone());

@@ -4,7 +4,7 @@ use crate::planner::{Event, Failure};
 use crate::view3d::Scene;
 use beadwright::check::Finding;
 use beadwright::deposit::{Figures, Judgement};
-use beadwright::model::Part;
+use beadwright::model::{Mesh, Part};
 use beadwright::plan::{Header, Layer, Summary};
 use beadwright::profile::Profile;
 use beadwright::task::Stage;
@@ -51,7 +51,7 @@ impl PlanState {
     pub fn take(&mut self, event: Event) {
         match event {
             Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
-            Event::Part(part, profile) => self.take_part(part, profile),
+            Event::Part(part, mesh, profile) => self.take_part(part, mesh, profile),
             Event::Preview(layer, beads) => {
                 self.clear_layers();
                 self.scene.set_layer(layer.index, beads);
@@ -66,7 +66,10 @@ impl PlanState {
                 self.layers.push(layer);
             }
             Event::Planned(summary) => self.summary = Some(summary),
-            Event::Judged(_, judgement) => self.judgements.push(judgement),
+            Event::Judged(index, judgement, errors) => {
+                self.scene.set_values(index, errors);
+                self.judgements.push(judgement);
+            }
             Event::Checked(total, findings) => {
                 self.total = Some(total);
                 self.findings = Some(findings);
@@ -79,13 +82,10 @@ impl PlanState {
         }
     }
 
-    fn take_part(&mut self, part: Arc<Part>, profile: Arc<Profile>) {
+    fn take_part(&mut self, part: Arc<Part>, mesh: Option<Arc<Mesh>>, profile: Arc<Profile>) {
         let same = self.part.as_ref().is_some_and(|old| Arc::ptr_eq(old, &part));
         if !same {
-            self.scene.set_mesh(match &*part {
-                Part::Mesh(import) => Some(Arc::new(import.mesh.clone())),
-                Part::Curves { .. } => None,
-            });
+            self.scene.set_mesh(mesh);
             self.clear_layers();
         }
         self.part = Some(part);

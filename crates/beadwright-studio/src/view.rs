@@ -48,10 +48,14 @@ pub struct ViewState {
     pub rate: f64,
     /// Where the torch is, s from the start of the program, while it plays.
     pub seconds: f64,
+    /// Where the torch is while it plays, mm.
+    pub torch: Option<glam::DVec3>,
     /// What colours tell.
     pub colour: Colour,
     /// Whether the part is shown.
     pub mesh: bool,
+    /// Whether lines that are parallel look so.
+    pub parallel: bool,
     /// What else is shown.
     pub show: Show,
     /// The chosen bead: layer, pass, piece.
@@ -79,8 +83,10 @@ impl Default for ViewState {
             playing: false,
             rate: 20.0,
             seconds: 0.0,
+            torch: None,
             colour: Colour::Kind,
             mesh: true,
+            parallel: false,
             show: Show::default(),
             chosen: None,
             dialect: "krl".to_owned(),
@@ -115,6 +121,7 @@ impl ViewState {
         self.first = self.first.min(layer);
         self.progress = 1.0;
         self.follows = false;
+        self.torch = None;
     }
 
     /// One layer up or down.

@@ -1,6 +1,6 @@
 //! The views in the middle of the window.
 
-use super::totals;
+use super::{solid, totals};
 use crate::app::Studio;
 use crate::jobs;
 use crate::state::PlanState;
@@ -20,16 +20,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             return;
         }
         match studio.view.mode {
-            Mode::Solid => solid(studio, ui),
+            Mode::Solid => solid::show(studio, ui),
             Mode::Layer => layer(studio, ui),
             Mode::Compare => compare(studio, ui),
         }
     });
-}
-
-fn solid(studio: &mut Studio, ui: &mut Ui) {
-    ui.horizontal_wrapped(|ui| crate::view3d::bar(studio, ui));
-    crate::view3d::show(studio, ui);
 }
 
 fn layer(studio: &mut Studio, ui: &mut Ui) {

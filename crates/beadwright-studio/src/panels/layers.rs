@@ -27,6 +27,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let word = if playing { studio.t("stop") } else { studio.t("play") };
         if ui.button(format!("{} {word}", if playing { "⏸" } else { "▶" })).clicked() {
             studio.act(Action::Play);
+            studio.view.torch = None;
             studio.view.seconds = studio.plan.scene.seconds_before(studio.view.last);
         }
         ui.spacing_mut().slider_width = (ui.available_width() / 2.0 - 190.0).max(60.0);
@@ -49,7 +50,9 @@ fn advance(studio: &mut Studio, ui: &Ui) {
     match studio.plan.scene.at_time(studio.view.seconds) {
         Some(at) => {
             studio.view.look_at(at.layer);
-            studio.view.progress = studio.plan.scene.part_of_layer(&at);
+            let pieces = studio.plan.scene.layer(at.layer).map_or(1, |layer| layer.len().max(1));
+            studio.view.progress = at.segment as f64 / pieces as f64;
+            studio.view.torch = Some(at.point);
             ui.ctx().request_repaint();
         }
         None => studio.view.playing = false,

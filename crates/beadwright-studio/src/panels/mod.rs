@@ -10,6 +10,7 @@ mod parameters;
 mod placement;
 mod plots;
 mod questions;
+pub(crate) mod solid;
 mod totals;
 
 use crate::app::Studio;

@@ -165,6 +165,14 @@ impl Part {
         }
     }
 
+    /// The solid; none for curves.
+    pub fn mesh(&self) -> Option<&Mesh> {
+        match self {
+            Self::Mesh(import) => Some(&import.mesh),
+            Self::Curves { .. } => None,
+        }
+    }
+
     /// What was mended; nothing for curves.
     pub fn repair(&self) -> RepairReport {
         match self {

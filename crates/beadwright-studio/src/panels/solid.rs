@@ -1,0 +1,116 @@
+//! The 3-D view with its bar and its legend.
+
+use crate::app::Studio;
+use crate::view3d::{Colour, Pick, Style, palette};
+use beadwright::fill::PassKind;
+use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
+
+/// What colours can tell, with their texts.
+const COLOURS: [(Colour, &str); 5] = [
+    (Colour::Kind, "colour-kind"),
+    (Colour::Order, "colour-order"),
+    (Colour::Speed, "colour-speed"),
+    (Colour::HeightError, "colour-height"),
+    (Colour::Time, "colour-time"),
+];
+
+pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| bar(studio, ui));
+    let style = style(studio);
+    studio.solid.no_adapter = studio.t("no-adapter").to_owned();
+    studio.solid.camera.orthographic = studio.view.parallel;
+    let label = studio.t("view-3d-label");
+    let shown = studio.solid.show(ui, studio.render_state.as_ref(), &studio.plan.scene, &style, label);
+    if shown.clicked {
+        studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
+    }
+}
+
+fn bar(studio: &mut Studio, ui: &mut Ui) {
+    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "parallel"].map(|key| studio.t(key));
+    let [mesh, beads, travels, starts, parallel] = texts;
+    ui.checkbox(&mut studio.view.mesh, mesh);
+    ui.checkbox(&mut studio.view.show.beads, beads);
+    ui.checkbox(&mut studio.view.show.travels, travels);
+    ui.checkbox(&mut studio.view.show.starts, starts);
+    ui.checkbox(&mut studio.view.parallel, parallel);
+    let label = ui.label(studio.t("colour"));
+    let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
+    let selected = studio.t(text(studio.view.colour));
+    let combo = ComboBox::from_id_salt("colour").selected_text(selected).show_ui(ui, |ui| {
+        for (colour, key) in COLOURS {
+            let text = studio.t(key);
+            ui.selectable_value(&mut studio.view.colour, colour, text);
+        }
+    });
+    combo.response.labelled_by(label.id);
+    legend(studio, ui);
+}
+
+/// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
+fn legend(studio: &Studio, ui: &mut Ui) {
+    let dark = !studio.settings.light;
+    if studio.view.colour == Colour::Kind {
+        let used = |kind| studio.plan.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
+        let kinds = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
+        for kind in kinds.into_iter().filter(|kind| used(*kind)) {
+            let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+            ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));
+            ui.label(kind.name());
+        }
+        return;
+    }
+    let Some((low, high)) = studio.plan.scene.value_range(studio.view.colour) else { return };
+    let unit = match studio.view.colour {
+        Colour::Speed => " mm/s",
+        Colour::Time => " s",
+        Colour::HeightError => " h",
+        _ => "",
+    };
+    ui.label(format!("{low:.1}{unit}"));
+    let (place, _) = ui.allocate_exact_size(vec2(120.0, 12.0), Sense::hover());
+    const STEPS: usize = 40;
+    for i in 0..STEPS {
+        let part = |i: usize| i as f64 / STEPS as f64;
+        let x = place.x_range();
+        let strip = Rect::from_x_y_ranges(
+            x.min + x.span() * part(i) as f32..=x.min + x.span() * part(i + 1) as f32,
+            place.y_range(),
+        );
+        ui.painter().rect_filled(strip, 0.0, colour(palette::at(studio.view.colour, part(i), dark)));
+    }
+    ui.label(format!("{high:.1}{unit}"));
+}
+
+fn colour([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+/// What is shown now.
+pub(crate) fn style(studio: &Studio) -> Style {
+    let view = &studio.view;
+    let pieces = studio.plan.scene.layer(view.last).map_or(0, |layer| layer.len());
+    Style {
+        colour: view.colour,
+        mesh: view.mesh,
+        travels: view.show.travels,
+        starts: view.show.starts,
+        beads: view.show.beads,
+        layers: view.first..=view.last,
+        segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
+        torch: view.torch,
+        highlight: view.chosen.and_then(|chosen| pick(studio, chosen)),
+        dark: !studio.settings.light,
+    }
+}
+
+/// A piece in the layer is one in its pass.
+fn chosen(studio: &Studio, pick: Pick) -> Option<(usize, usize, usize)> {
+    let span = studio.plan.scene.layer(pick.layer)?.passes().get(pick.pass)?;
+    Some((pick.layer, pick.pass, pick.segment - span.segments.start))
+}
+
+fn pick(studio: &Studio, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
+    let span = studio.plan.scene.layer(layer)?.passes().get(pass)?;
+    Some(Pick { layer, pass, segment: span.segments.start + piece })
+}

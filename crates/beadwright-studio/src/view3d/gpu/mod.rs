@@ -1,0 +1,265 @@
+//! The graphics card: what lies on it, and how a picture is made there.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `chunks` | the layers in print order |
+//! | `values` | what their colours are made of |
+//! | `draw` | the order in which things are drawn |
+//! | `surface` | the model and the torch |
+//! | `growing` | a buffer that grows at its end |
+//! | `globals` | what all shaders are told |
+//! | `pipelines` | how each kind of thing is drawn |
+//! | `target` | where it is drawn into |
+//! | `*.wgsl` | the shaders |
+
+mod chunks;
+mod draw;
+mod globals;
+mod growing;
+mod pipelines;
+mod surface;
+mod target;
+mod values;
+
+use super::camera::Camera;
+use super::palette;
+use super::scene::Scene;
+use super::style::{Colour, Style};
+use chunks::Chunk;
+use draw::Shot;
+use eframe::egui_wgpu::{RenderState, wgpu};
+use globals::Globals;
+use growing::Growing;
+use pipelines::Pipelines;
+use surface::Surface;
+pub(super) use target::Target;
+use wgpu::util::DeviceExt as _;
+
+/// How fine a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Quality {
+    /// Strips across a bead.
+    pub strips: u32,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Whether every segment is drawn, and not rough ones.
+    pub exact: bool,
+    /// Whether ends and corners are round.
+    pub caps: bool,
+}
+
+/// Beads as they are, a pass that stands out, and a segment that stands out.
+const LOOKS: usize = 3;
+
+/// How much of the colour of what stands out is laid over the beads.
+const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
+
+/// The colour of what stands out.
+const ACCENT: [f32; 3] = [1.0, 0.20, 0.56];
+
+/// All that lies on the graphics card.
+#[derive(Debug)]
+pub(super) struct Gpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// Whether there is no graphics card but a processor that draws.
+    pub software: bool,
+    layout: wgpu::BindGroupLayout,
+    globals: [wgpu::Buffer; LOOKS],
+    bindings: [wgpu::BindGroup; LOOKS],
+    map: wgpu::Texture,
+    map_of: Option<(Colour, bool)>,
+    /// Coarse and fine.
+    fans: [(wgpu::Buffer, u32); 2],
+    pipelines: Vec<Pipelines>,
+    chunks: Vec<Chunk>,
+    synced: Option<(u64, Colour)>,
+    surface: Option<Surface>,
+    surface_version: Option<u64>,
+    torch: Growing,
+}
+
+impl Gpu {
+    pub(super) fn new(state: &RenderState) -> Self {
+        let (device, queue) = (state.device.clone(), state.queue.clone());
+        let layout = layout(&device);
+        let map = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("colour map"),
+            size: wgpu::Extent3d { width: palette::STEPS as u32, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let globals = std::array::from_fn(|_| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("globals"),
+                size: size_of::<Globals>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        let view = map.create_view(&wgpu::TextureViewDescriptor::default());
+        let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &view));
+        Self {
+            software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            fans: [fan(&device, 10, &[2]), fan(&device, 20, &[1, 2])],
+            device,
+            queue,
+            layout,
+            globals,
+            bindings,
+            map,
+            map_of: None,
+            pipelines: Vec::new(),
+            chunks: Vec::new(),
+            synced: None,
+            surface: None,
+            surface_version: None,
+            torch: Growing::new("torch"),
+        }
+    }
+
+    /// A place for a picture of that many pixels, as near to it as the card allows.
+    pub(super) fn target(&self, pixels: [u32; 2], samples: u32) -> Target {
+        let most = self.device.limits().max_texture_dimension_2d;
+        Target::new(&self.device, pixels.map(|n| n.clamp(1, most)), samples)
+    }
+
+    /// Sends what has changed since the last picture.
+    pub(super) fn sync(&mut self, scene: &Scene, style: &Style) {
+        let state = (scene.version(), style.colour);
+        if self.synced != Some(state) {
+            chunks::sync(&mut self.chunks, (&self.device, &self.queue), scene, style.colour);
+            self.synced = Some(state);
+        }
+        if self.surface_version != Some(scene.mesh_version()) {
+            self.surface_version = Some(scene.mesh_version());
+            self.surface = scene.mesh().and_then(|mesh| Surface::new(&self.device, mesh));
+        }
+        if self.map_of != Some((style.colour, style.dark)) {
+            self.map_of = Some((style.colour, style.dark));
+            let colours = palette::map(style.colour, style.dark);
+            let texels: Vec<u8> = colours.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+            let row = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(texels.len() as u32),
+                rows_per_image: None,
+            };
+            self.queue.write_texture(self.map.as_image_copy(), &texels, row, self.map.size());
+        }
+    }
+
+    /// Renders a picture.
+    pub(super) fn draw(&mut self, scene: &Scene, style: &Style, camera: &Camera, quality: Quality, target: &Target) {
+        self.sync(scene, style);
+        let mut globals = Globals::new(scene, style, camera, target.pixels, quality.strips);
+        for (buffer, part) in self.globals.iter().zip(ACCENTS) {
+            let [r, g, b] = ACCENT;
+            globals.accent = [r, g, b, part];
+            self.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
+        }
+        let torch = style.torch.map(surface::torch).unwrap_or_default();
+        self.torch.write((&self.device, &self.queue), 0, &torch);
+        if !self.pipelines.iter().any(|p| p.samples == target.samples) {
+            self.pipelines.push(Pipelines::new(&self.device, &self.layout, target.samples));
+        }
+        let mut encoder =
+            self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("3-D view") });
+        if let Some(pipelines) = self.pipelines.iter().find(|p| p.samples == target.samples) {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("3-D view"),
+                color_attachments: &[Some(draw::colour(target, style.dark))],
+                depth_stencil_attachment: Some(draw::depth(target)),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &self.bindings[0], &[]);
+            let (from_above, torch_vertices) = (camera.pitch > 0.0, torch.len() as u32);
+            Shot { gpu: self, pipelines, scene, style, quality, from_above, torch_vertices }.draw(&mut pass);
+        }
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// The fan that fits the strips of a ribbon: it goes through the same points.
+    fn fan(&self, quality: Quality) -> &(wgpu::Buffer, u32) {
+        &self.fans[usize::from(quality.strips > 2)]
+    }
+
+    /// Waits until all that was drawn is done.
+    pub(super) fn wait(&self) -> Result<(), String> {
+        target::wait(&self.device)
+    }
+
+    /// The pixels of a picture, row by row: red, green, blue, alpha.
+    pub(super) fn read(&self, target: &Target) -> Result<Vec<u8>, String> {
+        target.read(&self.device, &self.queue)
+    }
+}
+
+/// The triangles of a cap seen from the viewer, from the middle through rings to the rim; with their number of indices.
+/// An index is the ring (2 is the rim) × 256 + the angle in steps of 1.5°.
+fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) {
+    let vertex = |ring: u16, side: u16| ring << 8 | (side % sides * (240 / sides));
+    let mut indices: Vec<u16> = Vec::new();
+    for side in 0..sides {
+        let mut inner = 0;
+        for &ring in rings {
+            let (a, b) = (vertex(ring, side), vertex(ring, side + 1));
+            if inner == 0 {
+                indices.extend([0, a, b]);
+            } else {
+                indices.extend([vertex(inner, side), a, b, vertex(inner, side), b, vertex(inner, side + 1)]);
+            }
+            inner = ring;
+        }
+    }
+    let (contents, usage) = (bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
+    let buffer = wgpu::util::BufferInitDescriptor { label: Some("fan"), contents, usage };
+    (device.create_buffer_init(&buffer), indices.len() as u32)
+}
+
+/// The ground of a picture.
+pub(super) fn background(dark: bool) -> palette::Rgb {
+    if dark { [26, 28, 32] } else { [243, 245, 248] }
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    };
+    let globals = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let map = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("3-D view"),
+        entries: &[entry(0, globals), entry(1, map)],
+    })
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    globals: &wgpu::Buffer,
+    map: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("3-D view"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: globals.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(map) },
+        ],
+    })
+}

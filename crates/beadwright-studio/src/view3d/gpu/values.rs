@@ -1,0 +1,92 @@
+//! The values that colours are made of, sent when the beads, what is shown of them, or what came before them changed.
+
+use super::chunks::{Card, Chunk, Counts};
+use super::growing::Growing;
+use crate::view3d::beads::LayerBeads;
+use crate::view3d::palette::KINDS;
+use crate::view3d::scene::Scene;
+use crate::view3d::style::Colour;
+
+/// Stands for a segment without a value.
+const MISSING: f32 = -2e30;
+
+/// What the values of a layer depend on besides the layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ValueKey {
+    colour: Colour,
+    segments_before: usize,
+    seconds_before: f64,
+    supplied: u64,
+}
+
+/// Sends the values of all layers for which they have changed.
+pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, colour: Colour) {
+    let (mut segments, mut seconds) = (0, 0.0);
+    for chunk in chunks {
+        let (mut begin, mut run) = (Counts::default(), Run::default());
+        for slot in &mut chunk.slots {
+            let (here, ends) = (begin, slot.ends);
+            begin = ends;
+            let Some(layer) = scene.layer(slot.layer) else { continue };
+            let supplied = scene.values(slot.layer).filter(|_| colour == Colour::HeightError);
+            let key = ValueKey {
+                colour,
+                segments_before: if colour == Colour::Order { segments } else { 0 },
+                seconds_before: if colour == Colour::Time { seconds } else { 0.0 },
+                supplied: supplied.map_or(0, |values| values.id),
+            };
+            segments += layer.len();
+            seconds += layer.seconds();
+            if slot.values.replace(key) == Some(key) {
+                run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
+                continue;
+            }
+            if run.beads.is_empty() {
+                run.first = here;
+            }
+            let from = run.beads.len();
+            values_of(layer, &key, supplied.map(|values| &*values.of), &mut run.beads);
+            run.caps.extend(layer.cap_segments.iter().map(|&s| run.beads[from + s as usize]));
+            run.rough.extend(layer.rough_segments.iter().map(|&s| run.beads[from + s as usize]));
+        }
+        run.send(card, [&mut chunk.bead_values, &mut chunk.rough_values, &mut chunk.cap_values]);
+    }
+}
+
+/// Values of layers that lie one behind another, to be sent together.
+#[derive(Default)]
+struct Run {
+    first: Counts,
+    beads: Vec<f32>,
+    rough: Vec<f32>,
+    caps: Vec<f32>,
+}
+
+impl Run {
+    fn send(&mut self, card: Card<'_>, [beads, rough, caps]: [&mut Growing; 3]) {
+        beads.write(card, self.first.beads, &self.beads);
+        rough.write(card, self.first.rough, &self.rough);
+        caps.write(card, self.first.caps, &self.caps);
+        self.beads.clear();
+        self.rough.clear();
+        self.caps.clear();
+    }
+}
+
+fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: &mut Vec<f32>) {
+    match key.colour {
+        Colour::Speed => out.extend(&layer.speeds),
+        Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
+        Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
+        Colour::HeightError => out.extend((0..layer.len()).map(|i| {
+            let value = supplied.and_then(|values| values.get(i)).copied().unwrap_or(MISSING);
+            if value.is_finite() { value } else { MISSING }
+        })),
+        Colour::Kind => {
+            for pass in layer.passes() {
+                let kind = KINDS.iter().position(|k| *k == pass.kind).unwrap_or_default();
+                out.extend(std::iter::repeat_n(kind as f32, pass.segments.len()));
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The 3-D view: model, beads, travels and torch, rendered by wgpu and shown as an egui image.
+//!
+//! A [`Scene`] holds what there is to see, a [`Style`] what of it is shown and how, a [`Camera`] from where.
+//! [`View3d::show`] is the widget and [`View3d::picture`] the same as pixels. Nothing is rendered while nothing changes.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `beads` | one layer as it is drawn and timed |
+//! | `pace` | how fast the torch goes between passes |
+//! | `scene` | the model and the layers that have come |
+//! | `style`, [`palette`] | what is shown, in which colours |
+//! | `camera` | where the eye is |
+//! | `pick` | which segment is under the pointer |
+//! | `gpu` | buffers, shaders, pictures |
+//! | `widget` | the pointer turns and picks; frames are kept |
+//! | `overlay` | axes and scale bar |
+//! | `headless` | a renderer without a window |
+
+mod beads;
+mod camera;
+mod gpu;
+mod headless;
+mod overlay;
+mod pace;
+pub mod palette;
+mod pick;
+mod scene;
+mod style;
+mod widget;
+
+pub use beads::{Bead, LayerBeads, PassSpan};
+pub use camera::{Camera, StandardView};
+pub use headless::headless;
+pub use pace::Pace;
+pub use pick::{Pick, pick};
+pub use scene::{Position, Scene};
+pub use style::{Colour, Style};
+pub use widget::{Shown, Timing, View3d};

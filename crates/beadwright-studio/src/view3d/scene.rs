@@ -1,0 +1,215 @@
+//! What there is to see: a model, and the layers planned so far.
+
+use super::beads::{LayerBeads, fresh_id};
+use super::pace::along;
+use super::style::Colour;
+use beadwright::model::Mesh;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// Values for the segments of a layer.
+#[derive(Debug, Clone)]
+pub(super) struct Values {
+    pub id: u64,
+    pub of: Arc<[f32]>,
+}
+
+/// A model, and its layers as they come in.
+#[derive(Debug, Default)]
+pub struct Scene {
+    mesh: Option<Arc<Mesh>>,
+    layers: Vec<Option<Arc<LayerBeads>>>,
+    values: Vec<Option<Values>>,
+    version: u64,
+    mesh_version: u64,
+}
+
+/// Sides of the prism of [`Scene::outline`].
+const SIDES: usize = 16;
+
+fn side_normal(side: usize) -> DVec2 {
+    DVec2::from_angle(side as f64 * std::f64::consts::TAU / SIDES as f64)
+}
+
+/// Where the torch is at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Position {
+    /// The layer, from 0.
+    pub layer: usize,
+    /// The segment that is being laid, or that is laid next; the number of segments of the layer that are done.
+    pub segment: usize,
+    /// The torch, mm.
+    pub point: DVec3,
+    /// Whether the arc is on.
+    pub arc: bool,
+}
+
+impl Scene {
+    /// Forgets model and layers.
+    pub fn clear(&mut self) {
+        *self = Self { version: fresh_id(), mesh_version: fresh_id(), ..Self::default() };
+    }
+
+    /// Forgets the layers.
+    pub fn clear_layers(&mut self) {
+        self.layers.clear();
+        self.values.clear();
+        self.version = fresh_id();
+    }
+
+    /// Sets the model, mm.
+    pub fn set_mesh(&mut self, mesh: Option<Arc<Mesh>>) {
+        self.mesh = mesh;
+        (self.version, self.mesh_version) = (fresh_id(), fresh_id());
+    }
+
+    /// Sets the layer of that index, in any order.
+    pub fn set_layer(&mut self, index: usize, beads: Arc<LayerBeads>) {
+        let count = self.layers.len().max(index + 1);
+        self.layers.resize(count, None);
+        self.values.resize(count, None);
+        self.layers[index] = Some(beads);
+        self.values[index] = None;
+        self.version = fresh_id();
+    }
+
+    /// Sets a value for each segment of a layer that is there: the error of the height, mm; not a number where it is
+    /// not known.
+    pub fn set_values(&mut self, index: usize, values: Arc<[f32]>) {
+        if let Some(place) = self.values.get_mut(index) {
+            *place = Some(Values { id: fresh_id(), of: values });
+            self.version = fresh_id();
+        }
+    }
+
+    /// The model.
+    pub fn mesh(&self) -> Option<&Arc<Mesh>> {
+        self.mesh.as_ref()
+    }
+
+    /// The layers; `None` for those that have not come yet.
+    pub fn layers(&self) -> &[Option<Arc<LayerBeads>>] {
+        &self.layers
+    }
+
+    /// The layer of that index.
+    pub fn layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
+        self.layers.get(index)?.as_ref()
+    }
+
+    /// The layers that are there, with their indices.
+    pub(super) fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
+        self.layers.iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
+    }
+
+    pub(super) fn values(&self, index: usize) -> Option<&Values> {
+        self.values.get(index)?.as_ref()
+    }
+
+    pub(super) fn version(&self) -> u64 {
+        self.version
+    }
+
+    pub(super) fn mesh_version(&self) -> u64 {
+        self.mesh_version
+    }
+
+    /// Lowest and highest corner of model and beads, mm.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let mesh = self.mesh.as_ref().filter(|mesh| !mesh.vertices.is_empty()).map(|mesh| mesh.bounds());
+        let beads = self.present().filter_map(|(_, layer)| layer.bounds());
+        let beads = beads.map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
+        mesh.into_iter().chain(beads).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
+    /// Corners of an upright prism of 16 sides around model and beads, mm: what a camera has to see.
+    pub fn outline(&self) -> Vec<DVec3> {
+        let Some((low, high)) = self.bounds() else { return Vec::new() };
+        let mut reach = [f64::NEG_INFINITY; SIDES];
+        let mut add = |point: DVec3, radius: f64| {
+            for (side, reach) in reach.iter_mut().enumerate() {
+                *reach = reach.max(point.truncate().dot(side_normal(side)) + radius);
+            }
+        };
+        self.mesh.iter().flat_map(|mesh| &mesh.vertices).for_each(|&vertex| add(vertex, 0.0));
+        for bead in self.present().flat_map(|(_, layer)| layer.beads()) {
+            add(bead.from().as_dvec3(), f64::from(bead.width()) / 2.0);
+            add(bead.to().as_dvec3(), f64::from(bead.width()) / 2.0);
+        }
+        let corner = |side: usize| {
+            let (a, b) = (side_normal(side), side_normal((side + 1) % SIDES));
+            let (p, q) = (reach[side], reach[(side + 1) % SIDES]);
+            DVec2::new(p * b.y - q * a.y, a.x * q - b.x * p) / a.perp_dot(b)
+        };
+        (0..SIDES).flat_map(|side| [corner(side).extend(low.z), corner(side).extend(high.z)]).collect()
+    }
+
+    /// Number of segments.
+    pub fn segments(&self) -> usize {
+        self.present().map(|(_, layer)| layer.len()).sum()
+    }
+
+    /// Time of all layers, s.
+    pub fn total_seconds(&self) -> f64 {
+        self.present().map(|(_, layer)| layer.seconds()).sum()
+    }
+
+    /// When a layer begins, s.
+    pub fn seconds_before(&self, layer: usize) -> f64 {
+        self.present().take_while(|(i, _)| *i < layer).map(|(_, beads)| beads.seconds()).sum()
+    }
+
+    /// Where the torch is after that many seconds; at the end of the last layer after all of them.
+    pub fn at_time(&self, seconds: f64) -> Option<Position> {
+        let mut left = seconds.max(0.0);
+        let last = self.present().rfind(|(_, layer)| !layer.is_empty())?.0;
+        for (index, layer) in self.present() {
+            if left < layer.seconds() || index == last {
+                return position(index, layer, left.min(layer.seconds()));
+            }
+            left -= layer.seconds();
+        }
+        None
+    }
+
+    /// The values at the two ends of a colour map; `None` for kinds, and where there is nothing to show.
+    pub fn value_range(&self, colour: Colour) -> Option<(f64, f64)> {
+        match colour {
+            Colour::Kind => None,
+            Colour::Order => Some((0.0, self.segments() as f64)),
+            Colour::Time => Some((0.0, self.total_seconds())),
+            Colour::Speed => {
+                let ranges = self.present().filter(|(_, l)| !l.is_empty()).map(|(_, l)| l.speed_range());
+                let range = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
+                range.map(|(low, high)| (f64::from(low), f64::from(high)))
+            }
+            Colour::HeightError => {
+                let values = self.values.iter().flatten().flat_map(|values| values.of.iter());
+                let most = values.filter(|v| v.is_finite()).fold(0.0_f32, |most, v| most.max(v.abs()));
+                (most > 0.0).then_some((f64::from(-most), f64::from(most)))
+            }
+        }
+    }
+}
+
+fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> {
+    let number = layer.passes().partition_point(|p| p.end <= seconds).min(layer.passes().len().checked_sub(1)?);
+    let pass = layer.passes().get(number)?;
+    let at = |segment: usize, point: DVec3, arc: bool| Some(Position { layer: index, segment, point, arc });
+    if seconds < pass.arrival
+        && let Some(legs) = pass.travel
+    {
+        let part = (seconds - pass.travel_start) / (pass.arrival - pass.travel_start);
+        return at(pass.segments.start, along(&legs, part)?, false);
+    }
+    let ends = &layer.ends[pass.segments.clone()];
+    let segment = pass.segments.start + ends.partition_point(|&end| f64::from(end) <= seconds);
+    if segment >= pass.segments.end {
+        // All of it is laid; the torch waits for the gas.
+        let last = layer.beads().get(pass.segments.end.checked_sub(1)?)?;
+        return at(pass.segments.end, last.to().as_dvec3(), false);
+    }
+    let ((begin, end), bead) = (layer.times(segment)?, layer.beads().get(segment)?);
+    let part = if end > begin { ((seconds - begin) / (end - begin)).clamp(0.0, 1.0) } else { 1.0 };
+    at(segment, bead.from().as_dvec3().lerp(bead.to().as_dvec3(), part), seconds >= pass.arc_start)
+}

@@ -1,0 +1,74 @@
+//! What of the scene is shown, and in which colours.
+
+use super::pick::Pick;
+use glam::DVec3;
+use std::ops::RangeInclusive;
+
+/// What the colour of a bead means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Colour {
+    /// The kind of its pass.
+    #[default]
+    Kind,
+    /// The order of deposition.
+    Order,
+    /// The deposition speed, mm/s.
+    Speed,
+    /// The error of the height, mm, as given to [`super::Scene::set_values`].
+    HeightError,
+    /// The time since the start of the program, s.
+    Time,
+}
+
+/// What is shown and how. A picture is rendered again only when this, the camera, the size or the scene changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    /// What the colour of a bead means.
+    pub colour: Colour,
+    /// Whether the model is shown: solid by itself, translucent around beads.
+    pub mesh: bool,
+    /// Whether moves without arc are shown.
+    pub travels: bool,
+    /// Whether starts and ends of passes are marked.
+    pub starts: bool,
+    /// Whether beads are shown.
+    pub beads: bool,
+    /// The layers shown, from 0.
+    pub layers: RangeInclusive<usize>,
+    /// How many segments of the last of those layers are shown; all where `None`.
+    pub segments_of_last: Option<usize>,
+    /// Where the torch is drawn, mm.
+    pub torch: Option<DVec3>,
+    /// The pass that stands out, and in it a segment.
+    pub highlight: Option<Pick>,
+    /// Whether the theme is dark.
+    pub dark: bool,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            colour: Colour::Kind,
+            mesh: true,
+            travels: false,
+            starts: false,
+            beads: true,
+            layers: 0..=usize::MAX,
+            segments_of_last: None,
+            torch: None,
+            highlight: None,
+            dark: true,
+        }
+    }
+}
+
+impl Style {
+    /// How many of the `segments` of a layer are shown.
+    pub(super) fn shown(&self, layer: usize, segments: usize) -> usize {
+        if !self.layers.contains(&layer) {
+            return 0;
+        }
+        let last = layer == *self.layers.end();
+        self.segments_of_last.filter(|_| last).map_or(segments, |limit| limit.min(segments))
+    }
+}

@@ -1,0 +1,309 @@
+//! The widget: the pointer turns, moves, zooms and picks, and a picture is rendered when something changed.
+
+use super::beads::ROUGH;
+use super::camera::Camera;
+use super::gpu::{Gpu, Quality, Target};
+use super::pick::{Pick, pick};
+use super::scene::Scene;
+use super::style::Style;
+use super::{gpu, overlay};
+use eframe::egui::{self, Color32, PointerButton, Rect, Sense, Ui, WidgetInfo, pos2};
+use eframe::egui_wgpu::{RenderState, wgpu};
+use glam::DVec2;
+use std::time::Instant;
+
+/// After the last turn of the wheel the picture is coarse for this long, s.
+const SETTLE: f64 = 0.2;
+
+/// Scenes of more segments are drawn coarsely while they move: with a graphics card, and without.
+const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
+
+/// Scenes of fewer segments get four samples a pixel on a processor too, once they stand still.
+const SMOOTH_BELOW: usize = 60_000;
+
+/// With more segments nothing is said about the bead under the pointer before it is clicked.
+const HOVER_BELOW: usize = 400_000;
+
+/// What happened in the view.
+#[derive(Debug)]
+pub struct Shown {
+    /// The segment that was clicked.
+    pub picked: Option<Pick>,
+    /// Whether the view was clicked, on a bead or beside all.
+    pub clicked: bool,
+    /// The segment under the resting pointer.
+    pub hovered: Option<Pick>,
+    /// Whether a picture was rendered in this frame.
+    pub rendered: bool,
+    /// The widget, for menus and tooltips.
+    pub response: egui::Response,
+}
+
+/// How long making a picture took, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Sending what changed.
+    pub upload: f64,
+    /// Rendering, until it was done.
+    pub render: f64,
+}
+
+/// All that decides a picture.
+#[derive(Debug, Clone, PartialEq)]
+struct Key {
+    camera: Camera,
+    pixels: [u32; 2],
+    style: Style,
+    version: u64,
+    quality: Quality,
+}
+
+/// A picture that egui can show.
+#[derive(Debug)]
+struct Frame {
+    target: Target,
+    texture: egui::TextureId,
+    key: Option<Key>,
+}
+
+/// The 3-D view. It keeps its buffers and its last picture.
+#[derive(Debug)]
+pub struct View3d {
+    /// Where the eye is.
+    pub camera: Camera,
+    /// What is shown where there is nothing to draw with.
+    pub no_adapter: String,
+    gpu: Option<Gpu>,
+    /// The fine and the coarse picture.
+    frames: [Option<Frame>; 2],
+    fit: bool,
+    wheel_at: f64,
+    hovered: Option<(Key, egui::Pos2, Option<Pick>)>,
+}
+
+impl Default for View3d {
+    fn default() -> Self {
+        Self {
+            camera: Camera::default(),
+            no_adapter: "The 3-D view needs a graphics adapter with Vulkan, Metal, Direct3D 12 or OpenGL; none was \
+                         found. Everything else works without it."
+                .to_owned(),
+            gpu: None,
+            frames: [None, None],
+            fit: true,
+            wheel_at: f64::NEG_INFINITY,
+            hovered: None,
+        }
+    }
+}
+
+impl View3d {
+    /// Fills the picture with the scene when it is shown next, or as soon as there is one.
+    pub fn fit(&mut self) {
+        self.fit = true;
+    }
+
+    /// The widget: it takes all the space there is. `label` is its name for those who do not see it.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        state: Option<&RenderState>,
+        scene: &Scene,
+        style: &Style,
+        label: &str,
+    ) -> Shown {
+        let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, label));
+        let rect = response.rect;
+        let size = DVec2::new(f64::from(rect.width().max(1.0)), f64::from(rect.height().max(1.0)));
+        let moving = self.steer(ui, &response, size);
+        if response.double_clicked() {
+            self.fit = true;
+        }
+        if self.fit && scene.bounds().is_some() {
+            self.camera.fit_points(&scene.outline(), size);
+            self.fit = false;
+        }
+        let mut shown = Shown { picked: None, clicked: response.clicked(), hovered: None, rendered: false, response };
+        let Some(state) = state else {
+            self.say_no_adapter(ui, rect, style.dark);
+            return shown;
+        };
+        let scale = ui.ctx().pixels_per_point();
+        let pixels = [rect.width(), rect.height()].map(|length| ((length * scale).round() as u32).max(1));
+        let (texture, key, rendered) = self.frame(state, scene, style, pixels, moving);
+        shown.rendered = rendered;
+        let painter = ui.painter().with_clip_rect(rect);
+        painter.image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        overlay::paint(&painter, rect, &self.camera, style.dark);
+        let at = |pos: egui::Pos2| DVec2::new(f64::from(pos.x - rect.left()), f64::from(pos.y - rect.top()));
+        if shown.clicked {
+            let pos = shown.response.interact_pointer_pos();
+            shown.picked = pos.and_then(|pos| pick(scene, style, &self.camera, size, at(pos)));
+        }
+        if let Some(pos) = shown.response.hover_pos().filter(|_| !moving && scene.segments() < HOVER_BELOW) {
+            let camera = self.camera;
+            shown.hovered = self.hover(key, pos, || pick(scene, style, &camera, size, at(pos)));
+        }
+        shown
+    }
+
+    /// Turns, moves and zooms as the pointer says; tells whether the view is in motion.
+    fn steer(&mut self, ui: &Ui, response: &egui::Response, size: DVec2) -> bool {
+        let drag = response.drag_delta();
+        let drag = DVec2::new(f64::from(drag.x), f64::from(drag.y));
+        let shift = ui.input(|input| input.modifiers.shift);
+        let pans = response.dragged_by(PointerButton::Secondary)
+            || response.dragged_by(PointerButton::Middle)
+            || (shift && response.dragged_by(PointerButton::Primary));
+        if pans {
+            self.camera.pan(drag, size);
+        } else if response.dragged_by(PointerButton::Primary) {
+            self.camera.orbit(drag);
+        }
+        let (wheel, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
+        let factor = f64::from(pinch) * (f64::from(wheel) * 0.004).exp();
+        if let Some(pos) = response.hover_pos().filter(|_| factor != 1.0) {
+            let at = pos - response.rect.min;
+            let under = self.camera.unproject(DVec2::new(f64::from(at.x), f64::from(at.y)), size);
+            self.camera.zoom(factor, under);
+            self.wheel_at = now;
+        }
+        let settling = now - self.wheel_at < SETTLE;
+        if settling {
+            // So that the fine picture follows.
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(SETTLE));
+        }
+        response.dragged() || settling
+    }
+
+    /// The picture, rendered again if anything changed: its texture, what it shows, and whether it is new.
+    fn frame(
+        &mut self,
+        state: &RenderState,
+        scene: &Scene,
+        style: &Style,
+        pixels: [u32; 2],
+        moving: bool,
+    ) -> (egui::TextureId, Key, bool) {
+        let camera = self.camera;
+        let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
+        let coarse = moving && scene.segments() > COARSE_FROM[usize::from(gpu.software)];
+        // Rough beads look the same from far away.
+        let pixel = camera.height() / f64::from(pixels[1]);
+        let exact = scene.segments() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
+        let quality =
+            if coarse { coarse_quality() } else { fine_quality(gpu.software, moving, scene.segments(), exact) };
+        // Software draws a quarter of the pixels while it moves.
+        let pixels = if coarse && gpu.software { pixels.map(|n| n.div_ceil(2)) } else { pixels };
+        let key = Key { camera, pixels, style: style.clone(), version: scene.version(), quality };
+        let frame = &mut self.frames[usize::from(coarse)];
+        let fits = |frame: &Frame| frame.target.pixels == pixels && frame.target.samples == quality.samples;
+        if !frame.as_ref().is_some_and(fits) {
+            let target = gpu.target(pixels, quality.samples);
+            let texture = register(state, &target, frame.as_ref().map(|frame| frame.texture));
+            *frame = Some(Frame { target, texture, key: None });
+        }
+        let Some(frame) = frame else { return (egui::TextureId::default(), key, false) };
+        let stale = frame.key.as_ref() != Some(&key);
+        if stale {
+            gpu.draw(scene, style, &camera, quality, &frame.target);
+            frame.key = Some(key.clone());
+        }
+        (frame.texture, key, stale)
+    }
+
+    /// What lies under the resting pointer; searched once.
+    fn hover(&mut self, key: Key, pos: egui::Pos2, search: impl FnOnce() -> Option<Pick>) -> Option<Pick> {
+        if let Some((of, at, found)) = &self.hovered
+            && *at == pos
+            && (of.camera, of.version, &of.style.layers, of.style.segments_of_last)
+                == (key.camera, key.version, &key.style.layers, key.style.segments_of_last)
+        {
+            return *found;
+        }
+        let found = search();
+        self.hovered = Some((key, pos, found));
+        found
+    }
+
+    fn say_no_adapter(&self, ui: &mut Ui, rect: Rect, dark: bool) {
+        let [r, g, b] = gpu::background(dark);
+        ui.painter().rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+        let inner = rect.shrink2(egui::vec2(rect.width() * 0.1, rect.height() * 0.4));
+        ui.put(inner, egui::Label::new(&self.no_adapter));
+    }
+
+    /// The picture as the camera sees it: width, height, and rows of red, green, blue, alpha.
+    ///
+    /// # Errors
+    /// A sentence where the graphics card does not give it.
+    pub fn picture(
+        &mut self,
+        state: &RenderState,
+        scene: &Scene,
+        style: &Style,
+        size: [u32; 2],
+    ) -> Result<(u32, u32, Vec<u8>), String> {
+        let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
+        let target = gpu.target(size, 4);
+        let quality = Quality { strips: 4, samples: 4, exact: true, caps: true };
+        gpu.draw(scene, style, &self.camera, quality, &target);
+        Ok((target.pixels[0], target.pixels[1], gpu.read(&target)?))
+    }
+
+    /// Renders a picture as the widget would, without showing it, and tells how long it took.
+    ///
+    /// # Errors
+    /// A sentence where the graphics card does not answer.
+    pub fn time_frame(
+        &mut self,
+        state: &RenderState,
+        scene: &Scene,
+        style: &Style,
+        size: [u32; 2],
+        moving: bool,
+    ) -> Result<Timing, String> {
+        let clock = Instant::now();
+        let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
+        gpu.sync(scene, style);
+        gpu.wait()?;
+        let upload = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        self.frame(state, scene, style, size, moving);
+        let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
+        gpu.wait()?;
+        Ok(Timing { upload, render: clock.elapsed().as_secs_f64() })
+    }
+}
+
+/// How far rough beads may leave the true ones, mm.
+fn rough_error(scene: &Scene) -> f64 {
+    let bead = scene.layers().iter().flatten().find_map(|layer| layer.beads().first());
+    bead.map_or(0.0, |bead| f64::from(ROUGH * bead.width()))
+}
+
+fn coarse_quality() -> Quality {
+    Quality { strips: 2, samples: 1, exact: false, caps: true }
+}
+
+fn fine_quality(software: bool, moving: bool, segments: usize, exact: bool) -> Quality {
+    if !software {
+        return Quality { strips: 4, samples: 4, exact: true, caps: true };
+    }
+    let samples = if !moving && segments < SMOOTH_BELOW { 4 } else { 1 };
+    Quality { strips: 2, samples, exact, caps: true }
+}
+
+/// Makes a picture known to egui, in the place of the one before.
+fn register(state: &RenderState, target: &Target, known: Option<egui::TextureId>) -> egui::TextureId {
+    let mut renderer = state.renderer.write();
+    let filter = wgpu::FilterMode::Linear;
+    match known {
+        Some(texture) => {
+            renderer.update_egui_texture_from_wgpu_texture(&state.device, &target.view, filter, texture);
+            texture
+        }
+        None => renderer.register_native_texture(&state.device, &target.view, filter),
+    }
+}
