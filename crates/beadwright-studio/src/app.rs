@@ -78,16 +78,16 @@ pub struct Message {
 }
 
 impl Studio {
-    /// The program in a window; `store` remembers things, `open` is shown first.
-    pub fn new(cc: &eframe::CreationContext<'_>, store: Store, open: Option<&Path>) -> Self {
+    /// The program in a window; `store` remembers things.
+    pub fn new(cc: &eframe::CreationContext<'_>, store: Store) -> Self {
         let ctx = cc.egui_ctx.clone();
         let bell = ctx.clone();
         let settings = store.settings();
-        let mut studio = Self {
+        let studio = Self {
             chinese: crate::fonts::add_chinese(&ctx),
             render_state: cc.wgpu_render_state.clone(),
             planner: Planner::new(move || bell.request_repaint()),
-            lost: store.lost_project().filter(|_| open.is_none()),
+            lost: None,
             ctx,
             settings,
             store,
@@ -110,10 +110,12 @@ impl Studio {
             kept: Project::default(),
         };
         studio.apply_theme();
-        if let Some(path) = open {
-            studio.open(path);
-        }
         studio
+    }
+
+    /// Offers the project of a run that did not end well, if there is one.
+    pub fn offer_lost(&mut self) {
+        self.lost = self.store.lost_project();
     }
 
     /// The text of a key in the language of the window.
@@ -185,14 +187,15 @@ impl Studio {
     }
 
     fn open_project(&mut self, path: &Path) {
-        let read = std::fs::read_to_string(path).map_err(|error| error.to_string());
-        let project = read.and_then(|text| Project::read(&text, path.parent()).map_err(|error| error.to_string()));
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let project = read_text(path);
+        let project = project.and_then(|text| Project::read(&text, path.parent()).map_err(|error| named(&error)));
         match project {
             Ok(project) => {
                 self.file = Some(path.to_owned());
                 self.begin(project);
             }
-            Err(error) => self.complain(format!("{}: {error}", path.display())),
+            Err(error) => self.complain(error),
         }
     }
 

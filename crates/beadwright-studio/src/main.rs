@@ -2,7 +2,8 @@
 
 use beadwright_studio::Studio;
 use beadwright_studio::settings::Store;
-use clap::Parser;
+use beadwright_studio::view::{Mode, Side};
+use clap::{Parser, ValueEnum};
 use eframe::egui::ViewportBuilder;
 use std::path::PathBuf;
 
@@ -10,8 +11,44 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// A model (STL, IGES) or a project (.bwp) to open.
+    /// A model (STL, IGES) or a project (.bwp) to open; or the name of an example part, such as propeller.
     file: Option<PathBuf>,
+    /// The view to begin with.
+    #[arg(long, value_name = "VIEW")]
+    view: Option<View>,
+    /// The panel to begin with.
+    #[arg(long, value_name = "PANEL")]
+    panel: Option<Panel>,
+    /// The highest layer to show, counted from 1.
+    #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
+    layer: Option<u32>,
+    /// Show heights and voids in the layer view.
+    #[arg(long)]
+    heights: bool,
+    /// The strategy beside which another is shown.
+    #[arg(long, value_name = "STRATEGY")]
+    compare_with: Option<String>,
+    /// A value of the profile, such as fill.strategy=hybrid; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Folder for settings and the project kept aside, instead of the user's own.
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum View {
+    Solid,
+    Layer,
+    Compare,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Panel {
+    Totals,
+    Findings,
+    Plots,
+    Export,
 }
 
 fn main() -> eframe::Result {
@@ -23,7 +60,41 @@ fn main() -> eframe::Result {
         .with_app_id("beadwright-studio")
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
-    let app: eframe::AppCreator<'_> =
-        Box::new(move |cc| Ok(Box::new(Studio::new(cc, Store::of_user(), arguments.file.as_deref()))));
+    let app: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(begin(cc, &arguments))));
     eframe::run_native("Beadwright Studio", options, app)
+}
+
+fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
+    let store = arguments.store.clone().map_or_else(Store::of_user, Store::at);
+    let mut studio = Studio::new(cc, store);
+    for setting in &arguments.set {
+        if let Some((key, value)) = setting.split_once('=') {
+            studio.set_value(key, value);
+        }
+    }
+    match arguments.file.as_deref() {
+        Some(file) => match file.to_str().filter(|name| !file.exists() && beadwright::example::find(name).is_some()) {
+            Some(example) => studio.open_example(example),
+            None => studio.open(file),
+        },
+        None => studio.offer_lost(),
+    }
+    if let Some(strategy) = &arguments.compare_with {
+        studio.compare_with(Some(strategy));
+    }
+    let view = studio.view();
+    view.mode = arguments.view.map_or(view.mode, |view| match view {
+        View::Solid => Mode::Solid,
+        View::Layer => Mode::Layer,
+        View::Compare => Mode::Compare,
+    });
+    view.side = arguments.panel.map_or(view.side, |panel| match panel {
+        Panel::Totals => Side::Totals,
+        Panel::Findings => Side::Findings,
+        Panel::Plots => Side::Plots,
+        Panel::Export => Side::Export,
+    });
+    view.show.heights |= arguments.heights;
+    arguments.layer.into_iter().for_each(|layer| view.look_at(layer as usize - 1));
+    studio
 }

@@ -35,7 +35,7 @@ pub enum Event {
     /// The next layer.
     Layer(Arc<Layer>, Arc<LayerBeads>),
     /// All layers are planned.
-    Planned(Summary),
+    Planned(Box<Summary>),
     /// What the deposit model says of a layer, and the height error at every piece, in nominal bead heights.
     Judged(usize, Arc<Judgement>, Arc<[f32]>),
     /// What it says of all, and what the checks found.
@@ -190,7 +190,7 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
     let mut layers = Layers { send, pace: Pace::of(&profile), layers: Vec::new(), torch: None };
     let summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
     let layers = layers.layers;
-    send(Event::Planned(summary));
+    send(Event::Planned(Box::new(summary)));
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
     let each = |index: usize, judgement: Judgement| {

@@ -59,7 +59,7 @@ impl Default for Project {
 #[derive(Debug, thiserror::Error)]
 pub enum ProjectError {
     /// Not the text of a project.
-    #[error("this is not a Beadwright project: {0}")]
+    #[error("this is not a Beadwright project: {0}. Open a .bwp file that this program has written.")]
     Text(String),
     /// Written by a later version.
     #[error("the project has version {0}; this program reads version {VERSION}. Take a newer Beadwright.")]

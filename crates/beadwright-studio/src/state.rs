@@ -65,7 +65,7 @@ impl PlanState {
                 self.scene.set_layer(layer.index, beads);
                 self.layers.push(layer);
             }
-            Event::Planned(summary) => self.summary = Some(summary),
+            Event::Planned(summary) => self.summary = Some(*summary),
             Event::Judged(index, judgement, errors) => {
                 self.scene.set_values(index, errors);
                 self.judgements.push(judgement);

@@ -11,19 +11,19 @@ use std::time::{Duration, Instant};
 /// Longest wait for a plan.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-pub fn studio(store: &Path) -> Harness<'static, Studio> {
+pub(crate) fn studio(store: &Path) -> Harness<'static, Studio> {
     let store = Store::at(store.to_owned());
     let mut harness = Harness::builder()
         .with_size([1280.0, 800.0])
         .with_max_steps(64)
         .wgpu()
-        .build_eframe(move |cc| Studio::new(cc, store, None));
+        .build_eframe(move |cc| Studio::new(cc, store));
     harness.run_steps(2);
     harness
 }
 
 /// Runs until nothing is under way.
-pub fn wait(harness: &mut Harness<'static, Studio>) {
+pub(crate) fn wait(harness: &mut Harness<'static, Studio>) {
     let start = Instant::now();
     loop {
         harness.run_steps(2);
@@ -37,7 +37,7 @@ pub fn wait(harness: &mut Harness<'static, Studio>) {
 }
 
 /// Clicks on what has this label.
-pub fn click(harness: &mut Harness<'static, Studio>, label: &str) {
+pub(crate) fn click(harness: &mut Harness<'static, Studio>, label: &str) {
     harness.get_by_label(label).click();
     harness.run_steps(3);
 }
