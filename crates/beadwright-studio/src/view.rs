@@ -68,8 +68,8 @@ pub struct ViewState {
     pub search: String,
     /// Whether the keys are listed.
     pub keys: bool,
-    /// Whether the highest layer follows the top as the plan grows.
-    follows: bool,
+    /// The layer that is to be the highest one; the top one where none is wanted, and while there are fewer.
+    wanted: Option<usize>,
 }
 
 impl Default for ViewState {
@@ -93,7 +93,7 @@ impl Default for ViewState {
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
             search: String::new(),
             keys: false,
-            follows: true,
+            wanted: None,
         }
     }
 }
@@ -101,7 +101,7 @@ impl Default for ViewState {
 impl ViewState {
     /// Everything of a new part is shown.
     pub fn reset(&mut self) {
-        *self = Self { follows: true, first: 0, last: 0, progress: 1.0, chosen: None, ..self.clone() };
+        *self = Self { wanted: None, first: 0, last: 0, progress: 1.0, chosen: None, torch: None, ..self.clone() };
     }
 
     /// Keeps the range within the layers there are.
@@ -109,9 +109,7 @@ impl ViewState {
         if layers == 0 {
             return;
         }
-        if self.follows || self.last >= layers {
-            self.last = layers - 1;
-        }
+        self.last = self.wanted.unwrap_or(usize::MAX).min(layers - 1);
         self.first = self.first.min(self.last);
     }
 
@@ -120,7 +118,7 @@ impl ViewState {
         self.last = layer;
         self.first = self.first.min(layer);
         self.progress = 1.0;
-        self.follows = false;
+        self.wanted = Some(layer);
         self.torch = None;
     }
 

@@ -128,6 +128,16 @@ impl View2d {
         self.eye = Some(Eye { centre: place, scale });
     }
 
+    /// Looks where another view looks.
+    pub fn follow(&mut self, other: &Self) {
+        self.eye = other.eye;
+    }
+
+    /// Where this view looks; none while all of the layer is shown.
+    pub fn eye(&self) -> Option<Eye> {
+        self.eye
+    }
+
     /// Forgets what was measured.
     pub fn clear_measure(&mut self) {
         self.measure.clear();
@@ -302,7 +312,8 @@ impl Pen<'_> {
             let chosen = subject.chosen == Some(i);
             for s in &shown {
                 let line = [self.at(s.from.truncate()), self.at(s.to.truncate())];
-                if show.beads {
+                // Under the colours of heights, beads would only hide them.
+                if show.beads && !show.heights {
                     let strength = if chosen { 200 } else { 90 };
                     let ink = Color32::from_rgba_unmultiplied(hue.r(), hue.g(), hue.b(), strength);
                     self.painter.line_segment(line, Stroke::new(self.points(s.width), ink));

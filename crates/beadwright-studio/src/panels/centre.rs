@@ -102,11 +102,19 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
     let [label, other_label] = ["view-2d-label", "view-2d-other"].map(|key| studio.t(key));
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
+        let before = studio.flat.eye();
         if let Some(picked) = flat(&studio.plan, &mut studio.flat, left, &studio.view, &[], label) {
             studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
         }
-        if let Some(other) = &mut studio.other {
-            flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label);
+        let Some(other) = &mut studio.other else { return };
+        // Both look at the same place: whichever was moved leads.
+        if studio.flat.eye() != before {
+            other.flat.follow(&studio.flat);
+        }
+        let before = other.flat.eye();
+        flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label);
+        if other.flat.eye() != before {
+            studio.flat.follow(&other.flat);
         }
     });
 }

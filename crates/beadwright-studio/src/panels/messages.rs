@@ -28,7 +28,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             studio.messages.remove(i);
         });
         for text in warnings {
-            ui.label(RichText::new(format!("⚠ {text}")).weak());
+            ui.label(RichText::new(format!("• {text}")).weak());
         }
     });
 }
