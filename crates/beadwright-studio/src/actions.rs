@@ -1,6 +1,6 @@
 //! What a person can do, with its key: menus, keys and the list of keys are made from one table.
 
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
 
 /// Something that is done at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,12 +96,13 @@ pub fn find(action: Action) -> Option<&'static Entry> {
     ENTRIES.iter().find(|entry| entry.action == action)
 }
 
-/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited.
+/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited, and to a menu
+/// while one is open: Escape leaves them.
 pub fn pressed(ctx: &Context) -> Vec<Action> {
-    let typing = ctx.egui_wants_keyboard_input();
+    let typing = ctx.egui_wants_keyboard_input() || Popup::is_any_open(ctx);
     let meant = |entry: &&Entry| {
         let Some(key) = entry.key else { return false };
-        let free = !typing || key.modifiers.command || key.logical_key == Key::Escape;
+        let free = !typing || key.modifiers.command;
         free && ctx.input_mut(|input| input.consume_shortcut(&key))
     };
     ENTRIES.iter().filter(meant).map(|entry| entry.action).collect()

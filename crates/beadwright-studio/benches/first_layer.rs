@@ -1,0 +1,87 @@
+//! From drop to first planned layer: `cargo bench -p beadwright-studio --bench first_layer`.
+//!
+//! Drives the planner of the window, without a window: ms from the request until the part is read and placed, until the
+//! layer in view is planned (the *first layer*), until all layers are, and until they are judged and checked. The bunny
+//! of 1.1 million triangles lies in the folder that `BEADWRIGHT_MODELS` names; the propeller in `examples/`.
+
+use beadwright_studio::planner::{Event, Failure, Planner};
+use beadwright_studio::project::{Project, Source};
+use std::error::Error;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+/// Longest wait for a part.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("milliseconds          part  first layer  all layers  checked  layers  VmHWM MiB");
+    // A file of choice, in a process of its own: the most memory is then its own.
+    if let Some(path) = std::env::args().skip(1).find(|arg| !arg.starts_with('-')) {
+        return measure(Path::new(&path));
+    }
+    measure(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/propeller.stl"))?;
+    let Some(packed) = std::env::var_os("BEADWRIGHT_MODELS").map(|folder| PathBuf::from(folder).join(BUNNY)) else {
+        println!("the bunny is skipped: BEADWRIGHT_MODELS is not set");
+        return Ok(());
+    };
+    if !packed.exists() {
+        println!("the bunny is skipped: there is no {}", packed.display());
+        return Ok(());
+    }
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().join("bunny.stl");
+    io::copy(&mut flate2::read::GzDecoder::new(File::open(packed)?), &mut File::create(&path)?)?;
+    measure(&path)
+}
+
+const BUNNY: &str = "bunny_1114k.stl.gz";
+
+/// Plans a file twice, as if dropped and then planned again, and prints a line for each.
+fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
+    let (sender, bell) = channel();
+    let mut planner = Planner::new(move || drop(sender.send(())));
+    let project = Project { source: Some(Source::File(path.to_owned())), ..Project::default() };
+    let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    run(&mut planner, &bell, &project, &name)?;
+    // A change of a parameter begins with what is read already.
+    let profile = beadwright::profile::edit::with_value(&project.profile, "fill.raster_angle", "30")?;
+    run(&mut planner, &bell, &Project { profile, ..project }, &format!("{name}, changed"))
+}
+
+fn run(planner: &mut Planner, bell: &Receiver<()>, project: &Project, name: &str) -> Result<(), Box<dyn Error>> {
+    let clock = Instant::now();
+    let mut times = [f64::NAN; 4];
+    let mut layers = 0;
+    planner.plan(project, 0);
+    while times[3].is_nan() {
+        bell.recv_timeout(PATIENCE)?;
+        let now = clock.elapsed().as_secs_f64() * 1e3;
+        for event in planner.events() {
+            match event {
+                Event::Part(..) => times[0] = now,
+                Event::Preview(..) => times[1] = now,
+                Event::Planned(_) => times[2] = now,
+                Event::Checked(..) => times[3] = now,
+                Event::Layer(..) => layers += 1,
+                Event::Failed(Failure::Sentence(text) | Failure::Units(text) | Failure::Height(text)) => {
+                    return Err(text.into());
+                }
+                _ => {}
+            }
+        }
+    }
+    let [part, first, all, checked] = times;
+    println!("{name:20} {part:5.0}  {first:11.0}  {all:10.0}  {checked:7.0}  {layers:6}  {:9}", peak_mib());
+    Ok(())
+}
+
+/// The most memory this process ever held, MiB; 0 where the system does not tell.
+fn peak_mib() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    kib.unwrap_or_default() / 1024
+}
