@@ -1,6 +1,6 @@
 //! What a person can do, with its key: menus, keys and the list of keys are made from one table.
 
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
+use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
 
 /// Something that is done at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,6 +100,10 @@ pub fn find(action: Action) -> Option<&'static Entry> {
 /// while one is open: Escape leaves them.
 pub fn pressed(ctx: &Context) -> Vec<Action> {
     let typing = ctx.egui_wants_keyboard_input() || Popup::is_any_open(ctx);
+    // Escape takes the focus before anything else hears of it, and belongs to the field all the same.
+    let id = Id::new("typing");
+    let before = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(id), typing));
+    let typing = typing || before;
     let meant = |entry: &&Entry| {
         let Some(key) = entry.key else { return false };
         let free = !typing || key.modifiers.command;

@@ -86,7 +86,7 @@ impl Studio {
         let bell = ctx.clone();
         let settings = store.settings();
         let studio = Self {
-            chinese: crate::fonts::add_chinese(&ctx),
+            chinese: crate::fonts::set(&ctx),
             render_state: cc.wgpu_render_state.clone(),
             planner: Planner::new(move || bell.request_repaint()),
             lost: None,
@@ -133,6 +133,11 @@ impl Studio {
     /// The project.
     pub fn project(&self) -> &Project {
         self.project.now()
+    }
+
+    /// The project file that is worked on.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
     }
 
     /// The plan, as far as it has come.

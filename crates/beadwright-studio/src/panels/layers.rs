@@ -25,7 +25,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let playing = studio.view.playing;
         let word = if playing { studio.t("stop") } else { studio.t("play") };
-        if ui.button(format!("{} {word}", if playing { "⏸" } else { "▶" })).clicked() {
+        if ui.button(format!("{} {word}", if playing { "■" } else { "▶" })).clicked() {
             studio.act(Action::Play);
         }
         ui.spacing_mut().slider_width = (ui.available_width() / 2.0 - 190.0).max(60.0);
