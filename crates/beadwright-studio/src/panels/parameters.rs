@@ -1,5 +1,6 @@
 //! The profile as a form: units, ranges and meaning of every key.
 
+use crate::actions;
 use crate::app::Studio;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
@@ -175,7 +176,8 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     if response.dragged() {
         number = number.max(least).min(greatest);
     }
-    let changed = response.changed().then(|| as_toml(number)).filter(|_| Some(number) != now);
+    let changed =
+        response.changed().then(|| as_toml(number)).filter(|_| Some(number) != now && !actions::escaped(ui.ctx()));
     (response, changed)
 }
 
