@@ -42,7 +42,7 @@ const BUNNY: &str = "bunny_1114k.stl.gz";
 /// Plans a file twice, as if dropped and then planned again, and prints a line for each.
 fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
     let (sender, bell) = channel();
-    let mut planner = Planner::new(move || drop(sender.send(())));
+    let mut planner = Planner::new(move || sender.send(()).unwrap_or_default());
     let project = Project { source: Some(Source::File(path.to_owned())), ..Project::default() };
     let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     run(&mut planner, &bell, &project, &name)?;

@@ -166,7 +166,11 @@ impl Studio {
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
-        self.messages.push(Message { error: true, text: text.into() });
+        let message = Message { error: true, text: text.into() };
+        // What goes wrong again and again, at every step of a drag, is said once.
+        if self.messages.last() != Some(&message) {
+            self.messages.push(message);
+        }
     }
 
     /// Opens a model or a project.
@@ -267,6 +271,10 @@ impl Studio {
         (self.reach, self.reach_job) = (None, None);
         (self.steps, self.steps_job) = (None, None);
         if self.project().source.is_none() {
+            // Undone to the empty window.
+            self.planner.cancel();
+            self.plan = PlanState::default();
+            self.other = None;
             return;
         }
         self.plan.restart();

@@ -123,6 +123,36 @@ fn undo_beyond_the_opening_lets_go_of_the_file() {
 }
 
 #[test]
+fn undo_leads_back_to_the_empty_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(&folder.path().join("store"), "cross");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    wait(&mut harness);
+    assert!(sees(&harness, "Drop a model here (STL, IGES), or open an example."));
+    let plan = harness.state().plan();
+    assert!(plan.part.is_none() && plan.layers.is_empty() && plan.scene.segments() == 0);
+    press(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    wait(&mut harness);
+    assert!(harness.state().plan().is_complete());
+}
+
+#[test]
+fn what_goes_wrong_again_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    // The store cannot be made: a file lies in its place.
+    let store = folder.path().join("store");
+    std::fs::write(&store, "").unwrap();
+    let mut harness = studio(&store);
+    harness.state_mut().open_example("cross");
+    for height in ["2.1", "2.2", "2.3"] {
+        harness.state_mut().set_value("layers.height", height);
+        harness.run_steps(2);
+    }
+    let told: Vec<_> = harness.state().messages().iter().map(|message| &message.text).collect();
+    assert!(told.len() == 1 && told[0].starts_with("The project cannot be kept aside"), "{told:?}");
+}
+
+#[test]
 fn a_path_is_kept_whole() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = studio(&folder.path().join("store"));
