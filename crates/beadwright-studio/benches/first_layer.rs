@@ -1,11 +1,16 @@
 //! From drop to first planned layer: `cargo bench -p beadwright-studio --bench first_layer`.
 //!
 //! Drives the planner of the window, without a window: ms from the request until the part is read and placed, until the
-//! layer in view is planned (the *first layer*), until all layers are, and until they are judged and checked. The bunny
-//! of 1.1 million triangles lies in the folder that `BEADWRIGHT_MODELS` names; the propeller in `examples/`.
+//! layer in view is planned (the *first layer*), until the 3-D view has drawn part and layer (on any adapter; the planner
+//! goes on meanwhile), until all layers are planned, and until they are judged and checked. The bunny of 1.1 million
+//! triangles lies in the folder that `BEADWRIGHT_MODELS` names; the propeller in `examples/`.
 
 use beadwright_studio::planner::{Event, Failure, Planner};
 use beadwright_studio::project::{Project, Source};
+use beadwright_studio::state::PlanState;
+use beadwright_studio::view3d::{Style, View3d, headless};
+use eframe::egui_wgpu::RenderState;
+use glam::DVec2;
 use std::error::Error;
 use std::fs::File;
 use std::io;
@@ -13,11 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
+/// Size of the picture, pixels.
+const PIXELS: [u32; 2] = [1280, 800];
+
 /// Longest wait for a part.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("milliseconds          part  first layer  all layers  checked  layers  VmHWM MiB");
+    println!("milliseconds          part  first layer  drawn  all layers  checked  layers  VmHWM MiB");
     // A file of choice, in a process of its own: the most memory is then its own.
     if let Some(path) = std::env::args().skip(1).find(|arg| !arg.starts_with('-')) {
         return measure(Path::new(&path));
@@ -41,41 +49,62 @@ const BUNNY: &str = "bunny_1114k.stl.gz";
 
 /// Plans a file twice, as if dropped and then planned again, and prints a line for each.
 fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
+    let state = headless().inspect_err(|error| println!("nothing is drawn: {error}")).ok();
     let (sender, bell) = channel();
     let mut planner = Planner::new(move || sender.send(()).unwrap_or_default());
     let project = Project { source: Some(Source::File(path.to_owned())), ..Project::default() };
     let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    run(&mut planner, &bell, &project, &name)?;
+    run(&mut planner, &bell, state.as_ref(), &project, &name)?;
     // A change of a parameter begins with what is read already.
     let profile = beadwright::profile::edit::with_value(&project.profile, "fill.raster_angle", "30")?;
-    run(&mut planner, &bell, &Project { profile, ..project }, &format!("{name}, changed"))
+    run(&mut planner, &bell, state.as_ref(), &Project { profile, ..project }, &format!("{name}, changed"))
 }
 
-fn run(planner: &mut Planner, bell: &Receiver<()>, project: &Project, name: &str) -> Result<(), Box<dyn Error>> {
+fn run(
+    planner: &mut Planner,
+    bell: &Receiver<()>,
+    state: Option<&RenderState>,
+    project: &Project,
+    name: &str,
+) -> Result<(), Box<dyn Error>> {
     let clock = Instant::now();
-    let mut times = [f64::NAN; 4];
-    let mut layers = 0;
+    let now = || clock.elapsed().as_secs_f64() * 1e3;
+    let [mut part, mut first, mut drawn, mut all] = [f64::NAN; 4];
+    let mut plan = PlanState::default();
     planner.plan(project, 0);
-    while times[3].is_nan() {
+    while !plan.is_complete() {
         bell.recv_timeout(PATIENCE)?;
-        let now = clock.elapsed().as_secs_f64() * 1e3;
         for event in planner.events() {
-            match event {
-                Event::Part(..) => times[0] = now,
-                Event::Preview(..) => times[1] = now,
-                Event::Planned(_) => times[2] = now,
-                Event::Checked(..) => times[3] = now,
-                Event::Layer(..) => layers += 1,
+            match &event {
+                Event::Part(..) => part = now(),
+                Event::Preview(..) => first = now(),
+                Event::Planned(_) => all = now(),
                 Event::Failed(Failure::Sentence(text) | Failure::Units(text) | Failure::Height(text)) => {
-                    return Err(text.into());
+                    return Err(text.as_str().into());
                 }
                 _ => {}
             }
+            let seen = matches!(event, Event::Preview(..));
+            plan.take(event);
+            if let Some(state) = state.filter(|_| seen) {
+                draw(&plan, state)?;
+                drawn = now();
+            }
         }
     }
-    let [part, first, all, checked] = times;
-    println!("{name:20} {part:5.0}  {first:11.0}  {all:10.0}  {checked:7.0}  {layers:6}  {:9}", peak_mib());
+    let (checked, layers) = (now(), plan.layers.len());
+    println!(
+        "{name:20} {part:5.0}  {first:11.0}  {drawn:5.0}  {all:10.0}  {checked:7.0}  {layers:6}  {:9}",
+        peak_mib()
+    );
     Ok(())
+}
+
+/// Draws part and beads as the window does first.
+fn draw(plan: &PlanState, state: &RenderState) -> Result<(), String> {
+    let mut view = View3d::default();
+    view.camera.fit_points(&plan.scene.outline(), DVec2::new(f64::from(PIXELS[0]), f64::from(PIXELS[1])));
+    view.time_frame(state, &plan.scene, &Style::default(), PIXELS, false).map(|_| ())
 }
 
 /// The most memory this process ever held, MiB; 0 where the system does not tell.

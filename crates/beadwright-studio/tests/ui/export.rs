@@ -80,6 +80,18 @@ fn all_dialects_and_papers_are_those_of_the_command() {
 }
 
 #[test]
+fn a_wall_given_by_curves_is_written_as_the_command_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("pot.igs");
+    std::fs::write(&model, beadwright::example::find("pot").unwrap().iges().unwrap()).unwrap();
+    let mut harness = opened(folder.path(), &model, "cmt-al2319-kuka", 1.0);
+    let [ours, theirs] = ["ours", "theirs"].map(|name| folder.path().join(name));
+    harness.state_mut().export_all(&ours);
+    run(&["plan", model.to_str().unwrap(), "-o", theirs.to_str().unwrap()]);
+    same(&files(&ours), &files(&theirs));
+}
+
+#[test]
 fn papers_are_written_one_by_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = super::window::example(folder.path(), "cross");
