@@ -29,7 +29,7 @@ pub enum Kind {
 pub struct Field {
     /// Full key: `fill.raster_angle`.
     pub key: String,
-    /// Its last part, with blanks: `raster angle`.
+    /// Its last part: `raster_angle`.
     pub name: String,
     /// What it is, with its unit.
     pub about: String,
@@ -114,7 +114,7 @@ fn field(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) 
     let kind = words(key).map(Kind::Choice).or_else(|| kind(property, defs))?;
     Some(Field {
         key: key.to_owned(),
-        name: name.replace('_', " "),
+        name: name.to_owned(),
         about: text(property, "description").replace('`', ""),
         kind,
         optional,
@@ -162,6 +162,27 @@ fn definition<'a>(property: &Value, defs: &'a Value) -> Option<&'a Value> {
 
 fn text(value: &Value, key: &str) -> String {
     value[key].as_str().unwrap_or_default().to_owned()
+}
+
+/// A profile with what a form needs of it.
+pub struct Parsed {
+    /// Its text.
+    pub text: String,
+    /// The profile.
+    pub profile: Profile,
+    /// Its values with all defaults.
+    pub values: toml::Table,
+    /// What its numbers can be.
+    pub limits: Vec<Limit>,
+}
+
+impl Parsed {
+    /// Reads the text of a profile; none where it cannot be read.
+    pub fn of(text: &str) -> Option<Self> {
+        let profile = Profile::parse(text).ok()?;
+        let (values, limits) = (toml::Table::try_from(&profile).ok()?, profile.limits());
+        Some(Self { text: text.to_owned(), profile, values, limits })
+    }
 }
 
 /// The value of a key, as it holds with all defaults; none where it is left out.

@@ -10,16 +10,15 @@ use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Response, RichText, Te
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.separator();
     ui.heading(studio.t("parameters"));
-    let Ok(profile) = Profile::parse(&studio.project().profile) else { return };
-    choose(studio, ui, &profile);
+    let Some(parsed) = studio.parsed() else { return };
+    choose(studio, ui, &parsed.profile);
     let label = ui.label(studio.t("search"));
     ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
     let fields = || form::sections().iter().flat_map(|section| &section.fields);
     if let Some((key, reason)) = studio.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key)) {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
     }
-    let (values, limits) = (values(&profile), profile.limits());
-    let mut form = Form { studio, values: &values, limits: &limits };
+    let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
     for section in form::sections() {
         form.section(ui, section);
     }
@@ -42,11 +41,6 @@ fn choose(studio: &mut Studio, ui: &mut Ui, profile: &Profile) {
     }
 }
 
-/// The values with all defaults.
-fn values(profile: &Profile) -> toml::Table {
-    toml::Table::try_from(profile).unwrap_or_default()
-}
-
 struct Form<'a> {
     studio: &'a mut Studio,
     values: &'a toml::Table,
@@ -64,7 +58,10 @@ impl Form<'_> {
         if fields.is_empty() || !present {
             return;
         }
-        let title = if section.key.is_empty() { self.studio.t("profile").to_owned() } else { title(&section.key) };
+        let title = match &*section.key {
+            "" => self.studio.t("profile").to_owned(),
+            key => self.studio.language().word("section", key),
+        };
         let open = (section.key == "fill" || !search.is_empty()).then_some(!search.is_empty());
         CollapsingHeader::new(title)
             .id_salt(&section.key)
@@ -84,7 +81,7 @@ impl Form<'_> {
         let hint = self.hint(field, limit);
         let refused = self.studio.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
         ui.horizontal_wrapped(|ui| {
-            let mut name = RichText::new(&field.name);
+            let mut name = RichText::new(self.studio.language().word("name", &field.name));
             if refused {
                 name = name.color(ui.visuals().error_fg_color);
             }
@@ -120,13 +117,6 @@ impl Form<'_> {
         let words: String = words.iter().map(|(word, about)| format!("\n• {word}: {about}")).collect();
         format!("{}\n{}{}{words}", field.key, field.about, range.unwrap_or_default())
     }
-}
-
-/// A section's name as a heading: `start_stop` becomes `Start stop`.
-fn title(key: &str) -> String {
-    let words = key.replace(['_', '.'], " ");
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The widget of a field, and the new value as TOML where it was changed.

@@ -29,12 +29,14 @@ use crate::profile::Profile;
 use crate::slice::{self, BATCH, Layer as Slice, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
+use crate::weld;
 use glam::{DVec2, DVec3};
 use planar::medial::Node;
 use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
 use scan_lines::Planned;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -62,6 +64,16 @@ impl Layer {
     pub fn subject(&self) -> Subject<'_> {
         Subject { layer: self.index, islands: &self.islands, passes: &self.passes }
     }
+}
+
+/// A layer as it is welded, for the deposit model: with overlaps, hot starts and lead-outs where the profile has them.
+pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let ends = &profile.start_stop;
+    if !ends.changes_passes() {
+        return Cow::Borrowed(layer);
+    }
+    let passes = layer.passes.iter().map(|pass| weld::welded(pass, ends)).collect();
+    Cow::Owned(Layer { passes, ..layer.clone() })
 }
 
 /// The deposit model's settings for plans made with a profile.
@@ -246,13 +258,7 @@ pub fn plan_layers<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let name = &profile.fill.strategy;
-    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
-    check_layer_count(mesh, profile)?;
-    let slabs = match profile.wall_bead()? {
-        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
-        None => slice::even_slabs(mesh, profile.layers.height),
-    };
+    let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
@@ -272,6 +278,22 @@ pub fn plan_layers<S: Sink + Send>(
         )));
     }
     Ok(summary)
+}
+
+/// The strategy of a profile, and where the layers of a mesh lie.
+fn strategy_and_slabs<E>(
+    mesh: &Mesh,
+    profile: &Profile,
+    task: &Task,
+) -> Result<(&'static dyn Strategy, Vec<Slab>), PlanError<E>> {
+    let name = &profile.fill.strategy;
+    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
+    check_layer_count(mesh, profile)?;
+    let slabs = match profile.wall_bead()? {
+        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
+        None => slice::even_slabs(mesh, profile.layers.height),
+    };
+    Ok((strategy, slabs))
 }
 
 /// Plans a wall given by its centre-lines, one bead thick, up to a height (mm), and hands every layer to `sink`.
