@@ -77,12 +77,16 @@ fn a_distance_is_measured() {
 #[test]
 fn a_layer_without_regions_is_looked_at_once() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("pot.igs");
-    std::fs::write(&path, beadwright::example::find("pot").unwrap().iges().unwrap()).unwrap();
+    let path = folder.path().join("two.stl");
+    // One above the other, with air between.
+    std::fs::write(&path, super::window::crosses(&[|p| p, |p| p.with_z(p.z + 40.0)])).unwrap();
     let mut harness = super::window::studio(&folder.path().join("store"));
     harness.state_mut().open(&path);
     wait(&mut harness);
     assert!(harness.state().plan().is_complete(), "{:?}", harness.state().plan().failure);
+    let layers = &harness.state().plan().layers;
+    assert!(layers.len() == 30 && layers[14].islands.is_empty());
+    harness.state_mut().view().look_at(14);
     harness.key_press(Key::F3);
     harness.run_steps(3);
     click(&mut harness, "Pockets and skeleton regions");

@@ -1,6 +1,6 @@
 //! Where the part stands.
 
-use super::window::{click, studio, type_number, wait};
+use super::window::{click, crosses, studio, type_number, wait};
 use beadwright_studio::Studio;
 use egui_kittest::Harness;
 use glam::DVec3;
@@ -15,27 +15,12 @@ fn near(a: DVec3, b: DVec3) -> bool {
     a.distance(b) < 1e-3
 }
 
-/// The cross as a binary STL, turned about x by 90°: it stands on an arm.
-fn standing() -> Vec<u8> {
-    let mesh = beadwright::example::find("cross").unwrap().mesh();
-    let mut bytes = vec![0; 80];
-    bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
-    for triangle in &mesh.triangles {
-        bytes.extend([0_u8; 12]);
-        for corner in triangle.map(|i| mesh.vertices[i as usize]) {
-            let turned = DVec3::new(corner.x, -corner.z, corner.y).as_vec3();
-            bytes.extend(turned.to_array().iter().flat_map(|v| v.to_le_bytes()));
-        }
-        bytes.extend([0, 0]);
-    }
-    bytes
-}
-
 #[test]
 fn a_part_is_laid_flat_scaled_and_turned() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("standing.stl");
-    std::fs::write(&path, standing()).unwrap();
+    // Turned about x by 90°: it stands on an arm.
+    std::fs::write(&path, crosses(&[|p| DVec3::new(p.x, -p.z, p.y)])).unwrap();
     let mut harness = studio(&folder.path().join("store"));
     harness.state_mut().view().mode = beadwright_studio::view::Mode::Layer;
     harness.state_mut().open(&path);

@@ -6,6 +6,7 @@ use beadwright_studio::settings::Store;
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -113,4 +114,20 @@ pub(crate) fn example(store: &Path, name: &str) -> Harness<'static, Studio> {
     wait(&mut harness);
     assert!(harness.state().plan().is_complete(), "{:?}", harness.state().plan().failure);
     harness
+}
+
+/// The cross, several times, each moved and turned by a function, as a binary STL.
+pub(crate) fn crosses(place: &[fn(DVec3) -> DVec3]) -> Vec<u8> {
+    let mesh = beadwright::example::find("cross").unwrap().mesh();
+    let mut bytes = vec![0; 80];
+    bytes.extend(((mesh.triangles.len() * place.len()) as u32).to_le_bytes());
+    for place in place {
+        for triangle in &mesh.triangles {
+            bytes.extend([0_u8; 12]);
+            let corners = triangle.map(|i| place(mesh.vertices[i as usize]).as_vec3().to_array());
+            bytes.extend(corners.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
+            bytes.extend([0, 0]);
+        }
+    }
+    bytes
 }
