@@ -29,7 +29,7 @@ pub enum Kind {
 pub struct Field {
     /// Full key: `fill.raster_angle`.
     pub key: String,
-    /// Its last part, with blanks: `raster angle`.
+    /// Its last part: `raster_angle`.
     pub name: String,
     /// What it is, with its unit.
     pub about: String,
@@ -114,7 +114,7 @@ fn field(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) 
     let kind = words(key).map(Kind::Choice).or_else(|| kind(property, defs))?;
     Some(Field {
         key: key.to_owned(),
-        name: name.replace('_', " "),
+        name: name.to_owned(),
         about: text(property, "description").replace('`', ""),
         kind,
         optional,

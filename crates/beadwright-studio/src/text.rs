@@ -25,6 +25,13 @@ impl Language {
         self.find(key).unwrap_or(key)
     }
 
+    /// The text of a word that is put together, such as `raster_angle` of the kind `name`; with
+    /// blanks where the table lacks it.
+    pub fn word(self, kind: &str, word: &str) -> String {
+        let found = self.find(&format!("{kind} {word}"));
+        found.map_or_else(|| word.replace(['_', '.'], " "), str::to_owned)
+    }
+
     /// The text of a key, if the table has it.
     pub fn find(self, key: &str) -> Option<&'static str> {
         table().get(key).map(|texts| texts[self as usize].as_str())

@@ -1,5 +1,6 @@
 //! One layer from above: outline, beads, pockets and skeleton regions, the height field with its voids, a measure.
 
+use crate::view3d::palette;
 use beadwright::deposit::{Judgement, Picture, picture};
 use beadwright::fill::PassKind;
 use beadwright::fill::hybrid::Steps;
@@ -76,24 +77,16 @@ pub struct View2d {
     map: Option<(Arc<Judgement>, TextureHandle)>,
 }
 
-/// Colours, those of the report.
-const CONTOUR: Color32 = Color32::from_rgb(0x1f, 0x6f, 0xd6);
-const INFILL: Color32 = Color32::from_rgb(0xe8, 0x86, 0x2a);
-const SKELETON: Color32 = Color32::from_rgb(0x7e, 0x57, 0xc2);
-const WALL: Color32 = Color32::from_rgb(0x0f, 0x8b, 0x8d);
 const START: Color32 = Color32::from_rgb(0x1a, 0x9c, 0x4b);
 const END: Color32 = Color32::from_rgb(0xd9, 0x2d, 0x3a);
 const VOID: Color32 = Color32::from_rgb(232, 0, 150);
+const POCKET: Color32 = Color32::from_rgb(0x7e, 0x57, 0xc2);
 const REGION: Color32 = Color32::from_rgb(0x0f, 0x8b, 0x8d);
 
 /// The colour of a kind of pass.
 pub fn colour(kind: PassKind) -> Color32 {
-    match kind {
-        PassKind::Contour => CONTOUR,
-        PassKind::Infill => INFILL,
-        PassKind::Skeleton => SKELETON,
-        PassKind::Wall => WALL,
-    }
+    let [r, g, b] = palette::kind(kind);
+    Color32::from_rgb(r, g, b)
 }
 
 impl Eye {
@@ -175,6 +168,9 @@ impl View2d {
         pen.passes(&subject, show);
         self.measures(&pen);
         pen.scale_bar();
+        if show.heights {
+            pen.heat_scale();
+        }
         let at = response.hover_pos().map(|p| eye.to_part(p, rect));
         if let Some(at) = at {
             pen.note(Align2::RIGHT_BOTTOM, &format!("x {:.2}  y {:.2} mm", at.x, at.y));
@@ -218,8 +214,10 @@ impl View2d {
         let size = DVec2::new(map.width as f64, map.height as f64) * map.pixel;
         let place = Rect::from_two_pos(pen.at(map.low), pen.at(map.low + size));
         pen.painter.image(texture.id(), place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        // A ring around each void, a little larger than it is.
         for void in &judgement.voids {
-            pen.painter.circle_stroke(pen.at(void.place), 7.0, Stroke::new(2.0, VOID));
+            let radius = pen.points((void.area / std::f64::consts::PI).sqrt()) + 3.0;
+            pen.painter.circle_stroke(pen.at(void.place), radius, Stroke::new(1.5, VOID));
         }
     }
 }
@@ -289,7 +287,7 @@ impl Pen<'_> {
 
     fn regions(&self, steps: &Steps) {
         for pocket in steps.levels.iter().flat_map(|level| &level.pockets) {
-            let stroke = Stroke::new(if pocket.kept { 2.0 } else { 0.8 }, SKELETON);
+            let stroke = Stroke::new(if pocket.kept { 2.0 } else { 0.8 }, POCKET);
             self.ring(pocket.shape.outer.points(), stroke);
         }
         for ring in steps.regions.rings() {
@@ -342,6 +340,28 @@ impl Pen<'_> {
         let to = from + vec2(self.points(length), 0.0);
         self.painter.line_segment([from, to], Stroke::new(2.0, ink));
         self.painter.text(from, Align2::LEFT_BOTTOM, format!("{length} mm"), FontId::proportional(12.0), ink);
+    }
+
+    /// What the colours of heights mean, in nominal bead heights.
+    fn heat_scale(&self) {
+        const STEPS: usize = 50;
+        const MARKS: [f64; 3] = [0.0, 1.0, 2.0];
+        let ink = self.ui.visuals().text_color();
+        let place = Rect::from_min_size(self.rect.left_top() + vec2(12.0, 26.0), vec2(12.0, 120.0));
+        let y = |height: f64| place.bottom() - place.height() * (height / picture::FULL_SCALE) as f32;
+        for i in 0..STEPS {
+            let height = |i: usize| picture::FULL_SCALE * i as f64 / STEPS as f64;
+            let strip = Rect::from_x_y_ranges(place.x_range(), y(height(i + 1))..=y(height(i)));
+            self.painter.rect_filled(strip, 0.0, heat(height(i)));
+        }
+        let font = FontId::proportional(12.0);
+        for mark in MARKS {
+            let at = pos2(place.right() + 4.0, y(mark));
+            self.painter.text(at, Align2::LEFT_CENTER, format!("{mark:.0} h"), font.clone(), ink);
+        }
+        let void = Rect::from_min_size(place.left_bottom() + vec2(0.0, 8.0), vec2(12.0, 12.0));
+        self.painter.rect_filled(void, 0.0, VOID);
+        self.painter.text(void.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35 h", font, ink);
     }
 
     fn note(&self, corner: Align2, text: &str) {

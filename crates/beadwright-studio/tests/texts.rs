@@ -29,7 +29,8 @@ fn every_text_is_there_in_both_languages() {
 #[test]
 fn every_key_is_used_and_every_used_key_is_there() {
     let code = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
-    for key in table().keys().filter(|key| !key.starts_with("total ")) {
+    let plain = |key: &&String| ["total ", "section ", "name ", "kind "].iter().all(|kind| !key.starts_with(kind));
+    for key in table().keys().filter(plain) {
         assert!(code.contains(&format!("\"{key}\"")), "{key} is used nowhere");
     }
     for part in code.split(".t(\"").skip(1).chain(code.split(".text(\"").skip(1)) {
@@ -38,6 +39,18 @@ fn every_key_is_used_and_every_used_key_is_there() {
     }
     for entry in &beadwright_studio::actions::ENTRIES {
         assert!(Language::English.find(entry.text).is_some(), "{}", entry.text);
+    }
+}
+
+#[test]
+fn every_key_of_the_profile_has_a_name_in_both_languages() {
+    for section in beadwright_studio::form::sections() {
+        let key = format!("section {}", section.key);
+        assert!(section.key.is_empty() || Language::Chinese.find(&key).is_some(), "{key}");
+        for field in &section.fields {
+            let key = format!("name {}", field.name);
+            assert!(Language::Chinese.find(&key).is_some(), "{key}");
+        }
     }
 }
 

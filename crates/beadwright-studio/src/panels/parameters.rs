@@ -62,7 +62,10 @@ impl Form<'_> {
         if fields.is_empty() || !present {
             return;
         }
-        let title = if section.key.is_empty() { self.studio.t("profile").to_owned() } else { title(&section.key) };
+        let title = match &*section.key {
+            "" => self.studio.t("profile").to_owned(),
+            key => self.studio.language().word("section", key),
+        };
         let open = (section.key == "fill" || !search.is_empty()).then_some(!search.is_empty());
         CollapsingHeader::new(title)
             .id_salt(&section.key)
@@ -82,7 +85,7 @@ impl Form<'_> {
         let hint = self.hint(field, limit);
         let refused = self.studio.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
         ui.horizontal_wrapped(|ui| {
-            let mut name = RichText::new(&field.name);
+            let mut name = RichText::new(self.studio.language().word("name", &field.name));
             if refused {
                 name = name.color(ui.visuals().error_fg_color);
             }
@@ -114,13 +117,6 @@ impl Form<'_> {
         let words: String = words.iter().map(|(word, about)| format!("\n• {word}: {about}")).collect();
         format!("{}\n{}{}{words}", field.key, field.about, range.unwrap_or_default())
     }
-}
-
-/// A section's name as a heading: `start_stop` becomes `Start stop`.
-fn title(key: &str) -> String {
-    let words = key.replace(['_', '.'], " ");
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The widget of a field, and the new value as TOML where it was changed.

@@ -56,7 +56,7 @@ fn legend(studio: &Studio, ui: &mut Ui) {
         for kind in kinds.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));
-            ui.label(kind.name());
+            ui.label(studio.language().word("kind", kind.name()));
         }
         return;
     }

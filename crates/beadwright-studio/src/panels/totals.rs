@@ -53,7 +53,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     let values = [
         ("layer", format!("{}", layer + 1)),
         ("pass", format!("{}", pass + 1)),
-        ("kind", found.kind.name().to_owned()),
+        ("kind", studio.language().word("kind", found.kind.name())),
         ("length", format!("{:.2} mm", found.length())),
         ("speed", format!("{:.2} mm/s", segment.speed)),
         ("width", format!("{:.2} mm", segment.width)),
