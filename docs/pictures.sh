@@ -72,7 +72,7 @@ picture() {
     done
     kill "$window" && wait "$window" 2> /dev/null || true
     window=''
-    convert "$work/last.ppm" -strip -colors "${COLOURS:-200}" +dither -define png:compression-level=9 \
+    convert "$work/last.ppm" -strip +dither -colors "${COLOURS:-200}" -define png:compression-level=9 \
         "png8:docs/pictures/$name.png"
     echo "docs/pictures/$name.png, $(($(stat -c %s "docs/pictures/$name.png") / 1024)) KiB"
 }
@@ -81,7 +81,8 @@ wanted=("$@")
 picture main '' propeller --set fill.strategy=hybrid
 picture layer '' propeller --view layer --heights --layer 4 --set fill.strategy=contour
 picture compare '' propeller --view compare --set fill.strategy=contour --compare-with hybrid --heights --layer 4
-picture findings '' star --panel findings --set fill.strategy=contour
+picture findings '' star --view layer --heights --layer 1 --panel findings --set fill.strategy=zigzag \
+    --set process.deposition_speed=12
 picture plots '' vase --panel plots
 picture chinese 'language = "zh"' gear --set fill.strategy=hybrid
 picture light 'light = true' cross --set fill.strategy=zigzag

@@ -102,8 +102,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();
     let from_layer = arguments.from_layer as usize - 1;
-    let mut files =
-        Files { output, posts, programmer, pictures, settings, judge, report: None, first: true, from_layer };
+    let mut files = Files {
+        output,
+        posts,
+        programmer,
+        pictures,
+        settings,
+        profile: profile.clone(),
+        judge,
+        report: None,
+        first: true,
+        from_layer,
+    };
     let planned = plan::plan_part(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
     let summary = planned.map_err(|error| match error {
@@ -136,6 +146,7 @@ struct Files {
     programmer: Programmer,
     pictures: Vec<usize>,
     settings: DepositSettings,
+    profile: Profile,
     judge: Option<Judge>,
     report: Option<Report>,
     first: bool,
@@ -189,7 +200,8 @@ impl Sink for Files {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
-        let judgement = self.judge.as_mut().map(|judge| judge.layer(layer.subject()));
+        let welded = plan::welded(&layer, &self.profile);
+        let judgement = self.judge.as_mut().map(|judge| judge.layer(welded.subject()));
         if let Some(report) = &mut self.report {
             report.layer(&layer, judgement.as_ref());
         }

@@ -72,8 +72,10 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         // Without a window there is only the console to tell it.
         Err(error) => {
+            let reason = error.to_string();
+            let reason = reason.trim_end_matches('.');
             eprintln!(
-                "error: the window cannot be opened: {error}. It needs a screen, and a driver for Vulkan, Metal, Direct3D \
+                "error: the window cannot be opened: {reason}. It needs a screen, and a driver for Vulkan, Metal, Direct3D \
                  12 or OpenGL; on Linux, mesa-vulkan-drivers does without a graphics card."
             );
             ExitCode::FAILURE

@@ -197,7 +197,7 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
         let errors = errors(&layers[index], &judgement);
         send(Event::Judged(index, Arc::new(judgement), errors));
     };
-    let judged = check::judge(&layers, judge, task, each)?;
+    let judged = check::judge(&layers, &profile, judge, task, each)?;
     let total = judged.total;
     send(Event::Checked(total, check::check_judged(&layers, &profile, settings.nominal.rise, judged)));
     Ok(())

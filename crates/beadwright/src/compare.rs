@@ -109,7 +109,13 @@ impl<'a> Judging<'a> {
     }
 }
 
-impl Sink for Judging<'_> {
+/// Judges the layers of a plan as they are welded.
+struct Planned<'a> {
+    judging: Judging<'a>,
+    profile: &'a Profile,
+}
+
+impl Sink for Planned<'_> {
     type Error = Infallible;
 
     fn begin(&mut self, _: &Header) -> Result<(), Infallible> {
@@ -117,7 +123,7 @@ impl Sink for Judging<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.take(&layer);
+        self.judging.take(&plan::welded(&layer, self.profile));
         Ok(())
     }
 }
@@ -141,8 +147,9 @@ pub fn strategy(
 ) -> Result<Entry, PlanError<Infallible>> {
     let mut profile = profile.clone();
     profile.fill.strategy = name.to_owned();
-    let mut judging = Judging::new(settings, &bounds(mesh), chosen);
-    let metrics = plan::plan_layers(name, mesh, &profile, task, &mut judging)?.metrics;
+    let mut planned = Planned { judging: Judging::new(settings, &bounds(mesh), chosen), profile: &profile };
+    let metrics = plan::plan_layers(name, mesh, &profile, task, &mut planned)?.metrics;
+    let judging = planned.judging;
     let totals = Totals { turns: judging.turns, ..Totals::of_plan(&metrics) };
     Ok(judging.entry(name, totals))
 }

@@ -284,6 +284,32 @@ fn long_layers_are_split_and_read_back_alike() {
     assert!((other.1.welds[1].speeds[0] - 48.0).abs() < 0.06);
 }
 
+/// KRL and RAPID are cut between passes only: a module may have to be loaded, and no arc burns meanwhile.
+#[test]
+fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
+    let mut profile = profile();
+    for (arc, outputs) in [(KrlArc::Outputs, "$OUT[2]"), (KrlArc::Arctech, "no output")] {
+        profile.krl.as_mut().unwrap().arc = arc;
+        profile.krl.as_mut().unwrap().max_points = 2000;
+        let whole = written("krl", "demo", &job(), &profile);
+        profile.krl.as_mut().unwrap().max_points = 10;
+        let cut = written("krl", "demo", &job(), &profile);
+        assert!(cut.len() > whole.len() && cut.contains_key("DEMO_L001_2.src"), "{:?}", cut.keys());
+        assert_eq!(readers::krl::run(&cut, "DEMO", outputs), readers::krl::run(&whole, "DEMO", outputs));
+        let long = written("krl", &"long ".repeat(20), &job(), &profile);
+        assert!(long.keys().all(|file| file.split('.').next().unwrap().len() <= 24), "{:?}", long.keys());
+    }
+    for (arc, output) in [(RapidArc::Instructions, ""), (RapidArc::Plain, "doArc")] {
+        let rapid = profile.rapid.as_mut().unwrap();
+        (rapid.arc, rapid.max_points) = (arc, 10_000);
+        let whole = written("rapid", "demo", &job(), &profile);
+        profile.rapid.as_mut().unwrap().max_points = 10;
+        let cut = written("rapid", "demo", &job(), &profile);
+        assert!(cut.len() > whole.len() && cut.contains_key("demo_L001_2.mod"), "{:?}", cut.keys());
+        assert_eq!(readers::rapid::run(&cut, "demo", output), readers::rapid::run(&whole, "demo", output));
+    }
+}
+
 #[test]
 fn odd_names_are_legal_in_urscript() {
     for part in ["end", "layer_001", "7up", "Gr\u{fc}n", ""] {

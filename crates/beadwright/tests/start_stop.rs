@@ -4,14 +4,17 @@
 
 mod readers;
 
+use beadwright::check;
+use beadwright::deposit::Judge;
 use beadwright::fill::PassKind;
 use beadwright::metrics::Metrics;
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::Layer;
+use beadwright::plan::{self, Layer};
 use beadwright::post;
-use beadwright::profile::{FanucSpeed, Follow, Profile, RapidArc, StartStop};
+use beadwright::profile::{FanucSpeed, Follow, Profile, RapidArc, StartStop, edit};
 use beadwright::program::{Instruction, LayerProgram, Programmer};
 use beadwright::readback::{ArcCodes, Options, Program, read};
+use beadwright::task::Task;
 use beadwright::weld;
 use glam::DVec3;
 use readers::{Motion, Weld, distance};
@@ -462,4 +465,33 @@ fn ends_that_do_not_fit_the_shortest_pass_are_noted() {
     assert!(profile.notes().iter().any(|n| n.contains("take 5.5 mm, but fill.min_pass_length is 5 mm")));
     profile.start_stop.end_overlap = 6.0;
     assert_eq!(profile.notes().len(), none + 2);
+}
+
+/// What is judged is what the program lays: the metal of the ends is in the deposit model.
+#[test]
+fn the_deposit_model_sees_overlaps_and_leads() {
+    let mesh = beadwright::example::find("cross").unwrap().mesh();
+    let base = Profile::built_in_text("cmt-al2319-kuka").unwrap();
+    let with = |values: &[(&str, &str)]| {
+        let lay = |text: String, (k, v): &(&str, &str)| edit::with_value(&text, k, v).unwrap();
+        Profile::parse(&values.iter().fold(base.to_owned(), lay)).unwrap()
+    };
+    let volumes = |profile: &Profile| {
+        let plan = plan::plan("cross", &mesh, profile, &Task::new()).unwrap();
+        let settings = plan::deposit_settings(profile);
+        let judged = check::judge(&plan.layers[..1], profile, Judge::new(settings), &Task::new(), |_, _| ()).unwrap();
+        let mut metrics = Metrics::new(profile);
+        metrics.add(&plan.layers[0]);
+        (judged.total.deposited_volume, metrics.deposited_volume_mm3, judged.total.overfill_percent())
+    };
+    let plain = volumes(&with(&[]));
+    assert!((plain.0 / plain.1 - 1.0).abs() < 1e-9);
+    let ends =
+        [("start_stop.end_overlap", "12.0"), ("start_stop.lead_in_length", "8.0"), ("start_stop.lead_in_power", "1.5")];
+    let more = volumes(&with(&ends));
+    assert!((more.0 / more.1 - 1.0).abs() < 1e-9, "{more:?}");
+    assert!(more.0 > plain.0 + 1.0 && more.2 > plain.2, "{plain:?} {more:?}");
+    // A crater stands on one place, which no piece of a pass tells.
+    let crater = volumes(&with(&[("start_stop.crater_fill_time", "2.0")]));
+    assert_eq!(crater.0, plain.0);
 }

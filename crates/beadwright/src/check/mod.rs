@@ -22,7 +22,7 @@ mod void;
 mod wire_balance;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
-use crate::plan::Layer;
+use crate::plan::{self, Layer};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
 use glam::DVec3;
@@ -105,12 +105,13 @@ pub struct Judged {
     pub growth: Vec<Growth>,
 }
 
-/// Judges a plan layer by layer and shows `each` what is found.
+/// Judges a plan layer by layer, as it is welded with a profile, and shows `each` what is found.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn judge<L: Borrow<Layer>>(
     layers: &[L],
+    profile: &Profile,
     mut judge: Judge,
     task: &Task,
     mut each: impl FnMut(usize, Judgement),
@@ -125,7 +126,7 @@ pub fn judge<L: Borrow<Layer>>(
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
         // Points that are no numbers are found by a check of their own; nothing can be built from them.
         let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-        let judgement = sound.then(|| judge.layer(layer.subject()));
+        let judgement = sound.then(|| judge.layer(plan::welded(layer, profile).subject()));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
@@ -143,7 +144,7 @@ pub fn check<L: Borrow<Layer>>(
     settings: DepositSettings,
     task: &Task,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let judged = judge(layers, Judge::new(settings), task, |_, _| ())?;
+    let judged = judge(layers, profile, Judge::new(settings), task, |_, _| ())?;
     Ok(check_judged(layers, profile, settings.nominal.rise, judged))
 }
 

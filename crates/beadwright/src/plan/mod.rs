@@ -29,12 +29,14 @@ use crate::profile::Profile;
 use crate::slice::{self, BATCH, Layer as Slice, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
+use crate::weld;
 use glam::{DVec2, DVec3};
 use planar::medial::Node;
 use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
 use scan_lines::Planned;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -62,6 +64,16 @@ impl Layer {
     pub fn subject(&self) -> Subject<'_> {
         Subject { layer: self.index, islands: &self.islands, passes: &self.passes }
     }
+}
+
+/// A layer as it is welded, for the deposit model: with overlaps, hot starts and lead-outs where the profile has them.
+pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let ends = &profile.start_stop;
+    if !ends.changes_passes() {
+        return Cow::Borrowed(layer);
+    }
+    let passes = layer.passes.iter().map(|pass| weld::welded(pass, ends)).collect();
+    Cow::Owned(Layer { passes, ..layer.clone() })
 }
 
 /// The deposit model's settings for plans made with a profile.

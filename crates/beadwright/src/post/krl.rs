@@ -5,7 +5,7 @@
 //! ArcTech Basic switch it, whose data stand in a `.dat` beside each layer's module.
 
 use super::arctech::{Forms, Target};
-use super::{Chunk, Post, Values, ascii, crater_lines};
+use super::{Chunk, Post, Values, ascii, crater_lines, split};
 use crate::number::{fixed, push_fixed};
 use crate::profile::{Krl, KrlArc, Process, Profile};
 use crate::program::{Instruction, LayerProgram};
@@ -13,6 +13,9 @@ use glam::DVec3;
 
 /// Module names may have this many characters.
 const MAX_NAME: usize = 24;
+
+/// Room for the number of a part of a layer: `_999`.
+const PART: usize = 4;
 
 /// Words that no module may be called.
 const RESERVED: [&str; 12] =
@@ -46,6 +49,37 @@ impl KukaKrl {
 
     fn layer_name(&self, index: usize) -> String {
         format!("{}_L{:0digits$}", self.name, index + 1, digits = self.digits)
+    }
+
+    /// The module of a part of a layer, counted from 0, with its data and its call.
+    fn module(&mut self, program: &LayerProgram, part: usize, moves: &[Instruction]) -> Vec<Chunk> {
+        let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
+        let module = format!("{}{more}", self.layer_name(program.index));
+        self.speed = 0.0;
+        let mut text = self.head(&module);
+        text.reserve(moves.len() * 70);
+        text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
+        if part == 0 {
+            self.lines(&mut text, &self.krl.layer_start);
+        }
+        let mut forms = self.forms();
+        for i in 0..moves.len() {
+            match &mut forms {
+                Some(forms) => self.with_forms(&mut text, forms, moves, i),
+                None => self.instruction(&mut text, moves[i]),
+            }
+        }
+        text.push_str("END\r\n");
+        let data = forms.map(|forms| Chunk {
+            file: format!("{module}.dat"),
+            text: format!(
+                "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {module}\r\n{}ENDDAT\r\n",
+                self.comment,
+                forms.declarations()
+            ),
+        });
+        let main = Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") };
+        [main, Chunk { file: format!("{module}.src"), text }].into_iter().chain(data).collect()
     }
 
     fn head(&self, module: &str) -> String {
@@ -194,8 +228,8 @@ impl KukaKrl {
 impl Post for KukaKrl {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
-        // Room for "_L" and the number.
-        self.name.truncate(MAX_NAME - 2 - self.digits);
+        // Room for "_L" and the number, and for that of a part.
+        self.name.truncate(MAX_NAME - 2 - self.digits - PART);
         let (name, krl) = (&self.name, &self.krl);
         let data = format!(
             "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}\r\nDECL E6AXIS XHOME={{{}}}\r\nENDDAT\r\n",
@@ -220,31 +254,9 @@ impl Post for KukaKrl {
         if program.instructions.is_empty() {
             return Vec::new();
         }
-        let module = self.layer_name(program.index);
         self.values.set("layer", program.index + 1);
-        self.speed = 0.0;
-        let mut text = self.head(&module);
-        text.reserve(program.instructions.len() * 70);
-        text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
-        self.lines(&mut text, &self.krl.layer_start);
-        let mut forms = self.forms();
-        for i in 0..program.instructions.len() {
-            match &mut forms {
-                Some(forms) => self.with_forms(&mut text, forms, &program.instructions, i),
-                None => self.instruction(&mut text, program.instructions[i]),
-            }
-        }
-        text.push_str("END\r\n");
-        let data = forms.map(|forms| Chunk {
-            file: format!("{module}.dat"),
-            text: format!(
-                "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {module}\r\n{}ENDDAT\r\n",
-                self.comment,
-                forms.declarations()
-            ),
-        });
-        let main = Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") };
-        [main, Chunk { file: format!("{module}.src"), text }].into_iter().chain(data).collect()
+        let parts = split::passes(&program.instructions, self.krl.max_points);
+        parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
     }
 
     fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {

@@ -9,7 +9,7 @@ pub(crate) mod names;
 
 mod data;
 
-use super::{Chunk, Post, Values, ascii, crater_lines};
+use super::{Chunk, Post, Values, ascii, crater_lines, split};
 use crate::number::fixed;
 use crate::profile::{Process, Profile, Rapid, RapidArc, RapidModules};
 use crate::program::{Instruction, LayerProgram};
@@ -56,6 +56,34 @@ impl AbbRapid {
 
     fn with_arc(&self) -> bool {
         self.rapid.arc == RapidArc::Instructions
+    }
+
+    /// The module of a part of a layer, counted from 0, with what runs it.
+    fn module(
+        &mut self,
+        program: &LayerProgram,
+        part: usize,
+        moves: &[Instruction],
+        speeds: &Speeds,
+        feed: &mut f64,
+    ) -> Vec<Chunk> {
+        let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
+        let named = |prefix: &str| format!("{}{more}", self.numbered(prefix, program.index));
+        let (module, routine) = (named(&format!("{}_L", self.name)), named("Layer"));
+        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
+        text.reserve(moves.len() * 150);
+        let z = fixed(program.z, 3);
+        self.declare(&mut text, speeds);
+        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
+        if part == 0 {
+            self.lines(&mut text, &self.rapid.layer_start);
+        }
+        self.instructions(&mut text, moves, speeds, feed);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        let listed = self.rapid.modules == RapidModules::Call;
+        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
+        let run = self.main(self.run(&module, &routine));
+        [run, Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
     }
 
     fn main(&self, text: String) -> Chunk {
@@ -144,8 +172,8 @@ impl AbbRapid {
         statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
     }
 
-    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds) {
-        let mut feed = 1.0;
+    /// `feed` is the part of the nominal wire feed that was set last.
+    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
         for (i, &instruction) in all.iter().enumerate() {
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself goes there.
@@ -156,17 +184,17 @@ impl AbbRapid {
                     statement(text, &format!("! pass {pass} {}", kind.name()));
                     let before = i.checked_sub(1).and_then(|before| all.get(before));
                     let first = next.and_then(|next| match *next {
-                        Instruction::Weld { speed, .. } => Some(self.number(speeds, speed, feed)),
+                        Instruction::Weld { speed, .. } => Some(self.number(speeds, speed, *feed)),
                         _ => None,
                     });
                     self.arc_on(text, before, first);
                 }
                 (Instruction::WireFeed { ratio }, _) => {
-                    feed = ratio;
+                    *feed = ratio;
                     self.wire_feed(text, ratio);
                 }
                 (Instruction::Weld { to, circle, speed, last }, _) => {
-                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, feed), last);
+                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, *feed), last);
                 }
                 // The seamdata fill it.
                 (Instruction::Crater { .. }, _) if self.with_arc() => {}
@@ -246,8 +274,8 @@ impl AbbRapid {
 impl Post for AbbRapid {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
-        // Room for "_L" and the number.
-        self.name.truncate(names::MAX_NAME - 2 - self.digits);
+        // Room for "_L" and the number, and for that of a part: "_999".
+        self.name.truncate(names::MAX_NAME - 2 - self.digits - 4);
         let mut text = format!("MODULE {}\r\n", self.name);
         text.push_str(&format!("  ! {}\r\n", self.comment));
         for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
@@ -267,22 +295,12 @@ impl Post for AbbRapid {
         if program.instructions.is_empty() {
             return Vec::new();
         }
-        let (module, routine) =
-            (self.numbered(&format!("{}_L", self.name), program.index), self.numbered("Layer", program.index));
         self.values.set("layer", program.index + 1);
         let speeds = self.speeds(program);
-        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
-        text.reserve(program.instructions.len() * 150);
-        let z = fixed(program.z, 3);
-        self.declare(&mut text, &speeds);
-        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
-        self.lines(&mut text, &self.rapid.layer_start);
-        self.instructions(&mut text, &program.instructions, &speeds);
-        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
-        let listed = self.rapid.modules == RapidModules::Call;
-        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
-        let run = self.main(self.run(&module, &routine));
-        [run, Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
+        let parts = split::passes(&program.instructions, self.rapid.max_points);
+        let mut feed = 1.0;
+        let module = |(part, moves)| self.module(program, part, moves, &speeds, &mut feed);
+        parts.into_iter().enumerate().flat_map(module).collect()
     }
 
     fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {

@@ -2,6 +2,21 @@
 
 use crate::program::Instruction;
 
+/// Consecutive parts of whole passes, of at most `most` instructions (over 0) where no pass is longer than that.
+pub(super) fn passes(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
+    let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);
+    let ends = instructions.iter().enumerate().filter(|(_, i)| matches!(i, Instruction::ArcOff { .. }));
+    for end in ends.map(|(i, _)| i + 1) {
+        if end - start > most && between > start {
+            parts.push(&instructions[start..between]);
+            start = between;
+        }
+        between = end;
+    }
+    parts.push(&instructions[start..]);
+    parts
+}
+
 /// Consecutive parts of at most `most` instructions (over 0), cut between passes; a pass that is longer is cut between
 /// its moves.
 pub(super) fn parts(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
@@ -29,7 +44,7 @@ pub(super) fn parts(instructions: &[Instruction], most: usize) -> Vec<&[Instruct
 
 #[cfg(test)]
 mod tests {
-    use super::parts;
+    use super::{parts, passes};
     use crate::fill::PassKind;
     use crate::program::Instruction;
     use glam::DVec3;
@@ -48,6 +63,16 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         moves.iter().flat_map(pass).collect()
+    }
+
+    #[test]
+    fn whole_passes_stay_together() {
+        let sizes = |moves: &[usize]| passes(&layer(moves), 10).iter().map(|p| p.len()).collect::<Vec<_>>();
+        assert_eq!(sizes(&[3]), [7]);
+        assert_eq!(sizes(&[1, 1]), [10]);
+        assert_eq!(sizes(&[3, 3, 1]), [7, 7, 5]);
+        assert_eq!(sizes(&[25, 1, 25]), [29, 5, 29]);
+        assert_eq!(sizes(&[]), [0]);
     }
 
     #[test]

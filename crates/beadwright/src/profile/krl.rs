@@ -21,6 +21,9 @@ pub struct Krl {
     pub ptp_speed: f64,
     /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
     pub blend: f64,
+    /// Moves in one module; longer layers are cut between passes; default 2000.
+    #[serde(default = "two_thousand")]
+    pub max_points: usize,
     /// What switches the arc: `outputs`, the lines `arc_on` and `arc_off`, or `arctech`, the forms of ArcTech Basic; default
     /// outputs.
     #[serde(default)]
@@ -48,6 +51,10 @@ pub struct Krl {
     pub end: Vec<String>,
 }
 
+fn two_thousand() -> usize {
+    2000
+}
+
 impl Krl {
     /// Ranges of the numbers.
     pub(super) fn ranges(&self) -> Vec<Range> {
@@ -56,6 +63,7 @@ impl Krl {
             ("krl.base", self.base.into(), 1.0, 32.0, "(index into BASE_DATA)"),
             ("krl.ptp_speed", self.ptp_speed, 1.0, 100.0, "%"),
             ("krl.blend", self.blend, 0.0, 50.0, "mm"),
+            ("krl.max_points", self.max_points as f64, 10.0, 50_000.0, "moves a module"),
         ];
         ranges.extend(self.orientation.map(|angle| ("krl.orientation", angle, -360.0, 360.0, "°")));
         ranges.extend(self.arctech.iter().flat_map(|arctech| arctech.ranges()));

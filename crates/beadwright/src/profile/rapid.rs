@@ -51,6 +51,9 @@ pub struct Rapid {
     pub folder: String,
     /// Whether a `.pgf` that lists the modules is written.
     pub pgf: bool,
+    /// Moves in one module; longer layers are cut between passes; default 10000.
+    #[serde(default = "ten_thousand")]
+    pub max_points: usize,
     /// Axis position before and after the program, six axes, °.
     pub home: [f64; 6],
     /// Speed to and from it, mm/s.
@@ -135,6 +138,10 @@ pub struct RapidSeam {
     pub rollback_time: f64,
 }
 
+fn ten_thousand() -> usize {
+    10_000
+}
+
 impl Rapid {
     /// Ranges of the numbers.
     pub(super) fn ranges(&self) -> Vec<Range> {
@@ -143,6 +150,7 @@ impl Rapid {
             ("rapid.home_speed", self.home_speed, LEAST, 3000.0, "mm/s"),
             ("rapid.orientation_speed", self.orientation_speed, LEAST, 1000.0, "°/s"),
             ("rapid.zone", self.zone, 0.0, 50.0, "mm"),
+            ("rapid.max_points", self.max_points as f64, 10.0, 50_000.0, "moves a module"),
             ("rapid.tool_load", self.tool_load[0], LEAST, 500.0, "kg"),
             ("rapid.speed_step", self.speed_step, LEAST, 100.0, "mm/s"),
             ("rapid.schedule", self.schedule.into(), 0.0, 9999.0, "(synergic line or job)"),

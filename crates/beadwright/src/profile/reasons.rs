@@ -46,6 +46,7 @@ fn by_key(key: &str) -> Option<&'static str> {
         "motion.acceleration" => "a machine that hardly speeds up never gets there",
         "motion.corner_speed" => "a machine that stops at every corner has no corner speed to tell",
         "marlin.retract_length" => "more filament than this leaves the hot end",
+        "krl.max_points" | "rapid.max_points" => "the pendant cannot show longer modules",
         "fanuc.max_points" | "inform.max_points" => "larger programs do not load into the controller",
         _ => return None,
     })

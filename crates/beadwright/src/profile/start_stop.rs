@@ -76,6 +76,12 @@ impl StartStop {
         ]
     }
 
+    /// Whether metal is laid otherwise than a plan's passes tell.
+    pub fn changes_passes(&self) -> bool {
+        let leads = [(self.lead_in_length, self.lead_in_power), (self.lead_out_length, self.lead_out_power)];
+        self.end_overlap > 0.0 || leads.iter().any(|(length, power)| *length > 0.0 && *power != 1.0)
+    }
+
     /// Whether the wire feed changes at the end of a pass.
     pub(crate) fn crater_is_weaker(&self) -> bool {
         self.crater_fill_time > 0.0 && self.crater_power < 1.0

@@ -13,7 +13,7 @@
 mod path;
 mod torch;
 
-pub use path::path;
+pub use path::{path, welded};
 pub(crate) use torch::retract_time;
 pub use torch::{Approach, Pause, Torch, Welded};
 
