@@ -2,6 +2,7 @@
 
 use crate::actions::{self, Action};
 use crate::export::{self, Paper};
+use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{self, Ask, Job};
 use crate::panels;
@@ -20,6 +21,7 @@ use beadwright::robot::Reach;
 use eframe::egui::{self, Context, ViewportCommand};
 use eframe::egui_wgpu::RenderState;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// A second plan of the same part, with another strategy.
 pub struct Other {
@@ -50,6 +52,8 @@ pub struct Studio {
     pub(crate) flat: View2d,
     /// What went wrong or was done, as sentences, the newest last.
     pub(crate) messages: Vec<Message>,
+    /// The profile as its form needs it, of the text that it was read from last.
+    parsed: Option<Rc<Parsed>>,
     /// What is wrong with the value of a key that was typed.
     pub(crate) refused: Option<(String, String)>,
     pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
@@ -99,6 +103,7 @@ impl Studio {
             solid: View3d::default(),
             flat: View2d::default(),
             messages: Vec::new(),
+            parsed: None,
             refused: None,
             dialog: None,
             exporting: panels::export::What::default(),
@@ -130,6 +135,15 @@ impl Studio {
     /// The project.
     pub fn project(&self) -> &Project {
         self.project.now()
+    }
+
+    /// The profile as its form needs it.
+    pub(crate) fn parsed(&mut self) -> Option<Rc<Parsed>> {
+        let text = &self.project.now().profile;
+        if self.parsed.as_ref().is_none_or(|parsed| parsed.text != *text) {
+            self.parsed = Parsed::of(text).map(Rc::new);
+        }
+        self.parsed.clone()
     }
 
     /// The plan, as far as it has come.

@@ -164,6 +164,27 @@ fn text(value: &Value, key: &str) -> String {
     value[key].as_str().unwrap_or_default().to_owned()
 }
 
+/// A profile with what a form needs of it.
+pub struct Parsed {
+    /// Its text.
+    pub text: String,
+    /// The profile.
+    pub profile: Profile,
+    /// Its values with all defaults.
+    pub values: toml::Table,
+    /// What its numbers can be.
+    pub limits: Vec<Limit>,
+}
+
+impl Parsed {
+    /// Reads the text of a profile; none where it cannot be read.
+    pub fn of(text: &str) -> Option<Self> {
+        let profile = Profile::parse(text).ok()?;
+        let (values, limits) = (toml::Table::try_from(&profile).ok()?, profile.limits());
+        Some(Self { text: text.to_owned(), profile, values, limits })
+    }
+}
+
 /// The value of a key, as it holds with all defaults; none where it is left out.
 pub fn value(profile: &toml::Table, key: &str) -> Option<toml::Value> {
     let mut parts = key.split('.');

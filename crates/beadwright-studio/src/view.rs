@@ -54,6 +54,8 @@ pub struct ViewState {
     pub colour: Colour,
     /// Whether the part is shown.
     pub mesh: bool,
+    /// Whether travels, starts and ends are shown of all layers, and not of the highest only.
+    pub all_marks: bool,
     /// Whether lines that are parallel look so.
     pub parallel: bool,
     /// What else is shown.
@@ -86,6 +88,7 @@ impl Default for ViewState {
             torch: None,
             colour: Colour::Kind,
             mesh: true,
+            all_marks: false,
             parallel: false,
             show: Show::default(),
             chosen: None,

@@ -4,7 +4,7 @@ use crate::view3d::palette;
 use beadwright::deposit::{Judgement, Picture, picture};
 use beadwright::fill::PassKind;
 use beadwright::fill::hybrid::Steps;
-use beadwright::plan::Layer;
+use beadwright::plan::{Layer, Segment};
 use beadwright::planar::Bounds;
 use eframe::egui::{
     self, Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
@@ -296,37 +296,59 @@ impl Pen<'_> {
     }
 
     fn passes(&self, subject: &Subject<'_>, show: Show) {
-        let (mut left, mut torch) = (subject.pieces, None);
-        for (i, pass) in subject.layer.passes.iter().enumerate() {
-            let Some(start) = pass.start().filter(|_| left > 0) else { break };
+        let mut left = subject.pieces;
+        let shown = subject.layer.passes.iter().map(|pass| {
+            let pieces: Vec<_> = pass.segments().take(left).collect();
+            left -= pieces.len();
+            (pass.kind, pieces)
+        });
+        let shown: Vec<(PassKind, Vec<Segment>)> = shown.collect();
+        // Under the colours of heights, beads would only hide them.
+        if show.beads && !show.heights {
+            for (i, (kind, pieces)) in shown.iter().enumerate() {
+                self.bead(*kind, pieces, subject.chosen == Some(i));
+            }
+            self.outlines(subject.layer);
+        }
+        let (mut torch, weak) = (None, Stroke::new(1.0, self.ui.visuals().weak_text_color()));
+        for (i, (kind, pieces)) in shown.iter().enumerate() {
+            let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { break };
+            let [start, end] = [first.from, last.to].map(|p| self.at(p.truncate()));
             if let (true, Some(from)) = (show.travels, torch) {
-                let line = [self.at(from), self.at(start.truncate())];
-                let stroke = Stroke::new(1.0, self.ui.visuals().weak_text_color());
-                self.painter.extend(Shape::dashed_line(&line, stroke, 5.0, 4.0));
+                self.painter.extend(Shape::dashed_line(&[from, start], weak, 5.0, 4.0));
             }
-            let shown: Vec<_> = pass.segments().take(left).collect();
-            left -= shown.len();
-            let hue = colour(pass.kind);
-            let chosen = subject.chosen == Some(i);
-            for s in &shown {
-                let line = [self.at(s.from.truncate()), self.at(s.to.truncate())];
-                // Under the colours of heights, beads would only hide them.
-                if show.beads && !show.heights {
-                    let strength = if chosen { 200 } else { 90 };
-                    let ink = Color32::from_rgba_unmultiplied(hue.r(), hue.g(), hue.b(), strength);
-                    self.painter.line_segment(line, Stroke::new(self.points(s.width), ink));
-                }
-                if show.paths {
-                    let ink = if show.heights { Color32::BLACK } else { hue };
-                    self.painter.line_segment(line, Stroke::new(if chosen { 3.0 } else { 1.5 }, ink));
-                }
+            if show.paths {
+                let ink = if show.heights { Color32::BLACK } else { colour(*kind) };
+                let width = if subject.chosen == Some(i) { 3.0 } else { 1.5 };
+                let points = pieces.iter().map(|s| s.to).map(|p| self.at(p.truncate()));
+                self.painter.add(Shape::line([start].into_iter().chain(points).collect(), Stroke::new(width, ink)));
             }
-            let end = shown.last().map_or(start, |s| s.to);
             if show.starts {
-                self.painter.circle_filled(self.at(start.truncate()), 3.5, START);
-                self.painter.circle_filled(self.at(end.truncate()), 2.5, END);
+                self.painter.circle_filled(start, 3.5, START);
+                self.painter.circle_filled(end, 2.5, END);
             }
-            torch = Some(end.truncate());
+            torch = Some(end);
+        }
+    }
+
+    /// A bead in a pale colour that covers what lies below it, round at its ends and corners.
+    fn bead(&self, kind: PassKind, pieces: &[Segment], chosen: bool) {
+        /// Cosine of the turn from which on a corner would show a gap.
+        const GAP: f64 = 0.995;
+        let ground = self.ui.visuals().panel_fill;
+        let ink = ground.lerp_to_gamma(colour(kind), if chosen { 0.8 } else { 0.4 });
+        let way = |s: &Segment| (s.to - s.from).normalize_or_zero();
+        for (i, s) in pieces.iter().enumerate() {
+            let line = [s.from, s.to].map(|p| self.at(p.truncate()));
+            let width = self.points(s.width);
+            self.painter.line_segment(line, Stroke::new(width, ink));
+            let before = i.checked_sub(1).map(|before| &pieces[before]);
+            if before.is_none_or(|before| way(before).dot(way(s)) < GAP) {
+                self.painter.circle_filled(line[0], width / 2.0, ink);
+            }
+            if i + 1 == pieces.len() {
+                self.painter.circle_filled(line[1], width / 2.0, ink);
+            }
         }
     }
 

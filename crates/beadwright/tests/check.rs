@@ -169,6 +169,10 @@ fn towers_stacked_starts_and_large_layers_are_found() {
     assert!(names.contains(&"stacked-starts") && names.contains(&"towers"), "{names:?}");
     profile.check.max_points = 20;
     assert!(found(&stack(1), &profile).contains(&"program-size"));
+    profile.check.max_points = 20_000;
+    assert!(!found(&stack(1), &profile).contains(&"program-size"));
+    profile.check.max_plan_points = Some(20);
+    assert!(found(&stack(1), &profile).contains(&"program-size"));
 }
 
 #[test]

@@ -92,8 +92,7 @@ fn languages(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn bar(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.plan.profile.as_ref().map(|profile| profile.fill.strategy.clone());
-    let now = now.unwrap_or_else(|| strategy_of(&studio.project().profile));
+    let now = studio.parsed().map(|parsed| parsed.profile.fill.strategy.clone()).unwrap_or_default();
     let label = ui.label(studio.t("strategy"));
     let mut chosen = now.clone();
     let combo = ComboBox::from_id_salt("strategy").selected_text(&now).show_ui(ui, |ui| {
@@ -121,12 +120,14 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
         None if studio.plan.is_complete() => {
             ui.label(studio.t("ready"));
         }
+        None if studio.plan.failure.is_none() && studio.plan.part.is_some() => {
+            ui.label(studio.t("stopped"));
+            if ui.button(studio.t("plan")).clicked() {
+                studio.act(Action::Plan);
+            }
+        }
         None => {}
     }
-}
-
-fn strategy_of(profile: &str) -> String {
-    beadwright::profile::Profile::parse(profile).map(|profile| profile.fill.strategy).unwrap_or_default()
 }
 
 fn stage_text(stage: Stage) -> &'static str {

@@ -9,15 +9,14 @@ use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Response, RichText, Te
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.separator();
     ui.heading(studio.t("parameters"));
-    let Ok(profile) = Profile::parse(&studio.project().profile) else { return };
-    choose(studio, ui, &profile);
+    let Some(parsed) = studio.parsed() else { return };
+    choose(studio, ui, &parsed.profile);
     let label = ui.label(studio.t("search"));
     ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
     if let Some((key, reason)) = studio.refused.clone() {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
     }
-    let (values, limits) = (values(&profile), profile.limits());
-    let mut form = Form { studio, values: &values, limits: &limits };
+    let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
     for section in form::sections() {
         form.section(ui, section);
     }
@@ -38,11 +37,6 @@ fn choose(studio: &mut Studio, ui: &mut Ui, profile: &Profile) {
     if ui.button(studio.t("profile-file")).clicked() {
         studio.ask(Ask::OpenProfile);
     }
-}
-
-/// The values with all defaults.
-fn values(profile: &Profile) -> toml::Table {
-    toml::Table::try_from(profile).unwrap_or_default()
 }
 
 struct Form<'a> {

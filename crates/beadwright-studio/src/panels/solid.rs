@@ -27,12 +27,13 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn bar(studio: &mut Studio, ui: &mut Ui) {
-    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "parallel"].map(|key| studio.t(key));
-    let [mesh, beads, travels, starts, parallel] = texts;
+    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "parallel"];
+    let [mesh, beads, travels, starts, all_marks, parallel] = texts.map(|key| studio.t(key));
     ui.checkbox(&mut studio.view.mesh, mesh);
     ui.checkbox(&mut studio.view.show.beads, beads);
     ui.checkbox(&mut studio.view.show.travels, travels);
     ui.checkbox(&mut studio.view.show.starts, starts);
+    ui.checkbox(&mut studio.view.all_marks, all_marks);
     ui.checkbox(&mut studio.view.parallel, parallel);
     let label = ui.label(studio.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
@@ -95,6 +96,7 @@ pub(crate) fn style(studio: &Studio) -> Style {
         mesh: view.mesh,
         travels: view.show.travels,
         starts: view.show.starts,
+        marks_from: if view.all_marks { 0 } else { view.last },
         beads: view.show.beads,
         layers: view.first..=view.last,
         segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),

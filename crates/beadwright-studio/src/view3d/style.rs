@@ -31,6 +31,8 @@ pub struct Style {
     pub travels: bool,
     /// Whether starts and ends of passes are marked.
     pub starts: bool,
+    /// The first layer, from 0, whose travels, starts and ends are shown.
+    pub marks_from: usize,
     /// Whether beads are shown.
     pub beads: bool,
     /// The layers shown, from 0.
@@ -52,6 +54,7 @@ impl Default for Style {
             mesh: true,
             travels: false,
             starts: false,
+            marks_from: 0,
             beads: true,
             layers: 0..=usize::MAX,
             segments_of_last: None,

@@ -1,20 +1,29 @@
 //! Programs too large for a controller.
 
 use super::{Check, Finding, Subject};
+use crate::plan::Layer;
 
 pub(super) const CHECK: Check = Check {
     name: "program-size",
-    what: "layers with more points than check.max_points",
-    why: "the module of the layer does not load, or the pendant cannot show it",
-    example: "layer 3: it has 61000 points; 20000 are the most for one module.",
-    remedy: "raise slice.simplify, or let arcs be fitted",
+    what: "layers with more points than check.max_points, plans with more than check.max_plan_points",
+    why: "the module of the layer does not load, or the controller's memory is full before the part is done",
+    example: "layer 3: it has 61000 points; 20000 are the most for one layer.",
+    remedy: "raise slice.simplify, let arcs be fitted, or load layer by layer",
     find,
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let most = subject.profile.check.max_points as usize;
-    let points = |layer: &crate::plan::Layer| layer.passes.iter().map(|p| p.points.len()).sum::<usize>();
-    let large = subject.layers.iter().filter(|layer| points(layer) > most);
-    let text = |count: usize| format!("it has {count} points; {most} are the most for one module.");
-    large.map(|layer| Finding::of_layer(&CHECK, layer, text(points(layer)))).collect()
+    let (limits, sizes) = (&subject.profile.check, subject.layers.iter().map(|layer| (*layer, points(layer))));
+    let most = limits.max_points as usize;
+    let large = sizes.clone().filter(|(_, size)| *size > most);
+    let text = |count: usize| format!("it has {count} points; {most} are the most for one layer.");
+    let layers = large.map(|(layer, count)| Finding::of_layer(&CHECK, layer, text(count)));
+    let all: usize = sizes.map(|(_, size)| size).sum();
+    let plan = limits.max_plan_points.filter(|most| all > *most as usize);
+    let plan = plan.map(|most| Finding::of_plan(&CHECK, format!("The plan has {all} points; {most} are the most.")));
+    layers.chain(plan).collect()
+}
+
+fn points(layer: &Layer) -> usize {
+    layer.passes.iter().map(|pass| pass.points.len()).sum()
 }

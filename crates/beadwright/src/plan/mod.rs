@@ -258,13 +258,7 @@ pub fn plan_layers<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let name = &profile.fill.strategy;
-    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
-    check_layer_count(mesh, profile)?;
-    let slabs = match profile.wall_bead()? {
-        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
-        None => slice::even_slabs(mesh, profile.layers.height),
-    };
+    let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
@@ -284,6 +278,22 @@ pub fn plan_layers<S: Sink + Send>(
         )));
     }
     Ok(summary)
+}
+
+/// The strategy of a profile, and where the layers of a mesh lie.
+fn strategy_and_slabs<E>(
+    mesh: &Mesh,
+    profile: &Profile,
+    task: &Task,
+) -> Result<(&'static dyn Strategy, Vec<Slab>), PlanError<E>> {
+    let name = &profile.fill.strategy;
+    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
+    check_layer_count(mesh, profile)?;
+    let slabs = match profile.wall_bead()? {
+        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
+        None => slice::even_slabs(mesh, profile.layers.height),
+    };
+    Ok((strategy, slabs))
 }
 
 /// Plans a wall given by its centre-lines, one bead thick, up to a height (mm), and hands every layer to `sink`.

@@ -1,12 +1,11 @@
 //! One layer before the others: what a person looks at while the rest is planned.
 
-use super::{Emitter, Layer, PlanError, Sink, check_layer_count, fill_planned, levels, scan_lines, weld_curves};
+use super::{Emitter, Layer, PlanError, Sink, fill_planned, levels, scan_lines, strategy_and_slabs, weld_curves};
 use crate::bead::wall::WallBead;
-use crate::fill;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
 use crate::profile::{Profile, RasterTurn};
-use crate::slice::{self, BATCH, Slab, Slicer};
+use crate::slice::{BATCH, Slab, Slicer};
 use crate::task::Task;
 use crate::warning::Warnings;
 use std::convert::Infallible;
@@ -43,13 +42,7 @@ fn of_mesh(
     index: usize,
     task: &Task,
 ) -> Result<Option<super::Filled>, PlanError<Infallible>> {
-    let name = &profile.fill.strategy;
-    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
-    check_layer_count(mesh, profile)?;
-    let slabs = match profile.wall_bead()? {
-        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
-        None => slice::even_slabs(mesh, profile.layers.height),
-    };
+    let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
     let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;

@@ -27,6 +27,8 @@ pub struct CheckLimits {
     pub stacked_starts: u32,
     /// Most points of a layer; default 20000.
     pub max_points: u32,
+    /// Most points of the whole plan, where the controller must hold all of it: a KR C4 has room for about 50,000; no default.
+    pub max_plan_points: Option<u32>,
 }
 
 impl Default for CheckLimits {
@@ -42,6 +44,7 @@ impl Default for CheckLimits {
             min_layer_time: None,
             stacked_starts: 12,
             max_points: 20_000,
+            max_plan_points: None,
         }
     }
 }

@@ -118,6 +118,7 @@ pub(super) fn ranges(p: &Profile) -> Vec<Range> {
         ("check.min_layer_time", p.check.min_layer_time.unwrap_or(1.0), 0.0, 1e6, "s"),
         ("check.stacked_starts", p.check.stacked_starts.into(), 2.0, 1e6, "layers"),
         ("check.max_points", p.check.max_points.into(), 10.0, 1e8, "points"),
+        ("check.max_plan_points", p.check.max_plan_points.unwrap_or(50_000).into(), 10.0, 1e9, "points"),
         ("travel.speed", p.travel.speed, TINY, 3000.0, "mm/s"),
         ("travel.clearance", p.travel.clearance, 0.0, 1000.0, "mm"),
         ("program.chord_tolerance", p.program.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)"),

@@ -181,12 +181,14 @@ impl Chunk {
             end = partly(end_of(last - 1), layer, limit);
         }
         let range = |of: fn(&Counts) -> usize| of(&begin) as u32..of(&end) as u32;
+        let unmarked = end_of(self.slots.partition_point(|slot| slot.layer < style.marks_from).clamp(first, last));
+        let marks = |of: fn(&Counts) -> usize| of(&unmarked) as u32..of(&end).max(of(&unmarked)) as u32;
         Ranges {
             beads: self.pieces(first..last, range(|c| c.beads), |c| c.beads),
             rough: self.pieces(first..last, range(|c| c.rough), |c| c.rough),
             caps: range(|c| c.caps),
-            travels: range(|c| c.travels),
-            dots: range(|c| c.dots),
+            travels: marks(|c| c.travels),
+            dots: marks(|c| c.dots),
         }
     }
 
