@@ -6,7 +6,7 @@ use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{self, Ask, Job};
 use crate::panels;
-use crate::planner::Planner;
+use crate::planner::{Haste, Planner};
 use crate::project::{Project, Source};
 use crate::settings::{Settings, Store, write_whole};
 use crate::state::PlanState;
@@ -20,8 +20,10 @@ use beadwright::profile::{Profile, edit};
 use beadwright::robot::Reach;
 use eframe::egui::{self, Context, ViewportCommand};
 use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::wgpu::DeviceType;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::Duration;
 
 /// A second plan of the same part, with another strategy.
 pub struct Other {
@@ -85,12 +87,11 @@ impl Studio {
     /// The program in a window; `store` remembers things.
     pub fn new(cc: &eframe::CreationContext<'_>, store: Store) -> Self {
         let ctx = cc.egui_ctx.clone();
-        let bell = ctx.clone();
         let settings = store.settings();
         let studio = Self {
             chinese: crate::fonts::add_chinese(&ctx),
             render_state: cc.wgpu_render_state.clone(),
-            planner: Planner::new(move || bell.request_repaint()),
+            planner: Planner::new(bell(&ctx, cc.wgpu_render_state.as_ref())),
             lost: None,
             ctx,
             settings,
@@ -284,10 +285,9 @@ impl Studio {
             self.other = None;
             return;
         };
-        let bell = self.ctx.clone();
         let mut other = Other {
             strategy: strategy.to_owned(),
-            planner: Planner::new(move || bell.request_repaint()),
+            planner: Planner::new(bell(&self.ctx, self.render_state.as_ref())),
             plan: PlanState::default(),
             flat: View2d::default(),
         };
@@ -496,6 +496,18 @@ impl Studio {
 
 fn read_text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()))
+}
+
+/// Draws the window again when the planner has something to tell: at once, or within a while where drawing in software
+/// would hold up planning.
+fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Haste) + Send + Sync + 'static {
+    const WHILE: Duration = Duration::from_millis(500);
+    let in_software = render_state.is_some_and(|state| state.adapter.get_info().device_type == DeviceType::Cpu);
+    let ctx = ctx.clone();
+    move |haste| match haste {
+        Haste::Soon if in_software => ctx.request_repaint_after(WHILE),
+        _ => ctx.request_repaint(),
+    }
 }
 
 /// A project with another strategy.

@@ -62,22 +62,42 @@ struct Request {
     task: Task,
 }
 
+/// How soon an event wants to be seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Haste {
+    /// At once: something that a person waits for.
+    Now,
+    /// With others like it.
+    Soon,
+}
+
+type Notify = Arc<dyn Fn(Haste) + Send + Sync>;
+
+impl Event {
+    fn haste(&self) -> Haste {
+        match self {
+            Self::Part(..) | Self::Preview(..) | Self::Planned(_) | Self::Checked(..) | Self::Failed(_) => Haste::Now,
+            Self::Progress(..) | Self::Begin(_) | Self::Layer(..) | Self::Judged(..) => Haste::Soon,
+        }
+    }
+}
+
 /// The thread, and what is to be heard of it.
 pub struct Planner {
     requests: Sender<Request>,
     events: Receiver<(u64, Event)>,
     number: u64,
     task: Task,
-    notify: Arc<dyn Fn() + Send + Sync>,
+    notify: Notify,
     sender: Sender<(u64, Event)>,
 }
 
 impl Planner {
     /// A planner that calls `notify` when there is something to hear.
-    pub fn new(notify: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(notify: impl Fn(Haste) + Send + Sync + 'static) -> Self {
         let (requests, inbox) = channel::<Request>();
         let (sender, events) = channel();
-        let notify: Arc<dyn Fn() + Send + Sync> = Arc::new(notify);
+        let notify: Notify = Arc::new(notify);
         let (outbox, bell) = (sender.clone(), notify.clone());
         std::thread::spawn(move || serve(&inbox, &outbox, &bell));
         Self { requests, events, number: 0, task: Task::new(), notify, sender }
@@ -90,7 +110,7 @@ impl Planner {
         let (number, sender, bell) = (self.number, self.sender.clone(), self.notify.clone());
         self.task = Task::with_progress(move |stage, fraction| {
             if sender.send((number, Event::Progress(stage, fraction))).is_ok() {
-                bell();
+                bell(Haste::Soon);
             }
         });
         let request = Request { number, project: project.clone(), layer, task: self.task.clone() };
@@ -133,7 +153,7 @@ struct PartKey {
     bead_width: f64,
 }
 
-fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Arc<dyn Fn() + Send + Sync>) {
+fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify) {
     let mut kept = Kept::default();
     while let Ok(mut request) = inbox.recv() {
         // Only the newest counts.
@@ -142,8 +162,9 @@ fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Arc<dy
         }
         let number = request.number;
         let send = |event: Event| {
+            let haste = event.haste();
             if outbox.send((number, event)).is_ok() {
-                bell();
+                bell(haste);
             }
         };
         match work(&request, &mut kept, &send) {
