@@ -16,6 +16,7 @@ mod progress;
 mod reach;
 mod reproduce;
 mod simulate;
+mod studio;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -52,6 +53,8 @@ enum Command {
     /// List, print or check profiles, or print their JSON schema.
     #[command(subcommand)]
     Profile(profile::Command),
+    /// Open the desktop program: see the part, the beads and the voids, change a parameter, export.
+    Studio(studio::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -66,6 +69,10 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),
         Command::Profile(command) => profile::run(&command),
+        Command::Studio(arguments) => match studio::run(&arguments) {
+            Ok(status) => return status,
+            Err(error) => Err(error),
+        },
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -466,3 +466,40 @@ fn programs_of_every_robot_are_simulated_and_inspected() {
     assert!(ok(folder.path(), &["inspect", "out/CROSS.ls", "-p", "cmt-steel-robots"]).contains("arc starts"));
     assert!(ok(folder.path(), &["inspect", "out/plan.json"]).contains("deposited length"));
 }
+
+/// The command alone in a folder, on the file system of the build, so that nothing is copied: a program that was just
+/// written may be refused as busy.
+fn alone() -> (TempDir, PathBuf) {
+    let folder = TempDir::new_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
+    let program = folder.path().join(format!("beadwright{}", std::env::consts::EXE_SUFFIX));
+    fs::hard_link(env!("CARGO_BIN_EXE_beadwright"), &program).unwrap();
+    (folder, program)
+}
+
+#[test]
+fn a_studio_that_is_not_there_is_told() {
+    let (folder, program) = alone();
+    let output = Command::new(program).args(["studio", "propeller"]).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains(&folder.path().join("beadwright-studio").display().to_string()), "{said}");
+    assert!(said.contains("cargo build --release -p beadwright-studio"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_studio_beside_the_command_is_started() {
+    let (folder, program) = alone();
+    std::os::unix::fs::symlink("/bin/sh", folder.path().join("beadwright-studio")).unwrap();
+    let run = |script: &str| {
+        let arguments = ["studio", "-c", script, "studio", "part.stl", "--view", "layer", "--help"];
+        Command::new(&program).args(arguments).output().unwrap()
+    };
+    let output = run("echo $*; exit 7");
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "part.stl --view layer --help\n");
+    assert_eq!(output.status.code(), Some(7));
+    assert!(output.stderr.is_empty());
+    assert_eq!(run("exit 0").status.code(), Some(0));
+    assert_eq!(run("kill -9 $$").status.code(), Some(1));
+}

@@ -6,6 +6,7 @@ use beadwright_studio::view::{Mode, Side};
 use clap::{Parser, ValueEnum};
 use eframe::egui::ViewportBuilder;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// See the part, the beads and the voids before wire is burnt; change a parameter; export the robot program.
 #[derive(Parser)]
@@ -29,8 +30,8 @@ struct Arguments {
     #[arg(long, value_name = "STRATEGY")]
     compare_with: Option<String>,
     /// A value of the profile, such as fill.strategy=hybrid; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, String)>,
     /// Folder for settings and the project kept aside, instead of the user's own.
     #[arg(long, value_name = "DIR")]
     store: Option<PathBuf>,
@@ -51,7 +52,13 @@ enum Panel {
     Export,
 }
 
-fn main() -> eframe::Result {
+/// A key and its value.
+fn setting(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE")?;
+    Ok((key.to_owned(), value.to_owned()))
+}
+
+fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let viewport = ViewportBuilder::default()
         .with_inner_size([1280.0, 800.0])
@@ -61,23 +68,35 @@ fn main() -> eframe::Result {
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
     let app: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(begin(cc, &arguments))));
-    eframe::run_native("Beadwright Studio", options, app)
+    match eframe::run_native("Beadwright Studio", options, app) {
+        Ok(()) => ExitCode::SUCCESS,
+        // Without a window there is only the console to tell it.
+        Err(error) => {
+            let reason = error.to_string();
+            let reason = reason.trim_end_matches('.');
+            eprintln!(
+                "error: the window cannot be opened: {reason}. It needs a screen, and a driver for Vulkan, Metal, Direct3D \
+                 12 or OpenGL; on Linux, mesa-vulkan-drivers does without a graphics card."
+            );
+            ExitCode::FAILURE
+        }
+    }
 }
 
 fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
     let store = arguments.store.clone().map_or_else(Store::of_user, Store::at);
     let mut studio = Studio::new(cc, store);
-    for setting in &arguments.set {
-        if let Some((key, value)) = setting.split_once('=') {
-            studio.set_value(key, value);
-        }
+    // Before the first change, which takes its place.
+    studio.offer_lost();
+    for (key, value) in &arguments.set {
+        studio.set_value(key, value);
     }
     match arguments.file.as_deref() {
         Some(file) => match file.to_str().filter(|name| !file.exists() && beadwright::example::find(name).is_some()) {
             Some(example) => studio.open_example(example),
             None => studio.open(file),
         },
-        None => studio.offer_lost(),
+        None => {}
     }
     if let Some(strategy) = &arguments.compare_with {
         studio.compare_with(Some(strategy));
