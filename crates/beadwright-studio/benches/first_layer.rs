@@ -1,8 +1,9 @@
 //! From drop to first planned layer: `cargo bench -p beadwright-studio --bench first_layer`.
 //!
 //! Drives the planner of the window, without a window: ms from the request until the part is read and placed, until the
-//! layer in view is planned (the *first layer*), until the 3-D view has drawn part and layer (on any adapter; the planner
-//! goes on meanwhile), until all layers are planned, and until they are judged and checked. The bunny of 1.1 million
+//! layer in view is planned (the *first layer*), until the 3-D view has drawn part and layer (on any adapter; pipelines
+//! and buffers are made anew each time; the planner goes on meanwhile but is heard only then), until all layers are
+//! planned, and until they are judged and checked. The bunny of 1.1 million
 //! triangles lies in the folder that `BEADWRIGHT_MODELS` names; the propeller in `examples/`.
 
 use beadwright_studio::planner::{Event, Failure, Planner};
