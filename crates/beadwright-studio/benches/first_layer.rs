@@ -52,7 +52,7 @@ const BUNNY: &str = "bunny_1114k.stl.gz";
 fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
     let state = headless().inspect_err(|error| println!("nothing is drawn: {error}")).ok();
     let (sender, bell) = channel();
-    let mut planner = Planner::new(move || sender.send(()).unwrap_or_default());
+    let mut planner = Planner::new(move |_| sender.send(()).unwrap_or_default());
     let project = Project { source: Some(Source::File(path.to_owned())), ..Project::default() };
     let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     run(&mut planner, &bell, state.as_ref(), &project, &name)?;

@@ -1,6 +1,11 @@
 //! What a person can do, with its key: menus, keys and the list of keys are made from one table.
 
-use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
+use crate::app::Studio;
+use crate::jobs::Ask;
+use crate::panels;
+use crate::view::Mode;
+use crate::view3d::StandardView;
+use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup, ViewportCommand};
 
 /// Something that is done at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,4 +126,82 @@ pub fn pressed(ctx: &Context) -> Vec<Action> {
         free && ctx.input_mut(|input| input.consume_shortcut(&key))
     };
     ENTRIES.iter().filter(meant).map(|entry| entry.action).collect()
+}
+
+impl Studio {
+    /// Does what was asked for.
+    pub fn act(&mut self, action: Action) {
+        match action {
+            Action::Open => self.ask(Ask::Open),
+            Action::Save => match self.file.clone() {
+                Some(path) => self.save_to(&path),
+                None => self.ask(Ask::SaveProject),
+            },
+            Action::SaveAs => self.ask(Ask::SaveProject),
+            Action::ExportProgram => {
+                let dialect = self.view.dialect.clone();
+                self.exporting = panels::export::What::Program(dialect);
+                self.ask(Ask::Folder);
+            }
+            Action::Undo => {
+                let undone = self.project.undo();
+                self.went(undone);
+            }
+            Action::Redo => {
+                let redone = self.project.redo();
+                self.went(redone);
+            }
+            Action::Plan => self.replan(),
+            Action::Stop => {
+                self.planner.cancel();
+                self.plan.progress = None;
+                if let Some(other) = &mut self.other {
+                    other.planner.cancel();
+                    other.plan.progress = None;
+                }
+                self.view.playing = false;
+            }
+            Action::Solid => self.view.mode = Mode::Solid,
+            Action::Layer => self.view.mode = Mode::Layer,
+            Action::Compare => self.view.mode = Mode::Compare,
+            Action::Fit => {
+                self.flat.fit();
+                self.solid.fit();
+            }
+            Action::Top => self.look(StandardView::Top),
+            Action::Front => self.look(StandardView::Front),
+            Action::Right => self.look(StandardView::Right),
+            Action::Corner => self.look(StandardView::Iso),
+            Action::Up => self.view.step_layer(1, self.plan.layer_count()),
+            Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
+            Action::Play => {
+                let starts = !self.view.playing && self.plan.summary.is_some();
+                self.view.play(starts, &self.plan.scene);
+            }
+            Action::Theme => {
+                self.settings.light = !self.settings.light;
+                self.apply_theme();
+                self.store.keep_settings(&self.settings);
+            }
+            Action::Keys => self.view.keys = !self.view.keys,
+            Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    /// A step of the history was taken.
+    fn went(&mut self, gone: bool) {
+        // Before the file was opened there was another project: saving must not put that one into the file.
+        if self.project.steps() < self.opened {
+            self.file = None;
+        }
+        self.refused = None;
+        if gone {
+            self.replan();
+        }
+    }
+
+    fn look(&mut self, from: StandardView) {
+        self.solid.camera.set_view(from);
+        self.solid.fit();
+    }
 }

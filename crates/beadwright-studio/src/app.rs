@@ -1,24 +1,23 @@
 //! The window: where project, planner, views and panels are put together.
 
-use crate::actions::{self, Action};
-use crate::export::{self, Paper};
+use crate::actions;
 use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{self, Ask, Job};
 use crate::panels;
 use crate::planner::{Haste, Planner};
-use crate::project::{Project, Source};
-use crate::settings::{Settings, Store, write_whole};
+use crate::project::Project;
+use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::text::Language;
-use crate::view::{Mode, ViewState};
+use crate::view::ViewState;
 use crate::view2d::View2d;
-use crate::view3d::{StandardView, View3d};
+use crate::view3d::View3d;
 use beadwright::bead::library::BeadLibrary;
 use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::Reach;
-use eframe::egui::{self, Context, ViewportCommand};
+use eframe::egui::{self, Context};
 use eframe::egui_wgpu::RenderState;
 use eframe::egui_wgpu::wgpu::DeviceType;
 use std::path::{Path, PathBuf};
@@ -73,7 +72,7 @@ pub struct Studio {
     /// The project as it was kept aside last.
     kept: Project,
     /// Steps of the history when the project was opened.
-    opened: usize,
+    pub(crate) opened: usize,
 }
 
 /// A sentence in the window.
@@ -188,46 +187,6 @@ impl Studio {
         }
     }
 
-    /// Opens a model or a project.
-    pub fn open(&mut self, path: &Path) {
-        // A project keeps the path, and is opened from anywhere.
-        let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
-        if is_project {
-            self.open_project(path);
-        } else {
-            self.file = None;
-            self.open_model(Source::File(path.to_owned()));
-        }
-        self.settings.remember(path);
-        self.store.keep_settings(&self.settings);
-    }
-
-    /// Opens one of the example parts.
-    pub fn open_example(&mut self, name: &str) {
-        self.file = None;
-        self.open_model(Source::Example(name.to_owned()));
-    }
-
-    fn open_model(&mut self, source: Source) {
-        let profile = self.project().profile.clone();
-        let project = Project { source: Some(source), profile, ..Project::default() };
-        self.begin(project);
-    }
-
-    fn open_project(&mut self, path: &Path) {
-        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let project = read_text(path);
-        let project = project.and_then(|text| Project::read(&text, path.parent()).map_err(|error| named(&error)));
-        match project {
-            Ok(project) => {
-                self.file = Some(path.to_owned());
-                self.begin(project);
-            }
-            Err(error) => self.complain(error),
-        }
-    }
-
     /// Works on another project from now on.
     pub(crate) fn begin(&mut self, project: Project) {
         self.project.seal();
@@ -320,192 +279,6 @@ impl Studio {
         self.other = Some(other);
     }
 
-    /// Writes the project file.
-    pub fn save_to(&mut self, path: &Path) {
-        let written = self.project().write(path.parent());
-        let written = written
-            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|e| format!("{}: {e}.", path.display())));
-        match written {
-            Ok(()) => {
-                self.file = Some(path.to_owned());
-                self.settings.remember(path);
-                self.store.keep_settings(&self.settings);
-                self.say(format!("{} {}", self.t("written"), path.display()));
-            }
-            Err(error) => self.complain(error),
-        }
-    }
-
-    /// Writes the program in a dialect into a folder.
-    pub fn export_program(&mut self, dialect: &str, folder: &Path) {
-        let done = export::program(&self.plan, dialect).and_then(|files| {
-            export::write(folder, &files)?;
-            Ok(files.into_keys().collect())
-        });
-        self.told(folder, done);
-    }
-
-    /// Writes plan, report or metrics into a folder.
-    pub fn export_paper(&mut self, paper: Paper, folder: &Path) {
-        let names = [paper.file().to_owned()];
-        let done = export::paper(&self.plan, paper, &names).and_then(|text| {
-            export::write(folder, &[(paper.file().to_owned(), text)].into())?;
-            Ok(names.to_vec())
-        });
-        self.told(folder, done);
-    }
-
-    /// Writes what `beadwright plan` writes into a folder: the programs of the profile's dialects, plan, metrics and report.
-    pub fn export_all(&mut self, folder: &Path) {
-        let done = export::all(&self.plan).and_then(|files| {
-            export::write(folder, &files)?;
-            Ok(files.into_keys().collect())
-        });
-        self.told(folder, done);
-    }
-
-    fn told(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
-        const SHOWN: usize = 4;
-        match done {
-            Ok(names) => {
-                let more = if names.len() > SHOWN { ", …" } else { "" };
-                let names = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
-                self.say(format!("{} {}: {names}{more}", self.t("written"), folder.display()));
-            }
-            Err(error) => self.complain(error),
-        }
-    }
-
-    /// Asks for a file or a folder.
-    pub(crate) fn ask(&mut self, what: Ask) {
-        let name = self.project().part();
-        self.dialog = Some(jobs::ask(&self.ctx, what, &name));
-    }
-
-    fn answered(&mut self, what: Ask, path: &Path) {
-        match what {
-            Ask::Open => self.open(path),
-            Ask::SaveProject => self.save_to(path),
-            Ask::SavePicture => self.save_picture(path),
-            Ask::OpenBeads => self.open_beads(path),
-            Ask::OpenProfile => {
-                let text = read_text(path);
-                let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
-                match checked {
-                    Ok(text) => self.set_profile("profile", Ok(text)),
-                    Err(error) => self.complain(error),
-                }
-            }
-            Ask::Folder => match self.exporting.clone() {
-                panels::export::What::Program(dialect) => self.export_program(&dialect, path),
-                panels::export::What::Paper(paper) => self.export_paper(paper, path),
-                panels::export::What::All => self.export_all(path),
-            },
-        }
-    }
-
-    /// Shows a bead library, as `beadwright bead fit` writes it.
-    pub fn open_beads(&mut self, path: &Path) {
-        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        match read_text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
-            Ok(library) => self.beads = Some(library),
-            Err(error) => self.complain(error),
-        }
-    }
-
-    /// Does what was asked for.
-    pub fn act(&mut self, action: Action) {
-        match action {
-            Action::Open => self.ask(Ask::Open),
-            Action::Save => match self.file.clone() {
-                Some(path) => self.save_to(&path),
-                None => self.ask(Ask::SaveProject),
-            },
-            Action::SaveAs => self.ask(Ask::SaveProject),
-            Action::ExportProgram => {
-                let dialect = self.view.dialect.clone();
-                self.exporting = panels::export::What::Program(dialect);
-                self.ask(Ask::Folder);
-            }
-            Action::Undo => {
-                let undone = self.project.undo();
-                self.went(undone);
-            }
-            Action::Redo => {
-                let redone = self.project.redo();
-                self.went(redone);
-            }
-            Action::Plan => self.replan(),
-            Action::Stop => {
-                self.planner.cancel();
-                self.plan.progress = None;
-                if let Some(other) = &mut self.other {
-                    other.planner.cancel();
-                    other.plan.progress = None;
-                }
-                self.view.playing = false;
-            }
-            Action::Solid => self.view.mode = Mode::Solid,
-            Action::Layer => self.view.mode = Mode::Layer,
-            Action::Compare => self.view.mode = Mode::Compare,
-            Action::Fit => {
-                self.flat.fit();
-                self.solid.fit();
-            }
-            Action::Top => self.look(StandardView::Top),
-            Action::Front => self.look(StandardView::Front),
-            Action::Right => self.look(StandardView::Right),
-            Action::Corner => self.look(StandardView::Iso),
-            Action::Up => self.view.step_layer(1, self.plan.layer_count()),
-            Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
-            Action::Play => {
-                let starts = !self.view.playing && self.plan.summary.is_some();
-                self.view.play(starts, &self.plan.scene);
-            }
-            Action::Theme => {
-                self.settings.light = !self.settings.light;
-                self.apply_theme();
-                self.store.keep_settings(&self.settings);
-            }
-            Action::Keys => self.view.keys = !self.view.keys,
-            Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
-        }
-    }
-
-    /// A step of the history was taken.
-    fn went(&mut self, gone: bool) {
-        // Before the file was opened there was another project: saving must not put that one into the file.
-        if self.project.steps() < self.opened {
-            self.file = None;
-        }
-        self.refused = None;
-        if gone {
-            self.replan();
-        }
-    }
-
-    fn look(&mut self, from: StandardView) {
-        self.solid.camera.set_view(from);
-        self.solid.fit();
-    }
-
-    /// Writes a picture of the 3-D view.
-    pub fn save_picture(&mut self, path: &Path) {
-        const SIZE: [u32; 2] = [1920, 1200];
-        let Some(render_state) = &self.render_state else { return };
-        let style = panels::solid::style(self);
-        let picture = self.solid.picture(render_state, &self.plan.scene, &style, SIZE);
-        let written = picture.and_then(|(width, height, pixels)| {
-            let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
-            let saved = image::save_buffer_with_format(path, &pixels, width, height, colours, format);
-            saved.map_err(|error| format!("{error}."))
-        });
-        match written {
-            Ok(()) => self.say(format!("{} {}", self.t("written"), path.display())),
-            Err(error) => self.complain(format!("{}: {error}", path.display())),
-        }
-    }
-
     pub(crate) fn apply_theme(&self) {
         self.ctx.set_theme(if self.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
     }
@@ -551,10 +324,6 @@ impl Studio {
             }
         }
     }
-}
-
-fn read_text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()))
 }
 
 /// Draws the window again when the planner has something to tell: at once, or within a while where drawing in software

@@ -13,13 +13,14 @@
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
-//! | [`export`] | what is written |
+//! | `files`, [`export`] | what is opened and what is written |
 //! | [`actions`] | menus and keys |
 //! | [`settings`], [`text`], [`fonts`] | what is remembered; words; letters |
 
 pub mod actions;
 pub mod app;
 pub mod export;
+mod files;
 pub mod fonts;
 pub mod form;
 pub mod history;

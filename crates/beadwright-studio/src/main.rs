@@ -91,12 +91,11 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
     for (key, value) in &arguments.set {
         studio.set_value(key, value);
     }
-    match arguments.file.as_deref() {
-        Some(file) => match file.to_str().filter(|name| !file.exists() && beadwright::example::find(name).is_some()) {
+    if let Some(file) = &arguments.file {
+        match file.to_str().filter(|name| !file.exists() && beadwright::example::find(name).is_some()) {
             Some(example) => studio.open_example(example),
             None => studio.open(file),
-        },
-        None => {}
+        }
     }
     if let Some(strategy) = &arguments.compare_with {
         studio.compare_with(Some(strategy));

@@ -28,7 +28,7 @@ fn last(planner: &mut Planner) -> Event {
 fn a_fault_in_the_planner_is_told_and_it_plans_again() {
     // The bell is rung in the midst of the work.
     let broken = AtomicBool::new(false);
-    let bell = move || assert!(broken.swap(true, Ordering::Relaxed), "the bell is cracked");
+    let bell = move |_| assert!(broken.swap(true, Ordering::Relaxed), "the bell is cracked");
     let mut planner = Planner::new(bell);
     let project = Project { source: Some(Source::Example("cross".to_owned())), ..Project::default() };
     planner.plan(&project, 0);

@@ -1,0 +1,167 @@
+//! What is opened and what is written: models, projects, programs, pictures.
+
+use crate::app::Studio;
+use crate::export::{self, Paper};
+use crate::jobs::{self, Ask};
+use crate::panels;
+use crate::project::{Project, Source};
+use crate::settings::write_whole;
+use beadwright::bead::library::BeadLibrary;
+use beadwright::profile::Profile;
+use std::path::Path;
+
+impl Studio {
+    /// Opens a model or a project.
+    pub fn open(&mut self, path: &Path) {
+        // A project keeps the path, and is opened from anywhere.
+        let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
+        if is_project {
+            self.open_project(path);
+        } else {
+            self.file = None;
+            self.open_model(Source::File(path.to_owned()));
+        }
+        self.settings.remember(path);
+        self.store.keep_settings(&self.settings);
+    }
+
+    /// Opens one of the example parts.
+    pub fn open_example(&mut self, name: &str) {
+        self.file = None;
+        self.open_model(Source::Example(name.to_owned()));
+    }
+
+    fn open_model(&mut self, source: Source) {
+        let profile = self.project().profile.clone();
+        let project = Project { source: Some(source), profile, ..Project::default() };
+        self.begin(project);
+    }
+
+    fn open_project(&mut self, path: &Path) {
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let project = read_text(path);
+        let project = project.and_then(|text| Project::read(&text, path.parent()).map_err(|error| named(&error)));
+        match project {
+            Ok(project) => {
+                self.file = Some(path.to_owned());
+                self.begin(project);
+            }
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Writes the project file.
+    pub fn save_to(&mut self, path: &Path) {
+        let written = self.project().write(path.parent());
+        let written = written
+            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|e| format!("{}: {e}.", path.display())));
+        match written {
+            Ok(()) => {
+                self.file = Some(path.to_owned());
+                self.settings.remember(path);
+                self.store.keep_settings(&self.settings);
+                self.say(format!("{} {}", self.t("written"), path.display()));
+            }
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Writes the program in a dialect into a folder.
+    pub fn export_program(&mut self, dialect: &str, folder: &Path) {
+        let done = export::program(&self.plan, dialect).and_then(|files| {
+            export::write(folder, &files)?;
+            Ok(files.into_keys().collect())
+        });
+        self.told(folder, done);
+    }
+
+    /// Writes plan, report or metrics into a folder.
+    pub fn export_paper(&mut self, paper: Paper, folder: &Path) {
+        let names = [paper.file().to_owned()];
+        let done = export::paper(&self.plan, paper, &names).and_then(|text| {
+            export::write(folder, &[(paper.file().to_owned(), text)].into())?;
+            Ok(names.to_vec())
+        });
+        self.told(folder, done);
+    }
+
+    /// Writes what `beadwright plan` writes into a folder: the programs of the profile's dialects, plan, metrics and report.
+    pub fn export_all(&mut self, folder: &Path) {
+        let done = export::all(&self.plan).and_then(|files| {
+            export::write(folder, &files)?;
+            Ok(files.into_keys().collect())
+        });
+        self.told(folder, done);
+    }
+
+    fn told(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
+        const SHOWN: usize = 4;
+        match done {
+            Ok(names) => {
+                let more = if names.len() > SHOWN { ", …" } else { "" };
+                let names = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+                self.say(format!("{} {}: {names}{more}", self.t("written"), folder.display()));
+            }
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Asks for a file or a folder.
+    pub(crate) fn ask(&mut self, what: Ask) {
+        let name = self.project().part();
+        self.dialog = Some(jobs::ask(&self.ctx, what, &name));
+    }
+
+    pub(crate) fn answered(&mut self, what: Ask, path: &Path) {
+        match what {
+            Ask::Open => self.open(path),
+            Ask::SaveProject => self.save_to(path),
+            Ask::SavePicture => self.save_picture(path),
+            Ask::OpenBeads => self.open_beads(path),
+            Ask::OpenProfile => {
+                let text = read_text(path);
+                let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
+                match checked {
+                    Ok(text) => self.set_profile("profile", Ok(text)),
+                    Err(error) => self.complain(error),
+                }
+            }
+            Ask::Folder => match self.exporting.clone() {
+                panels::export::What::Program(dialect) => self.export_program(&dialect, path),
+                panels::export::What::Paper(paper) => self.export_paper(paper, path),
+                panels::export::What::All => self.export_all(path),
+            },
+        }
+    }
+
+    /// Shows a bead library, as `beadwright bead fit` writes it.
+    pub fn open_beads(&mut self, path: &Path) {
+        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        match read_text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
+            Ok(library) => self.beads = Some(library),
+            Err(error) => self.complain(error),
+        }
+    }
+
+    /// Writes a picture of the 3-D view.
+    pub fn save_picture(&mut self, path: &Path) {
+        const SIZE: [u32; 2] = [1920, 1200];
+        let Some(render_state) = &self.render_state else { return };
+        let style = panels::solid::style(self);
+        let picture = self.solid.picture(render_state, &self.plan.scene, &style, SIZE);
+        let written = picture.and_then(|(width, height, pixels)| {
+            let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
+            let saved = image::save_buffer_with_format(path, &pixels, width, height, colours, format);
+            saved.map_err(|error| format!("{error}."))
+        });
+        match written {
+            Ok(()) => self.say(format!("{} {}", self.t("written"), path.display())),
+            Err(error) => self.complain(format!("{}: {error}", path.display())),
+        }
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()))
+}
