@@ -1,6 +1,6 @@
 //! What a person can do, with its key: menus, keys and the list of keys are made from one table.
 
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
 
 /// Something that is done at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,12 +96,28 @@ pub fn find(action: Action) -> Option<&'static Entry> {
     ENTRIES.iter().find(|entry| entry.action == action)
 }
 
-/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited.
+/// Whether Escape was pressed just now. A number field that is left by it takes what was typed a frame later, since its focus
+/// counts as lost for two frames (egui 0.37); who asks this refuses it.
+pub fn escaped(ctx: &Context) -> bool {
+    let (now, then) = (ctx.cumulative_pass_nr(), ctx.data(|data| data.get_temp::<u64>(Id::unique("escaped"))));
+    then.is_some_and(|then| now.saturating_sub(then) < 3)
+}
+
+/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited, and to a menu
+/// while one is open: Escape leaves them.
 pub fn pressed(ctx: &Context) -> Vec<Action> {
-    let typing = ctx.egui_wants_keyboard_input();
+    if ctx.input(|input| input.key_pressed(Key::Escape)) {
+        let now = ctx.cumulative_pass_nr();
+        ctx.data_mut(|data| data.insert_temp(Id::unique("escaped"), now));
+    }
+    let typing = ctx.egui_wants_keyboard_input() || Popup::is_any_open(ctx);
+    // Escape takes the focus before anything else hears of it, and belongs to the field all the same.
+    let id = Id::unique("typing");
+    let before = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(id), typing));
+    let typing = typing || before;
     let meant = |entry: &&Entry| {
         let Some(key) = entry.key else { return false };
-        let free = !typing || key.modifiers.command || key.logical_key == Key::Escape;
+        let free = !typing || key.modifiers.command;
         free && ctx.input_mut(|input| input.consume_shortcut(&key))
     };
     ENTRIES.iter().filter(meant).map(|entry| entry.action).collect()

@@ -72,6 +72,8 @@ pub struct Studio {
     pub(crate) chinese: bool,
     /// The project as it was kept aside last.
     kept: Project,
+    /// Steps of the history when the project was opened.
+    opened: usize,
 }
 
 /// A sentence in the window.
@@ -89,7 +91,7 @@ impl Studio {
         let ctx = cc.egui_ctx.clone();
         let settings = store.settings();
         let studio = Self {
-            chinese: crate::fonts::add_chinese(&ctx),
+            chinese: crate::fonts::set(&ctx),
             render_state: cc.wgpu_render_state.clone(),
             planner: Planner::new(bell(&ctx, cc.wgpu_render_state.as_ref())),
             lost: None,
@@ -114,6 +116,7 @@ impl Studio {
             reach: None,
             beads: None,
             kept: Project::default(),
+            opened: 0,
         };
         studio.apply_theme();
         studio
@@ -136,6 +139,11 @@ impl Studio {
     /// The project.
     pub fn project(&self) -> &Project {
         self.project.now()
+    }
+
+    /// The project file that is worked on.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
     }
 
     /// The profile as its form needs it.
@@ -173,11 +181,17 @@ impl Studio {
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
-        self.messages.push(Message { error: true, text: text.into() });
+        let message = Message { error: true, text: text.into() };
+        // What goes wrong again and again, at every step of a drag, is said once.
+        if self.messages.last() != Some(&message) {
+            self.messages.push(message);
+        }
     }
 
     /// Opens a model or a project.
     pub fn open(&mut self, path: &Path) {
+        // A project keeps the path, and is opened from anywhere.
+        let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
         if is_project {
             self.open_project(path);
@@ -219,6 +233,9 @@ impl Studio {
         self.project.seal();
         self.project.set("open", project);
         self.project.seal();
+        self.opened = self.project.steps();
+        self.refused = None;
+        self.flat.clear_measure();
         self.view.reset();
         self.flat.fit();
         self.solid.fit();
@@ -265,9 +282,14 @@ impl Studio {
     pub fn replan(&mut self) {
         self.view.playing = false;
         self.view.chosen = None;
-        self.reach = None;
-        self.steps = None;
+        // Answers that are still under way are about the plan before.
+        (self.reach, self.reach_job) = (None, None);
+        (self.steps, self.steps_job) = (None, None);
         if self.project().source.is_none() {
+            // Undone to the empty window.
+            self.planner.cancel();
+            self.plan = PlanState::default();
+            self.other = None;
             return;
         }
         self.plan.restart();
@@ -333,6 +355,15 @@ impl Studio {
         self.told(folder, done);
     }
 
+    /// Writes what `beadwright plan` writes into a folder: the programs of the profile's dialects, plan, metrics and report.
+    pub fn export_all(&mut self, folder: &Path) {
+        let done = export::all(&self.plan).and_then(|files| {
+            export::write(folder, &files)?;
+            Ok(files.into_keys().collect())
+        });
+        self.told(folder, done);
+    }
+
     fn told(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
         const SHOWN: usize = 4;
         match done {
@@ -368,6 +399,7 @@ impl Studio {
             Ask::Folder => match self.exporting.clone() {
                 panels::export::What::Program(dialect) => self.export_program(&dialect, path),
                 panels::export::What::Paper(paper) => self.export_paper(paper, path),
+                panels::export::What::All => self.export_all(path),
             },
         }
     }
@@ -396,19 +428,21 @@ impl Studio {
                 self.ask(Ask::Folder);
             }
             Action::Undo => {
-                if self.project.undo() {
-                    self.replan();
-                }
+                let undone = self.project.undo();
+                self.went(undone);
             }
             Action::Redo => {
-                if self.project.redo() {
-                    self.replan();
-                }
+                let redone = self.project.redo();
+                self.went(redone);
             }
             Action::Plan => self.replan(),
             Action::Stop => {
                 self.planner.cancel();
                 self.plan.progress = None;
+                if let Some(other) = &mut self.other {
+                    other.planner.cancel();
+                    other.plan.progress = None;
+                }
                 self.view.playing = false;
             }
             Action::Solid => self.view.mode = Mode::Solid,
@@ -424,7 +458,10 @@ impl Studio {
             Action::Corner => self.look(StandardView::Iso),
             Action::Up => self.view.step_layer(1, self.plan.layer_count()),
             Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
-            Action::Play => self.view.playing = !self.view.playing && self.plan.summary.is_some(),
+            Action::Play => {
+                let starts = !self.view.playing && self.plan.summary.is_some();
+                self.view.play(starts, &self.plan.scene);
+            }
             Action::Theme => {
                 self.settings.light = !self.settings.light;
                 self.apply_theme();
@@ -432,6 +469,18 @@ impl Studio {
             }
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    /// A step of the history was taken.
+    fn went(&mut self, gone: bool) {
+        // Before the file was opened there was another project: saving must not put that one into the file.
+        if self.project.steps() < self.opened {
+            self.file = None;
+        }
+        self.refused = None;
+        if gone {
+            self.replan();
         }
     }
 
@@ -447,7 +496,9 @@ impl Studio {
         let style = panels::solid::style(self);
         let picture = self.solid.picture(render_state, &self.plan.scene, &style, SIZE);
         let written = picture.and_then(|(width, height, pixels)| {
-            image::save_buffer(path, &pixels, width, height, image::ColorType::Rgba8).map_err(|error| error.to_string())
+            let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
+            let saved = image::save_buffer_with_format(path, &pixels, width, height, colours, format);
+            saved.map_err(|error| format!("{error}."))
         });
         match written {
             Ok(()) => self.say(format!("{} {}", self.t("written"), path.display())),
@@ -470,15 +521,23 @@ impl Studio {
             }
         }
         self.view.follow(self.plan.layer_count());
-        if let Some((what, Some(path))) = jobs::take(&mut self.dialog) {
-            self.answered(what, &path);
+        match jobs::take(&mut self.dialog) {
+            Some(Ok((what, Some(path)))) => self.answered(what, &path),
+            Some(Ok((_, None))) | None => {}
+            Some(Err(error)) => self.complain(error),
         }
-        if let Some(steps) = jobs::take(&mut self.steps_job) {
-            self.steps = Some(steps);
+        match jobs::take(&mut self.steps_job) {
+            Some(Ok(steps)) => self.steps = Some(steps),
+            Some(Err(error)) => {
+                // Not again: it would only break again.
+                self.view.show.regions = false;
+                self.complain(error);
+            }
+            None => {}
         }
         match jobs::take(&mut self.reach_job) {
-            Some(Ok(reach)) => self.reach = Some(reach),
-            Some(Err(error)) => self.complain(error),
+            Some(Ok(Ok(reach))) => self.reach = Some(reach),
+            Some(Ok(Err(error)) | Err(error)) => self.complain(error),
             None => {}
         }
     }
@@ -537,6 +596,10 @@ impl eframe::App for Studio {
 
     fn on_exit(&mut self) {
         self.store.keep_settings(&self.settings);
-        self.store.forget_project();
+        // What was not decided yet is asked again.
+        match &self.lost {
+            Some(lost) => drop(self.store.keep_project(lost)),
+            None => self.store.forget_project(),
+        }
     }
 }

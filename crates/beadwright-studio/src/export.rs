@@ -37,7 +37,9 @@ const NOT_YET: &str = "The plan is not complete yet.";
 /// # Errors
 /// A sentence: the plan is not complete, or the profile lacks the dialect's section.
 pub fn program(state: &PlanState, dialect: &str) -> Result<BTreeMap<String, String>, String> {
-    let (Some(header), Some(profile), Some(_)) = (&state.header, &state.profile, &state.summary) else {
+    let (Some(header), Some(profile), Some(_), true) =
+        (&state.header, &state.profile, &state.summary, state.is_of_last_request())
+    else {
         return Err(NOT_YET.to_owned());
     };
     post::write(dialect, &header.part, &state.layers, profile).map_err(|error| error.to_string())
@@ -53,7 +55,9 @@ pub fn paper(state: &PlanState, paper: Paper, files: &[String]) -> Result<String
     else {
         return Err(NOT_YET.to_owned());
     };
-    let Some(part) = &state.part else { return Err(NOT_YET.to_owned()) };
+    let Some(part) = state.part.as_ref().filter(|_| state.is_of_last_request()) else {
+        return Err(NOT_YET.to_owned());
+    };
     Ok(match paper {
         Paper::Plan => {
             let settings = deposit_settings_over(profile, part.bounds());
@@ -71,6 +75,25 @@ pub fn paper(state: &PlanState, paper: Paper, files: &[String]) -> Result<String
             report.finish(summary, profile, &part.repair(), files)
         }
     })
+}
+
+/// All files that `beadwright plan` writes, as it writes them: the programs of the profile's dialects, plan, metrics and
+/// report.
+///
+/// # Errors
+/// A sentence: the plan is not complete, or the profile lacks a dialect's section.
+pub fn all(state: &PlanState) -> Result<BTreeMap<String, String>, String> {
+    let Some(profile) = &state.profile else { return Err(NOT_YET.to_owned()) };
+    let mut files = BTreeMap::new();
+    for dialect in &profile.posts {
+        files.extend(program(state, dialect)?);
+    }
+    for file in [Paper::Plan, Paper::Metrics] {
+        files.insert(file.file().to_owned(), paper(state, file, &[])?);
+    }
+    let names: Vec<String> = files.keys().cloned().chain([Paper::Report.file().to_owned()]).collect();
+    files.insert(Paper::Report.file().to_owned(), paper(state, Paper::Report, &names)?);
+    Ok(files)
 }
 
 /// Writes files into a folder, each whole or not at all.

@@ -17,22 +17,31 @@ const FAMILIES: [&str; 10] = [
     "Arial Unicode MS",
 ];
 
-/// Adds a Chinese font of the system behind the built-in ones; false if there is none.
-pub fn add_chinese(ctx: &Context) -> bool {
+/// Sets the fonts of the window: the built-in ones, of which the one for code has the signs that the other lacks, and behind
+/// them a Chinese font of the system; false if there is none.
+pub fn set(ctx: &Context) -> bool {
+    let mut fonts = FontDefinitions::default();
+    let mut behind = |name: &str, families: &[FontFamily]| {
+        for family in families {
+            fonts.families.entry(family.clone()).or_default().push(name.to_owned());
+        }
+    };
+    behind("Hack", &[FontFamily::Proportional]);
+    let chinese = chinese();
+    if let Some(data) = &chinese {
+        behind("chinese", &[FontFamily::Proportional, FontFamily::Monospace]);
+        fonts.font_data.insert("chinese".to_owned(), Arc::new(data.clone()));
+    }
+    ctx.set_fonts(fonts);
+    chinese.is_some()
+}
+
+/// A font of the system with Chinese letters.
+fn chinese() -> Option<FontData> {
     let mut database = fontdb::Database::new();
     database.load_system_fonts();
     let families = FAMILIES.map(fontdb::Family::Name);
-    let Some(found) = database.query(&fontdb::Query { families: &families, ..fontdb::Query::default() }) else {
-        return false;
-    };
-    let Some((bytes, index)) = database.with_face_data(found, |bytes, index| (bytes.to_vec(), index)) else {
-        return false;
-    };
-    let mut fonts = FontDefinitions::default();
-    fonts.font_data.insert("chinese".to_owned(), Arc::new(FontData { index, ..FontData::from_owned(bytes) }));
-    for family in [FontFamily::Proportional, FontFamily::Monospace] {
-        fonts.families.entry(family).or_default().push("chinese".to_owned());
-    }
-    ctx.set_fonts(fonts);
-    true
+    let found = database.query(&fontdb::Query { families: &families, ..fontdb::Query::default() })?;
+    let (bytes, index) = database.with_face_data(found, |bytes, index| (bytes.to_vec(), index))?;
+    Some(FontData { index, ..FontData::from_owned(bytes) })
 }

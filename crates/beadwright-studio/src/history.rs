@@ -61,6 +61,11 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
+    /// How many steps can be taken back.
+    pub fn steps(&self) -> usize {
+        self.past.len()
+    }
+
     /// Whether a step can be taken back.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()

@@ -5,12 +5,32 @@ use beadwright::plan::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Reach, Track};
 use eframe::egui::Context;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Work that gives one answer.
-pub struct Job<T>(Receiver<T>);
+pub struct Job<T>(Receiver<Result<T, String>>);
+
+/// Does work; where it panics, a sentence that asks to report it.
+///
+/// # Errors
+/// The sentence.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| sentence(&*panic))
+}
+
+fn sentence(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let reason = words.unwrap_or("no reason was given");
+    format!(
+        "Beadwright has a fault that stopped this work: {reason}. Please report it at {}/issues with the model and the \
+         project; the program goes on.",
+        env!("CARGO_PKG_REPOSITORY")
+    )
+}
 
 impl<T: Send + 'static> Job<T> {
     /// Starts work on a thread of its own; the window is drawn again when it is done.
@@ -18,7 +38,7 @@ impl<T: Send + 'static> Job<T> {
         let (sender, receiver) = channel();
         let ctx = ctx.clone();
         std::thread::spawn(move || {
-            if sender.send(work()).is_ok() {
+            if sender.send(caught(work)).is_ok() {
                 ctx.request_repaint();
             }
         });
@@ -26,8 +46,8 @@ impl<T: Send + 'static> Job<T> {
     }
 }
 
-/// Takes the answer of a job that is done, and forgets the job.
-pub fn take<T>(job: &mut Option<Job<T>>) -> Option<T> {
+/// Takes the answer of a job that is done, or the sentence of one that broke, and forgets the job.
+pub fn take<T>(job: &mut Option<Job<T>>) -> Option<Result<T, String>> {
     match job.as_ref()?.0.try_recv() {
         Ok(answer) => {
             *job = None;

@@ -3,10 +3,12 @@
 //! A thread of its own reads the model, plans the layer in view, then all layers, judges them and runs the checks. What
 //! it has read stays with it, so that a change of the profile does not read the model again.
 
+use crate::jobs;
 use crate::project::{Project, Source};
 use crate::view2d::height;
 use crate::view3d::{LayerBeads, Pace};
 use beadwright::check::{self, Finding};
+use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge, Judgement};
 use beadwright::example;
 use beadwright::model::{Mesh, Model, Part, PartError, Placement};
@@ -18,9 +20,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::SystemTime;
-
-/// Pixels along the longer side of the height fields.
-const MAP_PIXELS: usize = 480;
 
 /// What the planner tells; a number says which request it belongs to.
 pub enum Event {
@@ -167,9 +166,14 @@ fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify
                 bell(haste);
             }
         };
-        match work(&request, &mut kept, &send) {
-            Ok(()) | Err(Stop::Cancelled) => {}
-            Err(Stop::Failed(failure)) => send(Event::Failed(failure)),
+        match jobs::caught(|| work(&request, &mut kept, &send)) {
+            Ok(Ok(()) | Err(Stop::Cancelled)) => {}
+            Ok(Err(Stop::Failed(failure))) => send(Event::Failed(failure)),
+            Err(sentence) => {
+                // Nobody knows in which state it was left.
+                kept = Kept::default();
+                send(Event::Failed(Failure::Sentence(sentence)));
+            }
         }
     }
 }

@@ -37,6 +37,17 @@ pub struct PlanState {
     pub failure: Option<Failure>,
     /// What the 3-D view shows.
     pub scene: Scene,
+    /// How far the last request has come with what is in view.
+    came: Came,
+}
+
+/// What of a request is in view already; the rest is still that of the request before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Came {
+    #[default]
+    Nothing,
+    Part,
+    Layers,
 }
 
 impl PlanState {
@@ -45,19 +56,29 @@ impl PlanState {
         self.progress = Some((Stage::Import, 0.0));
         self.failure = None;
         self.findings = None;
+        self.came = Came::Nothing;
+    }
+
+    /// Whether layers, profile and totals in view belong together and to the last request: only then may they be written.
+    pub fn is_of_last_request(&self) -> bool {
+        self.came == Came::Layers
     }
 
     /// Takes an event in.
     pub fn take(&mut self, event: Event) {
         match event {
             Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
-            Event::Part(part, mesh, profile) => self.take_part(part, mesh, profile),
+            Event::Part(part, mesh, profile) => {
+                self.came = Came::Part;
+                self.take_part(part, mesh, profile);
+            }
             Event::Preview(layer, beads) => {
                 self.clear_layers();
                 self.scene.set_layer(layer.index, beads);
                 self.preview = Some(layer);
             }
             Event::Begin(header) => {
+                self.came = Came::Layers;
                 self.clear_plan();
                 self.header = Some(header);
             }
@@ -77,6 +98,7 @@ impl PlanState {
             }
             Event::Failed(failure) => {
                 self.progress = None;
+                self.clear_failed();
                 self.failure = Some(failure);
             }
         }
@@ -86,10 +108,23 @@ impl PlanState {
         let same = self.part.as_ref().is_some_and(|old| Arc::ptr_eq(old, &part));
         if !same {
             self.scene.set_mesh(mesh);
+            self.preview = None;
             self.clear_layers();
         }
         self.part = Some(part);
         self.profile = Some(profile);
+    }
+
+    /// What the failed request has not replaced would be taken for what it asked for.
+    fn clear_failed(&mut self) {
+        if self.came == Came::Nothing {
+            (self.part, self.profile) = (None, None);
+            self.scene.clear();
+        }
+        if self.came != Came::Layers {
+            self.preview = None;
+            self.clear_layers();
+        }
     }
 
     fn clear_layers(&mut self) {

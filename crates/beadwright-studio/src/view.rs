@@ -1,7 +1,7 @@
 //! What is shown, and how: nothing of it belongs to the project.
 
 use crate::view2d::Show;
-use crate::view3d::Colour;
+use crate::view3d::{Colour, Scene};
 
 /// Which view fills the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -123,6 +123,31 @@ impl ViewState {
         self.progress = 1.0;
         self.wanted = Some(layer);
         self.torch = None;
+        self.playing = false;
+    }
+
+    /// Lets the torch run on from where it waits, or else from the beginning of the layer in view; or stops it.
+    pub fn play(&mut self, on: bool, scene: &Scene) {
+        self.playing = on;
+        let waits = self.torch.is_some() && self.seconds < scene.total_seconds();
+        if on && !waits {
+            self.seconds = scene.seconds_before(self.last);
+        }
+    }
+
+    /// Moves the torch on by so many seconds of the person who looks; it stops at the end of the last layer.
+    pub fn advance(&mut self, passed: f64, scene: &Scene) {
+        let total = scene.total_seconds();
+        self.seconds = (self.seconds + passed * self.rate).min(total);
+        let Some(at) = scene.at_time(self.seconds) else {
+            self.playing = false;
+            return;
+        };
+        let pieces = scene.layer(at.layer).map_or(1, |layer| layer.len().max(1));
+        self.look_at(at.layer);
+        self.progress = at.segment as f64 / pieces as f64;
+        self.torch = Some(at.point);
+        self.playing = self.seconds < total;
     }
 
     /// One layer up or down.

@@ -3,6 +3,7 @@
 use super::{solid, totals};
 use crate::app::Studio;
 use crate::jobs;
+use crate::planner::Failure;
 use crate::state::PlanState;
 use crate::view::Mode;
 use crate::view2d::{Subject, View2d};
@@ -31,12 +32,15 @@ fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
     look_closer(studio);
     let label = studio.t("view-2d-label");
-    let steps = steps(studio).unwrap_or_default();
+    let steps = steps(studio);
     let layer = studio.view.last;
-    if let Some(picked) = flat(&studio.plan, &mut studio.flat, ui, &studio.view, &steps, label) {
+    if let Some(picked) =
+        flat(&studio.plan, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label)
+    {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
-    studio.steps = (!steps.is_empty()).then_some((layer, steps));
+    // A layer without islands has none, and is not looked at again.
+    studio.steps = steps.map(|steps| (layer, steps));
 }
 
 /// The steps of the layer in view, taken out of the program for as long as they are drawn.
@@ -107,6 +111,9 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
             studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
         }
         let Some(other) = &mut studio.other else { return };
+        if let Some(Failure::Sentence(text)) = &other.plan.failure {
+            right.colored_label(right.visuals().error_fg_color, text);
+        }
         // Both look at the same place: whichever was moved leads.
         if studio.flat.eye() != before {
             other.flat.follow(&studio.flat);

@@ -13,6 +13,8 @@ pub(crate) enum What {
     Program(String),
     /// A file that belongs to the plan.
     Paper(Paper),
+    /// All that the command writes.
+    All,
 }
 
 impl Default for What {
@@ -32,14 +34,18 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
-    let (planned, judged) = (studio.plan.summary.is_some(), studio.plan.total.is_some());
+    let (planned, judged) = (
+        studio.plan.summary.is_some() && studio.plan.is_of_last_request(),
+        studio.plan.total.is_some() && studio.plan.is_of_last_request(),
+    );
     if !judged {
         ui.weak(studio.t("not-complete"));
     }
-    let papers = [("export-plan", Paper::Plan), ("export-report", Paper::Report)];
+    let papers = [("export-plan", Paper::Plan), ("export-report", Paper::Report), ("export-metrics", Paper::Metrics)];
     let program = ("export-program", What::Program(studio.view.dialect.clone()), planned);
     let papers = papers.into_iter().map(|(key, paper)| (key, What::Paper(paper), judged));
-    for (key, what, enabled) in [program].into_iter().chain(papers) {
+    let all = ("export-all", What::All, judged);
+    for (key, what, enabled) in [program].into_iter().chain(papers).chain([all]) {
         if ui.add_enabled(enabled, Button::new(studio.t(key))).clicked() {
             studio.exporting = what;
             studio.ask(Ask::Folder);

@@ -25,10 +25,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let playing = studio.view.playing;
         let word = if playing { studio.t("stop") } else { studio.t("play") };
-        if ui.button(format!("{} {word}", if playing { "⏸" } else { "▶" })).clicked() {
+        if ui.button(format!("{} {word}", if playing { "■" } else { "▶" })).clicked() {
             studio.act(Action::Play);
-            studio.view.torch = None;
-            studio.view.seconds = studio.plan.scene.seconds_before(studio.view.last);
         }
         ui.spacing_mut().slider_width = (ui.available_width() / 2.0 - 190.0).max(60.0);
         let (rate, progress) = (studio.t("rate"), studio.t("progress"));
@@ -36,6 +34,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let progress = Slider::new(&mut studio.view.progress, 0.0..=1.0).show_value(false).text(progress);
         if ui.add(progress).changed() {
             studio.view.playing = false;
+            studio.view.torch = None;
         }
     });
 }
@@ -46,15 +45,8 @@ fn advance(studio: &mut Studio, ui: &Ui) {
         return;
     }
     let passed = ui.input(|input| f64::from(input.stable_dt));
-    studio.view.seconds += passed * studio.view.rate;
-    match studio.plan.scene.at_time(studio.view.seconds) {
-        Some(at) => {
-            studio.view.look_at(at.layer);
-            let pieces = studio.plan.scene.layer(at.layer).map_or(1, |layer| layer.len().max(1));
-            studio.view.progress = at.segment as f64 / pieces as f64;
-            studio.view.torch = Some(at.point);
-            ui.ctx().request_repaint();
-        }
-        None => studio.view.playing = false,
+    studio.view.advance(passed, &studio.plan.scene);
+    if studio.view.playing {
+        ui.ctx().request_repaint();
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 
 fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) {
     ui.horizontal_wrapped(|ui| {
-        if ui.small_button("✖").on_hover_text(hint).clicked() {
+        if ui.small_button("×").on_hover_text(hint).clicked() {
             close();
         }
         let colour = if error { ui.visuals().error_fg_color } else { Color32::from_rgb(0x1a, 0x9c, 0x4b) };

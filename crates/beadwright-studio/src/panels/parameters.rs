@@ -1,5 +1,6 @@
 //! The profile as a form: units, ranges and meaning of every key.
 
+use crate::actions;
 use crate::app::Studio;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
@@ -13,7 +14,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     choose(studio, ui, &parsed.profile);
     let label = ui.label(studio.t("search"));
     ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
-    if let Some((key, reason)) = studio.refused.clone() {
+    let fields = || form::sections().iter().flat_map(|section| &section.fields);
+    if let Some((key, reason)) = studio.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key)) {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
     }
     let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
@@ -96,6 +98,10 @@ impl Form<'_> {
                 self.studio.reset_value(&field.key);
             }
         });
+        // Where it was typed, so that it is seen.
+        if let Some((_, reason)) = self.studio.refused.as_ref().filter(|(key, _)| *key == field.key) {
+            ui.colored_label(ui.visuals().error_fg_color, format!("{} {reason}", self.studio.t("impossible")));
+        }
     }
 
     /// What the key means, what it can be, and why.
@@ -153,10 +159,15 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
     // Units behind a bracket tell what the range depends on; that belongs in the hint.
     let unit = limit.map_or("", |l| l.unit.split('(').next().unwrap_or_default().trim());
-    let drag = DragValue::new(&mut number).range(least..=greatest).speed(speed).suffix(format!(" {unit}"));
+    // What is typed is taken when it is complete, and refused with the reason; what is dragged ends at the range.
+    let drag = DragValue::new(&mut number).update_while_editing(false).speed(speed).suffix(format!(" {unit}"));
     let drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(4) };
     let response = ui.add(drag);
-    let changed = response.changed().then(|| as_toml(number));
+    if response.dragged() {
+        number = number.max(least).min(greatest);
+    }
+    let changed =
+        response.changed().then(|| as_toml(number)).filter(|_| Some(number) != now && !actions::escaped(ui.ctx()));
     (response, changed)
 }
 

@@ -1,5 +1,6 @@
 //! Where the part stands: units, scale, turn.
 
+use crate::actions;
 use crate::app::Studio;
 use beadwright::model::{Part, Placement, Units};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};
@@ -57,7 +58,11 @@ fn units(studio: &Studio, ui: &mut Ui, placement: &mut Placement) {
 }
 
 fn number(ui: &mut Ui, name: &str, value: &mut f64, range: std::ops::RangeInclusive<f64>, speed: f64, unit: &str) {
-    let label = ui.label(name);
-    ui.add(DragValue::new(value).range(range).speed(speed).suffix(unit)).labelled_by(label.id);
+    let (label, before) = (ui.label(name), *value);
+    let drag = DragValue::new(value).update_while_editing(false).range(range).speed(speed).suffix(unit);
+    ui.add(drag).labelled_by(label.id);
+    if actions::escaped(ui.ctx()) {
+        *value = before;
+    }
     ui.end_row();
 }

@@ -3,9 +3,13 @@
 
 use beadwright_studio::Studio;
 use beadwright_studio::settings::Store;
+use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::path::Path;
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// Longest wait for a plan.
@@ -13,13 +17,41 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) fn studio(store: &Path) -> Harness<'static, Studio> {
     let store = Store::at(store.to_owned());
-    let mut harness = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .with_max_steps(64)
-        .wgpu()
-        .build_eframe(move |cc| Studio::new(cc, store));
+    let builder = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(64);
+    let builder = if has_adapter() { builder.wgpu() } else { builder };
+    let mut harness = builder.build_eframe(move |cc| Studio::new(cc, store));
     harness.run_steps(2);
     harness
+}
+
+/// Whether there is something to draw with; says so where there is not.
+pub(crate) fn has_adapter() -> bool {
+    static FOUND: OnceLock<bool> = OnceLock::new();
+    *FOUND.get_or_init(|| match beadwright_studio::view3d::headless() {
+        Ok(_) => true,
+        Err(error) => {
+            println!("pictures are skipped: {error}");
+            false
+        }
+    })
+}
+
+/// The command `beadwright`, built.
+pub(crate) fn command() -> &'static Path {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        // This package's tests do not build the command by themselves.
+        let mut build = Command::new(env!("CARGO"));
+        assert!(build.args(["build", "--quiet", "--package", "beadwright-cli"]).status().unwrap().success());
+        Path::new(env!("CARGO_BIN_EXE_beadwright-studio")).with_file_name("beadwright")
+    })
+}
+
+/// Runs the command; what it prints.
+pub(crate) fn run(arguments: &[&str]) -> String {
+    let output = Command::new(command()).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
 }
 
 /// Runs until nothing is under way.
@@ -40,4 +72,62 @@ pub(crate) fn wait(harness: &mut Harness<'static, Studio>) {
 pub(crate) fn click(harness: &mut Harness<'static, Studio>, label: &str) {
     harness.get_by_label(label).click();
     harness.run_steps(3);
+}
+
+/// Whether this text is to be seen.
+pub(crate) fn sees(harness: &Harness<'static, Studio>, label: &str) -> bool {
+    harness.query_all_by_label(label).next().is_some()
+}
+
+/// Clicks at a place of the window.
+pub(crate) fn click_at(harness: &mut Harness<'static, Studio>, pos: Pos2) {
+    harness.hover_at(pos);
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        harness.event(Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    harness.run_steps(3);
+}
+
+/// Types a text into the number field of this name, and Enter.
+pub(crate) fn type_number(harness: &mut Harness<'static, Studio>, name: &str, text: &str) {
+    harness.get_by_role_and_label(Role::SpinButton, name).click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::SpinButton, name).type_text(text);
+    harness.run_steps(1);
+    harness.key_press(eframe::egui::Key::Enter);
+    harness.run_steps(3);
+}
+
+/// Searches among the parameters.
+pub(crate) fn search(harness: &mut Harness<'static, Studio>, text: &str) {
+    harness.get_by_role_and_label(Role::TextInput, "Search").click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::TextInput, "Search").type_text(text);
+    harness.run_steps(3);
+}
+
+/// Opens an example and waits for its plan.
+pub(crate) fn example(store: &Path, name: &str) -> Harness<'static, Studio> {
+    let mut harness = studio(store);
+    harness.state_mut().open_example(name);
+    wait(&mut harness);
+    assert!(harness.state().plan().is_complete(), "{:?}", harness.state().plan().failure);
+    harness
+}
+
+/// The cross, several times, each moved and turned by a function, as a binary STL.
+pub(crate) fn crosses(place: &[fn(DVec3) -> DVec3]) -> Vec<u8> {
+    let mesh = beadwright::example::find("cross").unwrap().mesh();
+    let mut bytes = vec![0; 80];
+    bytes.extend(((mesh.triangles.len() * place.len()) as u32).to_le_bytes());
+    for place in place {
+        for triangle in &mesh.triangles {
+            bytes.extend([0_u8; 12]);
+            let corners = triangle.map(|i| place(mesh.vertices[i as usize]).as_vec3().to_array());
+            bytes.extend(corners.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
+            bytes.extend([0, 0]);
+        }
+    }
+    bytes
 }

@@ -1,0 +1,71 @@
+//! Two strategies side by side, and findings that lead to their place.
+
+use super::window::{click, example, sees, wait};
+use beadwright::plan;
+use beadwright::profile::Profile;
+use beadwright::report::rows;
+use beadwright::task::Task;
+use beadwright_studio::view::Mode;
+use eframe::egui::{Key, Role};
+use egui_kittest::kittest::Queryable;
+
+/// Length and passes of the cross under a strategy, as the library plans it.
+fn totals(strategy: &str) -> Vec<(&'static str, String)> {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    strategy.clone_into(&mut profile.fill.strategy);
+    let mesh = beadwright::example::find("cross").unwrap().mesh();
+    rows::totals(&plan::plan("cross", &mesh, &profile, &Task::new()).unwrap().summary.metrics)
+}
+
+#[test]
+fn two_strategies_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    harness.key_press(Key::F4);
+    harness.run_steps(3);
+    assert_eq!(harness.state_mut().view().mode, Mode::Compare);
+    harness.get_by_role_and_label(Role::ComboBox, "Other strategy").click();
+    harness.run_steps(3);
+    click(&mut harness, "hybrid");
+    wait(&mut harness);
+    let (own, other) = (totals("compound"), totals("hybrid"));
+    let mut different = 0;
+    for ((name, value), (_, theirs)) in own.iter().zip(&other) {
+        assert!(sees(&harness, value) && sees(&harness, theirs), "{name}: {value}, {theirs}");
+        different += usize::from(value != theirs);
+    }
+    assert!(different > 3, "the strategies do the same");
+    assert!(sees(&harness, "Layer view") && sees(&harness, "Layer view, other strategy"));
+    // The project keeps its own strategy.
+    assert!(harness.state().project().profile.contains("strategy = \"compound\""));
+}
+
+#[test]
+fn a_strategy_that_cannot_be_compared_says_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    harness.key_press(Key::F4);
+    harness.run_steps(3);
+    harness.state_mut().compare_with(Some("no-such-strategy"));
+    wait(&mut harness);
+    assert!(harness.query_by_label_contains("the strategies are raster").is_some(), "no sentence");
+}
+
+#[test]
+fn a_finding_leads_to_its_bead() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    harness.state_mut().set_value("check.max_speed", "1.0");
+    wait(&mut harness);
+    let findings = harness.state().plan().findings.clone().unwrap();
+    let finding = findings.iter().filter(|f| f.pass.is_some() && f.layer > Some(0)).nth(2).unwrap();
+    let (layer, pass) = (finding.layer.unwrap(), finding.pass.unwrap());
+    click(&mut harness, &format!("Findings ({})", findings.len()));
+    click(&mut harness, &finding.sentence());
+    let view = harness.state_mut().view();
+    assert_eq!((view.mode, view.last), (Mode::Layer, layer));
+    assert_eq!(view.chosen.map(|(l, p, _)| (l, p)), Some((layer, pass)));
+    click(&mut harness, "Totals");
+    let length = harness.state().plan().layers[layer].passes[pass].length();
+    assert!(sees(&harness, &format!("{length:.2} mm")));
+}

@@ -1,0 +1,15 @@
+//! The window, headless, by the widgets a person uses.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod background;
+mod compare;
+mod edit;
+mod export;
+mod files;
+mod flat;
+mod pictures;
+mod placement;
+mod play;
+#[path = "../window/mod.rs"]
+mod window;
+mod words;
