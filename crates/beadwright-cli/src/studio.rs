@@ -23,9 +23,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             program.display()
         );
     }
-    let status = Command::new(&program).args(&arguments.args).status();
-    let status = status.with_context(|| format!("{} cannot be started", program.display()))?;
-    // A program that was ended from outside has no status of its own.
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    Ok(if status.success() { ExitCode::SUCCESS } else { code.map_or(ExitCode::FAILURE, ExitCode::from) })
+    let mut command = Command::new(&program);
+    start(command.args(&arguments.args)).with_context(|| format!("{} cannot be started", program.display()))
+}
+
+/// The desktop program takes the place of this one, so that signals reach it.
+#[cfg(unix)]
+fn start(command: &mut Command) -> std::io::Result<ExitCode> {
+    Err(std::os::unix::process::CommandExt::exec(command))
+}
+
+#[cfg(not(unix))]
+fn start(command: &mut Command) -> std::io::Result<ExitCode> {
+    let code = command.status()?.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
