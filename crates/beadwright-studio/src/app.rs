@@ -17,7 +17,7 @@ use beadwright::bead::library::BeadLibrary;
 use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::Reach;
-use eframe::egui::{self, Context};
+use eframe::egui::{self, Context, ViewportCommand};
 use eframe::egui_wgpu::RenderState;
 use eframe::egui_wgpu::wgpu::DeviceType;
 use std::path::{Path, PathBuf};
@@ -71,6 +71,10 @@ pub struct Studio {
     pub(crate) chinese: bool,
     /// The project as it was kept aside last.
     kept: Project,
+    /// The project as it was opened or written last.
+    pub(crate) saved: Project,
+    /// Whether the window is to be closed although there are changes, and it is asked what becomes of them.
+    pub(crate) closing: bool,
     /// Steps of the history when the project was opened.
     pub(crate) opened: usize,
 }
@@ -115,6 +119,8 @@ impl Studio {
             reach: None,
             beads: None,
             kept: Project::default(),
+            saved: Project::default(),
+            closing: false,
             opened: 0,
         };
         studio.apply_theme();
@@ -124,6 +130,12 @@ impl Studio {
     /// Offers the project of a run that did not end well, if there is one.
     pub fn offer_lost(&mut self) {
         self.lost = self.store.lost_project();
+    }
+
+    /// Lets go of that project; what is open now is kept aside in its place.
+    pub(crate) fn forget_lost(&mut self) {
+        self.store.forget_project();
+        self.kept = Project::default();
     }
 
     /// The text of a key in the language of the window.
@@ -193,12 +205,32 @@ impl Studio {
         self.project.set("open", project);
         self.project.seal();
         self.opened = self.project.steps();
+        self.saved = self.project.now().clone();
         self.refused = None;
         self.flat.clear_measure();
         self.view.reset();
         self.flat.fit();
         self.solid.fit();
         self.replan();
+    }
+
+    /// Whether something would be lost if the window were closed.
+    pub fn is_changed(&self) -> bool {
+        self.project().source.is_some() && *self.project() != self.saved
+    }
+
+    /// Closes the window, whatever was changed.
+    pub(crate) fn close(&mut self) {
+        self.saved = self.project().clone();
+        self.ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    /// Asks before changes are lost with the window.
+    fn hold(&mut self) {
+        if self.is_changed() && self.ctx.input(|input| input.viewport().close_requested()) {
+            self.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.closing = true;
+        }
     }
 
     /// Changes the project, and plans anew if it differs.
@@ -280,6 +312,14 @@ impl Studio {
     }
 
     pub(crate) fn apply_theme(&self) {
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            self.ctx.style_mut_of(theme, |style| {
+                let visuals = &mut style.visuals;
+                visuals.weak_text_color = Some(egui::Color32::from_gray(if visuals.dark_mode { 150 } else { 95 }));
+                // A field to write in is seen without a frame.
+                visuals.extreme_bg_color = egui::Color32::from_gray(if visuals.dark_mode { 8 } else { 226 });
+            });
+        }
         self.ctx.set_theme(if self.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
     }
 
@@ -349,6 +389,7 @@ fn with_strategy(mut project: Project, strategy: &str) -> Project {
 impl eframe::App for Studio {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.hear();
+        self.hold();
         for action in actions::pressed(&self.ctx) {
             self.act(action);
         }

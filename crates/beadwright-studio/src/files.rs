@@ -58,6 +58,7 @@ impl Studio {
             .and_then(|text| write_whole(path, text.as_bytes()).map_err(|e| format!("{}: {e}.", path.display())));
         match written {
             Ok(()) => {
+                self.saved = self.project().clone();
                 self.file = Some(path.to_owned());
                 self.settings.remember(path);
                 self.store.keep_settings(&self.settings);

@@ -64,6 +64,8 @@ pub struct ViewState {
     pub chosen: Option<(usize, usize, usize)>,
     /// The dialect to be written.
     pub dialect: String,
+    /// The folder to be written into; empty for one that is asked for.
+    pub folder: String,
     /// The robot cell to be walked.
     pub cell: String,
     /// What is searched among the parameters.
@@ -93,6 +95,7 @@ impl Default for ViewState {
             show: Show::default(),
             chosen: None,
             dialect: "krl".to_owned(),
+            folder: String::new(),
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
             search: String::new(),
             keys: false,

@@ -58,6 +58,8 @@ pub struct Subject<'a> {
     pub pieces: usize,
     /// The pass that is chosen.
     pub chosen: Option<usize>,
+    /// The caption of the scale of heights, where it is shown.
+    pub scale: Option<&'a str>,
 }
 
 /// What a person did in the view.
@@ -168,8 +170,8 @@ impl View2d {
         pen.passes(&subject, show);
         self.measures(&pen);
         pen.scale_bar();
-        if show.heights {
-            pen.heat_scale();
+        if let (true, Some(caption)) = (show.heights, subject.scale) {
+            pen.heat_scale(caption);
         }
         let at = response.hover_pos().map(|p| eye.to_part(p, rect));
         if let Some(at) = at {
@@ -365,7 +367,7 @@ impl Pen<'_> {
     }
 
     /// What the colours of heights mean, in nominal bead heights.
-    fn heat_scale(&self) {
+    fn heat_scale(&self, caption: &str) {
         const STEPS: usize = 50;
         const MARKS: [f64; 3] = [0.0, 1.0, 2.0];
         let ink = self.ui.visuals().text_color();
@@ -379,11 +381,12 @@ impl Pen<'_> {
         let font = FontId::proportional(12.0);
         for mark in MARKS {
             let at = pos2(place.right() + 4.0, y(mark));
-            self.painter.text(at, Align2::LEFT_CENTER, format!("{mark:.0} h"), font.clone(), ink);
+            self.painter.text(at, Align2::LEFT_CENTER, format!("{mark:.0}"), font.clone(), ink);
         }
+        self.painter.text(place.left_top() - vec2(0.0, 8.0), Align2::LEFT_BOTTOM, caption, font.clone(), ink);
         let void = Rect::from_min_size(place.left_bottom() + vec2(0.0, 8.0), vec2(12.0, 12.0));
         self.painter.rect_filled(void, 0.0, VOID);
-        self.painter.text(void.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35 h", font, ink);
+        self.painter.text(void.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35", font, ink);
     }
 
     fn note(&self, corner: Align2, text: &str) {

@@ -31,11 +31,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
     look_closer(studio);
-    let label = studio.t("view-2d-label");
+    let (label, scale) = (studio.t("view-2d-label"), Some(studio.t("bead-heights")));
     let steps = steps(studio);
     let layer = studio.view.last;
     if let Some(picked) =
-        flat(&studio.plan, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label)
+        flat(&studio.plan, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label, scale)
     {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
@@ -55,6 +55,7 @@ fn flat(
     state: &crate::view::ViewState,
     steps: &[Steps],
     label: &str,
+    scale: Option<&str>,
 ) -> Option<Option<(usize, usize)>> {
     let layer = plan.layer(state.last)?;
     let count: usize = layer.passes.iter().map(|pass| pass.segments().count()).sum();
@@ -63,6 +64,7 @@ fn flat(
         judgement: plan.judgements.get(state.last),
         steps,
         pieces: (state.progress * count as f64).ceil() as usize,
+        scale,
         chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, _)| pass),
     };
     view.show(ui, subject, state.show, label).picked
@@ -106,20 +108,22 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
     let [label, other_label] = ["view-2d-label", "view-2d-other"].map(|key| studio.t(key));
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
+        left.strong(studio.plan.header.as_ref().map_or("", |header| &header.strategy));
         let before = studio.flat.eye();
-        if let Some(picked) = flat(&studio.plan, &mut studio.flat, left, &studio.view, &[], label) {
+        if let Some(picked) = flat(&studio.plan, &mut studio.flat, left, &studio.view, &[], label, None) {
             studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
         }
         let Some(other) = &mut studio.other else { return };
         if let Some(Failure::Sentence(text)) = &other.plan.failure {
             right.colored_label(right.visuals().error_fg_color, text);
         }
+        right.strong(&other.strategy);
         // Both look at the same place: whichever was moved leads.
         if studio.flat.eye() != before {
             other.flat.follow(&studio.flat);
         }
         let before = other.flat.eye();
-        flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label);
+        flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label, None);
         if other.flat.eye() != before {
             studio.flat.follow(&other.flat);
         }
@@ -149,7 +153,7 @@ fn choose(studio: &mut Studio, ui: &mut Ui) {
 fn differences(studio: &Studio, ui: &mut Ui) {
     let Some(other) = &studio.other else { return };
     let (own, theirs) = (totals::rows_of(&studio.plan), totals::rows_of(&other.plan));
-    Grid::new("differences").num_columns(3).striped(true).show(ui, |ui| {
+    Grid::new("differences").num_columns(3).spacing([28.0, 2.0]).striped(true).show(ui, |ui| {
         ui.label("");
         let now = studio.plan.header.as_ref().map_or("", |header| &header.strategy);
         ui.strong(now);

@@ -4,7 +4,8 @@ use crate::app::Studio;
 use crate::export::Paper;
 use crate::jobs::Ask;
 use beadwright::post;
-use eframe::egui::{Button, ComboBox, Ui};
+use eframe::egui::{Button, ComboBox, TextEdit, Ui};
+use std::path::PathBuf;
 
 /// What a folder is asked for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +35,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
+    let label = ui.label(studio.t("folder"));
+    let hint = studio.t("folder-hint");
+    let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
+    ui.add(edit).labelled_by(label.id);
     let (planned, judged) = (
         studio.plan.summary.is_some() && studio.plan.is_of_last_request(),
         studio.plan.total.is_some() && studio.plan.is_of_last_request(),
@@ -48,7 +53,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     for (key, what, enabled) in [program].into_iter().chain(papers).chain([all]) {
         if ui.add_enabled(enabled, Button::new(studio.t(key))).clicked() {
             studio.exporting = what;
-            studio.ask(Ask::Folder);
+            match studio.view.folder.trim() {
+                "" => studio.ask(Ask::Folder),
+                folder => studio.answered(Ask::Folder, &PathBuf::from(folder)),
+            }
         }
     }
     let pictured = studio.render_state.is_some() && studio.plan.layer_count() > 0;

@@ -26,7 +26,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             ui.weak(format!("{}: {}.", studio.t("why"), check.why));
             ui.weak(format!("{}: {}.", studio.t("remedy"), check.remedy));
             for finding in found.iter().take(LISTED) {
-                if ui.link(finding.sentence()).on_hover_text(studio.t("go-there")).clicked() {
+                let text = sentence(finding);
+                if finding.layer.is_none() {
+                    ui.label(text);
+                } else if ui.link(text).on_hover_text(studio.t("go-there")).clicked() {
                     go_to(studio, finding);
                 }
             }
@@ -35,6 +38,13 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             }
         });
     }
+}
+
+/// The finding as a sentence that begins one.
+fn sentence(finding: &Finding) -> String {
+    let text = finding.sentence();
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Shows the place of a finding: its layer, with the bead chosen.

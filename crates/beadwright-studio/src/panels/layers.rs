@@ -2,6 +2,7 @@
 
 use crate::actions::Action;
 use crate::app::Studio;
+use crate::view::Mode;
 use eframe::egui::{Slider, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -10,33 +11,50 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         return;
     }
     advance(studio, ui);
+    ui.horizontal(|ui| range(studio, ui, layers));
+    ui.horizontal(|ui| torch(studio, ui));
+}
+
+fn range(studio: &mut Studio, ui: &mut Ui, layers: usize) {
     let (mut first, mut last) = (studio.view.first + 1, studio.view.last + 1);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() / 2.0 - 190.0).max(60.0);
-        let low = ui.add(Slider::new(&mut first, 1..=last).text(studio.t("first-layer")));
-        let high = ui.add(Slider::new(&mut last, 1..=layers).text(studio.t("last-layer")));
-        if high.changed() {
-            studio.view.look_at(last - 1);
-        }
-        if low.changed() {
-            studio.view.first = first - 1;
-        }
-    });
-    ui.horizontal(|ui| {
-        let playing = studio.view.playing;
-        let word = if playing { studio.t("stop") } else { studio.t("play") };
-        if ui.button(format!("{} {word}", if playing { "■" } else { "▶" })).clicked() {
-            studio.act(Action::Play);
-        }
-        ui.spacing_mut().slider_width = (ui.available_width() / 2.0 - 190.0).max(60.0);
-        let (rate, progress) = (studio.t("rate"), studio.t("progress"));
-        ui.add(Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).text(rate));
-        let progress = Slider::new(&mut studio.view.progress, 0.0..=1.0).show_value(false).text(progress);
-        if ui.add(progress).changed() {
-            studio.view.playing = false;
-            studio.view.torch = None;
-        }
-    });
+    // The views of one layer have no lowest one.
+    let solid = studio.view.mode == Mode::Solid;
+    let texts = ["first-layer", "last-layer", "layer"].map(|key| studio.t(key));
+    if solid {
+        ui.add_enabled_ui(last > 1, |ui| {
+            if slider(ui, texts[0], 2, Slider::new(&mut first, 1..=last.max(2))) {
+                studio.view.first = first.min(last) - 1;
+            }
+        });
+    }
+    let text = if solid { texts[1] } else { texts[2] };
+    if slider(ui, text, 1, Slider::new(&mut last, 1..=layers)) {
+        studio.view.look_at(last - 1);
+    }
+}
+
+fn torch(studio: &mut Studio, ui: &mut Ui) {
+    let playing = studio.view.playing;
+    let word = if playing { studio.t("stop") } else { studio.t("play") };
+    if ui.button(format!("{} {word}", if playing { "■" } else { "▶" })).clicked() {
+        studio.act(Action::Play);
+    }
+    let (rate, progress) = (studio.t("rate"), studio.t("progress"));
+    slider(ui, rate, 2, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
+    if slider(ui, progress, 1, Slider::new(&mut studio.view.progress, 0.0..=1.0).show_value(false)) {
+        studio.view.playing = false;
+        studio.view.torch = None;
+    }
+}
+
+/// A slider with its text before it, on a part of the room that is left; tells whether it was moved.
+fn slider(ui: &mut Ui, text: &str, share: usize, slider: Slider<'_>) -> bool {
+    /// Room for the number behind it.
+    const NUMBER: f32 = 70.0;
+    let room = ui.available_width() / share as f32;
+    let label = ui.label(text);
+    ui.spacing_mut().slider_width = (room - label.rect.width() - NUMBER).max(60.0);
+    ui.add(slider).labelled_by(label.id).changed()
 }
 
 /// Moves the torch on while it plays.

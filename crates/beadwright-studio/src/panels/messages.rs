@@ -7,15 +7,18 @@ use eframe::egui::{Color32, RichText, ScrollArea, Ui};
 /// Lines that are shown at a time.
 const HEIGHT: f32 = 70.0;
 
+/// Whether there is anything to say.
+pub(super) fn any(studio: &Studio) -> bool {
+    let failed = matches!(studio.plan.failure, Some(Failure::Sentence(_)));
+    failed || !studio.messages.is_empty() || !warnings(studio).is_empty()
+}
+
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let failure = match &studio.plan.failure {
         Some(Failure::Sentence(text)) => Some(text.clone()),
         _ => None,
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
-    if failure.is_none() && studio.messages.is_empty() && warnings.is_empty() {
-        return;
-    }
     ScrollArea::vertical().max_height(HEIGHT).show(ui, |ui| {
         if let Some(text) = failure {
             line(ui, &text, true, || studio.plan.failure = None, close);

@@ -20,8 +20,12 @@ use eframe::egui::{Panel, ScrollArea, Ui};
 /// The whole window.
 pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     Panel::top("menu").show(ui, |ui| menu::show(studio, ui));
-    Panel::bottom("messages").show(ui, |ui| messages::show(studio, ui));
-    Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
+    if messages::any(studio) {
+        Panel::bottom("messages").show(ui, |ui| messages::show(studio, ui));
+    }
+    if studio.plan.layer_count() > 0 {
+        Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
+    }
     Panel::left("parameters").default_size(300.0).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             placement::show(studio, ui);

@@ -5,7 +5,7 @@ use crate::app::Studio;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
 use beadwright::profile::{BUILT_IN, Limit, Profile};
-use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Response, RichText, TextEdit, Ui};
+use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.separator();
@@ -71,7 +71,9 @@ impl Form<'_> {
                 if !section.about.is_empty() {
                     ui.weak(&section.about);
                 }
-                fields.into_iter().for_each(|field| self.field(ui, field));
+                Grid::new(&section.key).num_columns(2).show(ui, |ui| {
+                    fields.into_iter().for_each(|field| self.field(ui, field));
+                });
             });
     }
 
@@ -80,12 +82,12 @@ impl Form<'_> {
         let limit = form::limit(self.limits, &field.key);
         let hint = self.hint(field, limit);
         let refused = self.studio.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
-        ui.horizontal_wrapped(|ui| {
-            let mut name = RichText::new(self.studio.language().word("name", &field.name));
-            if refused {
-                name = name.color(ui.visuals().error_fg_color);
-            }
-            let label = ui.label(name).on_hover_text(&hint);
+        let mut name = RichText::new(self.studio.language().word("name", &field.name));
+        if refused {
+            name = name.color(ui.visuals().error_fg_color);
+        }
+        let label = ui.label(name).on_hover_text(&hint);
+        ui.horizontal(|ui| {
             let (response, changed) = widget(ui, field, value.as_ref(), limit);
             response.labelled_by(label.id).on_hover_text(&hint);
             if let Some(text) = changed {
@@ -98,9 +100,13 @@ impl Form<'_> {
                 self.studio.reset_value(&field.key);
             }
         });
+        ui.end_row();
         // Where it was typed, so that it is seen.
         if let Some((_, reason)) = self.studio.refused.as_ref().filter(|(key, _)| *key == field.key) {
-            ui.colored_label(ui.visuals().error_fg_color, format!("{} {reason}", self.studio.t("impossible")));
+            let text = format!("{} {reason}", self.studio.t("impossible"));
+            ui.label("");
+            ui.add(Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
+            ui.end_row();
         }
     }
 
@@ -158,7 +164,7 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     let (least, greatest) = limit.map_or((f64::MIN, f64::MAX), |l| (l.least, l.greatest));
     let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
     // Units behind a bracket tell what the range depends on; that belongs in the hint.
-    let unit = limit.map_or("", |l| l.unit.split('(').next().unwrap_or_default().trim());
+    let unit = limit.map_or("", |l| unit(l));
     // What is typed is taken when it is complete, and refused with the reason; what is dragged ends at the range.
     let drag = DragValue::new(&mut number).update_while_editing(false).speed(speed).suffix(format!(" {unit}"));
     let drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(4) };
@@ -169,6 +175,13 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     let changed =
         response.changed().then(|| as_toml(number)).filter(|_| Some(number) != now && !actions::escaped(ui.ctx()));
     (response, changed)
+}
+
+/// What stands behind a number; nothing where the key says it already. What a range depends on stands in brackets, and
+/// belongs in the hint.
+fn unit(limit: &Limit) -> &'static str {
+    let unit = limit.unit.split('(').next().unwrap_or_default().trim();
+    if limit.key.split(['.', '_']).any(|word| word == unit) { "" } else { unit }
 }
 
 fn choice(

@@ -1,6 +1,6 @@
 //! Questions that must be answered before work goes on, and the list of keys.
 
-use crate::actions::ENTRIES;
+use crate::actions::{Action, ENTRIES};
 use crate::app::Studio;
 use crate::planner::Failure;
 use beadwright::model::Units;
@@ -13,11 +13,37 @@ pub(super) fn show(studio: &mut Studio, ui: &Ui) {
         Some(Failure::Height(text)) => height(studio, ui, &text),
         _ => {}
     }
+    closing(studio, ui);
     keys(studio, ui);
 }
 
+fn closing(studio: &mut Studio, ui: &Ui) {
+    if !studio.closing {
+        return;
+    }
+    window(studio.t("closing-title")).show(ui.ctx(), |ui| {
+        ui.label(studio.t("closing-text"));
+        ui.horizontal(|ui| {
+            if ui.button(studio.t("save")).clicked() {
+                studio.closing = false;
+                studio.act(Action::Save);
+            }
+            if ui.button(studio.t("close-anyway")).clicked() {
+                studio.close();
+            }
+            if ui.button(studio.t("go-on")).clicked() {
+                studio.closing = false;
+            }
+        });
+    });
+}
+
 fn window<'a>(title: &'a str) -> Window<'a> {
-    Window::new(title).collapsible(false).resizable(false).anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
+    Window::new(title)
+        .min_width(420.0)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
 }
 
 fn lost(studio: &mut Studio, ui: &Ui) {
@@ -32,7 +58,7 @@ fn lost(studio: &mut Studio, ui: &Ui) {
             }
             if ui.button(studio.t("let-go")).clicked() {
                 studio.lost = None;
-                studio.store.forget_project();
+                studio.forget_lost();
             }
         });
     });

@@ -16,6 +16,7 @@ const COLOURS: [(Colour, &str); 5] = [
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(studio, ui));
+    ui.horizontal(|ui| legend(studio, ui));
     let style = style(studio);
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
@@ -45,7 +46,6 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
         }
     });
     combo.response.labelled_by(label.id);
-    legend(studio, ui);
 }
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
@@ -65,7 +65,7 @@ fn legend(studio: &Studio, ui: &mut Ui) {
     let unit = match studio.view.colour {
         Colour::Speed => " mm/s",
         Colour::Time => " s",
-        Colour::HeightError => " h",
+        Colour::HeightError => studio.t("unit-bead-heights"),
         _ => "",
     };
     ui.label(format!("{low:.1}{unit}"));

@@ -15,7 +15,7 @@ pub(super) fn show(studio: &Studio, ui: &mut Ui) {
         ui.separator();
     }
     let rows = rows_of(&studio.plan);
-    Grid::new("totals").num_columns(2).striped(true).show(ui, |ui| {
+    Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             ui.label(name_of(studio, name));
             ui.label(value);
@@ -60,7 +60,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
         ("wire", format!("{wire:.2} m")),
         ("duration", format!("{:.1} s", found.seconds())),
     ];
-    Grid::new("chosen").num_columns(2).striped(true).show(ui, |ui| {
+    Grid::new("chosen").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         let heat = heat.map(|heat| ("heat-input", format!("{heat:.0} J/mm")));
         for (key, value) in values.into_iter().chain(heat) {
             ui.label(studio.t(key));

@@ -61,7 +61,8 @@ fn a_finding_leads_to_its_bead() {
     let finding = findings.iter().filter(|f| f.pass.is_some() && f.layer > Some(0)).nth(2).unwrap();
     let (layer, pass) = (finding.layer.unwrap(), finding.pass.unwrap());
     click(&mut harness, &format!("Findings ({})", findings.len()));
-    click(&mut harness, &finding.sentence());
+    // A sentence begins with a capital letter.
+    click(&mut harness, &finding.sentence().replacen("layer", "Layer", 1));
     let view = harness.state_mut().view();
     assert_eq!((view.mode, view.last), (Mode::Layer, layer));
     assert_eq!(view.chosen.map(|(l, p, _)| (l, p)), Some((layer, pass)));

@@ -161,3 +161,27 @@ fn a_path_is_kept_whole() {
     let Some(Source::File(path)) = &harness.state().project().source else { panic!("no file") };
     assert_eq!(path, &std::env::current_dir().unwrap().join("nowhere/part.stl"));
 }
+
+#[test]
+fn changes_are_asked_about_before_they_are_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = studio(folder.path());
+    harness.state_mut().open_example("cross");
+    wait(&mut harness);
+    assert!(!harness.state().is_changed(), "an example that was only looked at");
+    harness.state_mut().set_value("fill.strategy", "contour");
+    assert!(harness.state().is_changed());
+    let close = |harness: &mut egui_kittest::Harness<'static, beadwright_studio::Studio>| {
+        let viewport = harness.input_mut().viewports.entry(eframe::egui::ViewportId::ROOT).or_default();
+        viewport.events.push(eframe::egui::ViewportEvent::Close);
+        harness.run_steps(1);
+        harness.run_steps(2);
+    };
+    close(&mut harness);
+    assert!(harness.query_by_label("Without saving they are lost.").is_some());
+    click(&mut harness, "Go on working");
+    assert!(harness.query_by_label("Without saving they are lost.").is_none());
+    harness.state_mut().save_to(&folder.path().join("a.bwp"));
+    close(&mut harness);
+    assert!(harness.query_by_label("Without saving they are lost.").is_none());
+}

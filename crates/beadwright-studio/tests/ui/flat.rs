@@ -26,7 +26,7 @@ fn a_click_on_a_bead_shows_its_values() {
     let mut harness = layer_view(folder.path());
     let layers = harness.state().plan().layers.clone();
     let profile = harness.state().plan().profile.clone().unwrap();
-    harness.get_by_role_and_label(eframe::egui::Role::Slider, "Last layer").set_value_accesskit(4.0);
+    harness.get_by_role_and_label(eframe::egui::Role::Slider, "Layer").set_value_accesskit(4.0);
     harness.run_steps(3);
     for (number, pass) in layers[3].passes.iter().enumerate() {
         let longest = |(_, s): &(usize, beadwright::pass::Segment)| s.from.distance(s.to);
