@@ -1,6 +1,7 @@
 //! One layer before the others: what a person looks at while the rest is planned.
 
-use super::{Emitter, Layer, PlanError, Sink, fill_planned, levels, scan_lines, strategy_and_slabs, weld_curves};
+use super::filled::{Filled, fill_planned};
+use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, strategy_and_slabs, weld_curves};
 use crate::bead::wall::WallBead;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
@@ -36,12 +37,7 @@ pub fn preview(
     Ok(last.0)
 }
 
-fn of_mesh(
-    mesh: &Mesh,
-    profile: &Profile,
-    index: usize,
-    task: &Task,
-) -> Result<Option<super::Filled>, PlanError<Infallible>> {
+fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<Option<Filled>, PlanError<Infallible>> {
     let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);

@@ -1,16 +1,26 @@
 //! One layer from above: outline, beads, pockets and skeleton regions, the height field with its voids, a measure.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `pen` | draws in the coordinates of the part |
+//! | `heat` | the colours of heights |
 
-use crate::view3d::palette;
-use beadwright::deposit::{Judgement, Picture, picture};
-use beadwright::fill::PassKind;
+mod heat;
+mod pen;
+
+pub use heat::{heat, height};
+
+use beadwright::deposit::Judgement;
 use beadwright::fill::hybrid::Steps;
-use beadwright::plan::{Layer, Segment};
+use beadwright::plan::Layer;
 use beadwright::planar::Bounds;
 use eframe::egui::{
-    self, Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
-    TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    self, Align2, Color32, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, TextureOptions, Ui, WidgetInfo,
+    pos2, vec2,
 };
 use glam::DVec2;
+use heat::{VOID, image};
+use pen::Pen;
 use std::sync::Arc;
 
 /// Where one looks: the middle of the view, mm, and its scale, points per mm.
@@ -77,18 +87,6 @@ pub struct View2d {
     pub measuring: bool,
     measure: Vec<DVec2>,
     map: Option<(Arc<Judgement>, TextureHandle)>,
-}
-
-const START: Color32 = Color32::from_rgb(0x1a, 0x9c, 0x4b);
-const END: Color32 = Color32::from_rgb(0xd9, 0x2d, 0x3a);
-const VOID: Color32 = Color32::from_rgb(232, 0, 150);
-const POCKET: Color32 = Color32::from_rgb(0x7e, 0x57, 0xc2);
-const REGION: Color32 = Color32::from_rgb(0x0f, 0x8b, 0x8d);
-
-/// The colour of a kind of pass.
-pub fn colour(kind: PassKind) -> Color32 {
-    let [r, g, b] = palette::kind(kind);
-    Color32::from_rgb(r, g, b)
 }
 
 impl Eye {
@@ -256,178 +254,4 @@ fn nearest(layer: &Layer, at: DVec2) -> Option<(usize, usize)> {
         (distance <= s.width / 2.0).then_some((distance, (pass, i)))
     });
     distances.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
-}
-
-/// Draws in the coordinates of the part.
-struct Pen<'a> {
-    painter: &'a Painter,
-    eye: Eye,
-    rect: Rect,
-    ui: &'a Ui,
-}
-
-impl Pen<'_> {
-    fn at(&self, p: DVec2) -> Pos2 {
-        self.eye.to_screen(p, self.rect)
-    }
-
-    fn points(&self, length: f64) -> f32 {
-        (length * self.eye.scale) as f32
-    }
-
-    fn ring(&self, points: &[DVec2], stroke: Stroke) {
-        self.painter.add(Shape::closed_line(points.iter().map(|p| self.at(*p)).collect(), stroke));
-    }
-
-    fn outlines(&self, layer: &Layer) {
-        let stroke = Stroke::new(1.2, self.ui.visuals().weak_text_color());
-        for island in &layer.islands {
-            self.ring(island.outer.points(), stroke);
-            island.holes.iter().for_each(|hole| self.ring(hole.points(), stroke));
-        }
-    }
-
-    fn regions(&self, steps: &Steps) {
-        for pocket in steps.levels.iter().flat_map(|level| &level.pockets) {
-            let stroke = Stroke::new(if pocket.kept { 2.0 } else { 0.8 }, POCKET);
-            self.ring(pocket.shape.outer.points(), stroke);
-        }
-        for ring in steps.regions.rings() {
-            self.ring(ring.points(), Stroke::new(2.0, REGION));
-        }
-    }
-
-    fn passes(&self, subject: &Subject<'_>, show: Show) {
-        let mut left = subject.pieces;
-        let shown = subject.layer.passes.iter().map(|pass| {
-            let pieces: Vec<_> = pass.segments().take(left).collect();
-            left -= pieces.len();
-            (pass.kind, pieces)
-        });
-        let shown: Vec<(PassKind, Vec<Segment>)> = shown.collect();
-        // Under the colours of heights, beads would only hide them.
-        if show.beads && !show.heights {
-            for (i, (kind, pieces)) in shown.iter().enumerate() {
-                self.bead(*kind, pieces, subject.chosen == Some(i));
-            }
-            self.outlines(subject.layer);
-        }
-        let (mut torch, weak) = (None, Stroke::new(1.0, self.ui.visuals().weak_text_color()));
-        for (i, (kind, pieces)) in shown.iter().enumerate() {
-            let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { break };
-            let [start, end] = [first.from, last.to].map(|p| self.at(p.truncate()));
-            if let (true, Some(from)) = (show.travels, torch) {
-                self.painter.extend(Shape::dashed_line(&[from, start], weak, 5.0, 4.0));
-            }
-            if show.paths {
-                let ink = if show.heights { Color32::BLACK } else { colour(*kind) };
-                let width = if subject.chosen == Some(i) { 3.0 } else { 1.5 };
-                let points = pieces.iter().map(|s| s.to).map(|p| self.at(p.truncate()));
-                self.painter.add(Shape::line([start].into_iter().chain(points).collect(), Stroke::new(width, ink)));
-            }
-            if show.starts {
-                self.painter.circle_filled(start, 3.5, START);
-                self.painter.circle_filled(end, 2.5, END);
-            }
-            torch = Some(end);
-        }
-    }
-
-    /// A bead in a pale colour that covers what lies below it, round at its ends and corners.
-    fn bead(&self, kind: PassKind, pieces: &[Segment], chosen: bool) {
-        /// Cosine of the turn from which on a corner would show a gap.
-        const GAP: f64 = 0.995;
-        let ground = self.ui.visuals().panel_fill;
-        let ink = ground.lerp_to_gamma(colour(kind), if chosen { 0.8 } else { 0.4 });
-        let way = |s: &Segment| (s.to - s.from).normalize_or_zero();
-        for (i, s) in pieces.iter().enumerate() {
-            let line = [s.from, s.to].map(|p| self.at(p.truncate()));
-            let width = self.points(s.width);
-            self.painter.line_segment(line, Stroke::new(width, ink));
-            let before = i.checked_sub(1).map(|before| &pieces[before]);
-            if before.is_none_or(|before| way(before).dot(way(s)) < GAP) {
-                self.painter.circle_filled(line[0], width / 2.0, ink);
-            }
-            if i + 1 == pieces.len() {
-                self.painter.circle_filled(line[1], width / 2.0, ink);
-            }
-        }
-    }
-
-    /// A line of a round length.
-    fn scale_bar(&self) {
-        let longest = f64::from(self.rect.width()) / 5.0 / self.eye.scale;
-        let power = 10_f64.powf(longest.log10().floor());
-        let length = [5.0, 2.0, 1.0].into_iter().map(|f| f * power).find(|l| *l <= longest).unwrap_or(power);
-        let ink = self.ui.visuals().text_color();
-        let from = self.rect.left_bottom() + vec2(12.0, -14.0);
-        let to = from + vec2(self.points(length), 0.0);
-        self.painter.line_segment([from, to], Stroke::new(2.0, ink));
-        self.painter.text(from, Align2::LEFT_BOTTOM, format!("{length} mm"), FontId::proportional(12.0), ink);
-    }
-
-    /// What the colours of heights mean, in nominal bead heights.
-    fn heat_scale(&self, caption: &str) {
-        const STEPS: usize = 50;
-        const MARKS: [f64; 3] = [0.0, 1.0, 2.0];
-        let ink = self.ui.visuals().text_color();
-        let place = Rect::from_min_size(self.rect.left_top() + vec2(12.0, 26.0), vec2(12.0, 120.0));
-        let y = |height: f64| place.bottom() - place.height() * (height / picture::FULL_SCALE) as f32;
-        for i in 0..STEPS {
-            let height = |i: usize| picture::FULL_SCALE * i as f64 / STEPS as f64;
-            let strip = Rect::from_x_y_ranges(place.x_range(), y(height(i + 1))..=y(height(i)));
-            self.painter.rect_filled(strip, 0.0, heat(height(i)));
-        }
-        let font = FontId::proportional(12.0);
-        for mark in MARKS {
-            let at = pos2(place.right() + 4.0, y(mark));
-            self.painter.text(at, Align2::LEFT_CENTER, format!("{mark:.0}"), font.clone(), ink);
-        }
-        self.painter.text(place.left_top() - vec2(0.0, 8.0), Align2::LEFT_BOTTOM, caption, font.clone(), ink);
-        let void = Rect::from_min_size(place.left_bottom() + vec2(0.0, 8.0), vec2(12.0, 12.0));
-        self.painter.rect_filled(void, 0.0, VOID);
-        self.painter.text(void.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35", font, ink);
-    }
-
-    fn note(&self, corner: Align2, text: &str) {
-        let place = corner.pos_in_rect(&self.rect.shrink(8.0));
-        self.painter.text(place, corner, text, FontId::monospace(12.0), self.ui.visuals().text_color());
-    }
-}
-
-/// Height in nominal bead heights, and its colour: as in the report.
-const HEAT: [(f64, [f64; 3]); 7] = [
-    (0.0, [38.0, 43.0, 92.0]),
-    (0.35, [45.0, 104.0, 190.0]),
-    (0.75, [150.0, 196.0, 226.0]),
-    (1.0, [238.0, 240.0, 234.0]),
-    (1.3, [250.0, 176.0, 84.0]),
-    (1.6, [214.0, 62.0, 42.0]),
-    (2.0, [110.0, 0.0, 22.0]),
-];
-
-/// The colour of a height, in nominal bead heights.
-pub fn heat(height: f64) -> Color32 {
-    let above = HEAT.iter().position(|(at, _)| *at >= height).unwrap_or(HEAT.len() - 1).max(1);
-    let ((low, a), (high, b)) = (HEAT[above - 1], HEAT[above]);
-    let part = ((height - low) / (high - low)).clamp(0.0, 1.0);
-    let [r, g, b] = [0, 1, 2].map(|i| (a[i] + (b[i] - a[i]) * part).round() as u8);
-    Color32::from_rgb(r, g, b)
-}
-
-/// The height in a pixel, in nominal bead heights; none where there is no metal, or a void.
-pub fn height(value: u8) -> Option<f64> {
-    let step = picture::FULL_SCALE / f64::from(u8::MAX - picture::FIRST_HEIGHT);
-    value.checked_sub(picture::FIRST_HEIGHT).map(|v| f64::from(v) * step)
-}
-
-fn image(map: &Picture) -> ColorImage {
-    let pixel = |value: u8| match value {
-        picture::EMPTY => Color32::TRANSPARENT,
-        picture::VOID_PIXEL => VOID,
-        value => height(value).map_or(Color32::TRANSPARENT, heat),
-    };
-    // The picture has its lowest row first, an image its highest.
-    let rows = map.values.chunks(map.width.max(1)).rev();
-    ColorImage::new([map.width, map.height], rows.flatten().map(|v| pixel(*v)).collect())
 }

@@ -1,0 +1,90 @@
+//! A slice with its passes, and what a bead cannot reach of it.
+
+use super::scan_lines::Planned;
+use crate::fill::{Fill, FillSettings, Pass as Path, Strategy};
+use crate::profile::Profile;
+use crate::slice::Layer as Slice;
+use crate::warning::{Warning, WarningKind};
+use planar::{Bounds, Join, Polygon, Region};
+
+/// A slice with the passes of its islands, not yet in order.
+pub(super) struct Filled {
+    pub(super) slice: Slice,
+    pub(super) fills: Vec<Fill>,
+    pub(super) planned_area: f64,
+}
+
+pub(super) fn fill_planned(layer: Planned, strategy: &dyn Strategy, profile: &Profile) -> Filled {
+    let mut settings = profile.fill_settings(layer.slice.index);
+    settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
+    settings.solid = layer.solid.as_ref();
+    fill_layer(layer.slice, strategy, &settings)
+}
+
+fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings) -> Filled {
+    let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
+    for island in &slice.islands {
+        let thin = strategy.welds_thin_walls();
+        let known = slice.warnings.len();
+        let reached = reach(island, strategy.narrowest(settings), slice.index, &mut slice.warnings);
+        if thin {
+            slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
+        }
+        let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
+        for stage in &mut fill.stages {
+            drop_short(stage, settings.min_pass_length, slice.index, &mut slice.warnings);
+        }
+        planned_area += reached;
+        fills.push(fill);
+    }
+    Filled { slice, fills, planned_area }
+}
+
+pub(super) fn drop_short(stage: &mut Vec<Path>, shortest: f64, layer: usize, warnings: &mut Vec<Warning>) {
+    stage.retain(|pass| {
+        let length = pass.length();
+        let keep = length >= shortest && pass.points.len() >= 2;
+        // A zigzag that touches a corner with a line of no length loses nothing.
+        if !keep && length > 0.1 * shortest {
+            let place = pass.points.first().copied().unwrap_or_default();
+            warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
+        }
+        keep
+    });
+}
+
+/// A feature is reported from this area on, in squared bead widths.
+const THIN_FEATURE: f64 = 0.25;
+
+/// Area of an island that a bead of that width can reach without leaving it, mm²; warns of what it cannot reach.
+///
+/// That area is the opening of the island by a disc of the bead's width. With C the outermost centre-lines and r
+/// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is connected like the
+/// island; where C has come apart at a neck, its parts may reach the same points. So the shapes need to be computed
+/// only at necks, and where the number says that something is lost.
+fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
+    let r = width / 2.0;
+    let area = island.area();
+    let centre = island.offset(-r, Join::ROUND);
+    if centre.is_empty() {
+        let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
+        warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
+        return 0.0;
+    }
+    let smallest = THIN_FEATURE * width * width;
+    if let [part] = centre.polygons()
+        && part.holes.len() == island.holes.len()
+    {
+        let opened = centre.area() + r * centre.perimeter() + std::f64::consts::PI * r * r * centre.euler() as f64;
+        if area - opened <= smallest {
+            return opened.clamp(0.0, area);
+        }
+    }
+    let opened = centre.offset(r, Join::ROUND);
+    let lost = Region::from(island.clone()).difference(&opened);
+    for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
+        let place = piece.outer.points().first().copied().unwrap_or_default();
+        warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
+    }
+    opened.area().min(area)
+}
