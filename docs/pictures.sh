@@ -11,8 +11,9 @@ command -v import > /dev/null && command -v convert > /dev/null || missing+=(ima
 compgen -G '/usr/share/vulkan/icd.d/*.json' > /dev/null || missing+=(mesa-vulkan-drivers libvulkan1)
 libraries='libX11.so.6=libx11-6 libX11-xcb.so.1=libx11-xcb1 libXcursor.so.1=libxcursor1 libXi.so.6=libxi6
     libxkbcommon.so.0=libxkbcommon0 libxkbcommon-x11.so.0=libxkbcommon-x11-0'
+known=$(ldconfig -p)
 for library in $libraries; do
-    ldconfig -p | grep -q "${library%=*}" || missing+=("${library#*=}")
+    [[ $known == *"${library%=*}"* ]] || missing+=("${library#*=}")
 done
 if [ ${#missing[@]} -gt 0 ]; then
     echo "missing: apt-get install --no-install-recommends ${missing[*]}" >&2
