@@ -3,6 +3,7 @@
 use crate::project::Project;
 use crate::text::Language;
 use serde::{Deserialize, Serialize};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// Recent files that are remembered.
@@ -29,19 +30,40 @@ impl Settings {
     }
 }
 
-/// The folder that holds them; none for a run that leaves no trace.
-#[derive(Debug, Clone, Default)]
-pub struct Store(Option<PathBuf>);
+/// The folder that holds them; none for a run that leaves no trace. Windows that are open at a time share the settings, and
+/// each keeps its own project: whoever holds the lock of a place has the project there.
+#[derive(Debug, Default)]
+pub struct Store {
+    folder: Option<PathBuf>,
+    /// Number of the place for the project.
+    place: usize,
+    /// Open and locked for as long as this run lasts, however it ends.
+    _lock: Option<File>,
+}
+
+/// No more windows keep their projects at a time.
+const PLACES: usize = 16;
 
 impl Store {
     /// The place where this system keeps such things.
     pub fn of_user() -> Self {
-        Self(dirs::data_dir().map(|folder| folder.join("beadwright-studio")))
+        dirs::data_dir().map_or_else(Self::default, |folder| Self::at(folder.join("beadwright-studio")))
     }
 
     /// In a folder of choice.
     pub fn at(folder: PathBuf) -> Self {
-        Self(Some(folder))
+        let lock = |place: &usize| {
+            let file = File::create(folder.join(format!("autosave-{place}.lock"))).ok()?;
+            file.try_lock().ok().map(|()| (*place, file))
+        };
+        let left = |place: &usize| folder.join(format!("autosave-{place}.bwp")).is_file();
+        // A folder that cannot be made is told of when something is to be kept there.
+        let _ = std::fs::create_dir_all(&folder);
+        // First where a run that did not end well has left something.
+        let (with, without): (Vec<usize>, Vec<usize>) = (0..PLACES).partition(left);
+        let found = with.iter().chain(&without).find_map(lock);
+        let (place, lock) = found.map_or((0, None), |(place, lock)| (place, Some(lock)));
+        Self { folder: Some(folder), place, _lock: lock }
     }
 
     /// The settings; those of a new user where there are none, or where they cannot be read.
@@ -63,28 +85,32 @@ impl Store {
     /// A sentence for the window.
     pub fn keep_project(&self, project: &Project) -> Result<(), String> {
         let text = project.write(None)?;
-        self.keep("autosave.bwp", &text).map_err(|error| format!("The project cannot be kept aside: {error}."))
+        self.keep(&self.project_file(), &text).map_err(|error| format!("The project cannot be kept aside: {error}."))
     }
 
     /// The project of a run that did not end well.
     pub fn lost_project(&self) -> Option<Project> {
-        let text = std::fs::read_to_string(self.file("autosave.bwp")?).ok()?;
+        let text = std::fs::read_to_string(self.file(&self.project_file())?).ok()?;
         Project::read(&text, None).ok().filter(|project| project.source.is_some())
     }
 
     /// The run ends well: nothing is to be brought back.
     pub fn forget_project(&self) {
-        if let Some(path) = self.file("autosave.bwp") {
+        if let Some(path) = self.file(&self.project_file()) {
             let _ = std::fs::remove_file(path);
         }
     }
 
+    fn project_file(&self) -> String {
+        format!("autosave-{}.bwp", self.place)
+    }
+
     fn file(&self, name: &str) -> Option<PathBuf> {
-        self.0.as_ref().map(|folder| folder.join(name))
+        self.folder.as_ref().map(|folder| folder.join(name))
     }
 
     fn keep(&self, name: &str, text: &str) -> std::io::Result<()> {
-        let (Some(folder), Some(path)) = (&self.0, self.file(name)) else { return Ok(()) };
+        let (Some(folder), Some(path)) = (&self.folder, self.file(name)) else { return Ok(()) };
         std::fs::create_dir_all(folder)?;
         write_whole(&path, text.as_bytes())
     }

@@ -131,5 +131,24 @@ fn settings_and_a_lost_project_come_back() {
     assert_eq!((store.settings(), store.lost_project()), (settings, Some(project)));
     store.forget_project();
     assert_eq!(store.lost_project(), None);
-    assert!(std::fs::read_dir(folder.path().join("deep/store")).unwrap().count() == 1);
+    let left = std::fs::read_dir(folder.path().join("deep/store")).unwrap().map(|e| e.unwrap().file_name());
+    assert!(left.into_iter().all(|name| !name.to_string_lossy().ends_with(".bwp")));
+}
+
+#[test]
+fn windows_at_a_time_keep_projects_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = || Store::at(folder.path().to_owned());
+    let project = |name: &str| Project { source: Some(Source::Example(name.to_owned())), ..Project::default() };
+    let (first, second) = (store(), store());
+    first.keep_project(&project("star")).unwrap();
+    second.keep_project(&project("gear")).unwrap();
+    // The second ends without a word while the first goes on.
+    drop(second);
+    let third = store();
+    assert_eq!(third.lost_project(), Some(project("gear")));
+    third.forget_project();
+    assert_eq!(first.lost_project(), Some(project("star")));
+    drop((first, third));
+    assert_eq!(store().lost_project(), Some(project("star")));
 }
