@@ -4,11 +4,14 @@ use crate::app::Studio;
 use crate::jobs;
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::{Reach, cell};
-use eframe::egui::{ComboBox, Ui};
-use egui_plot::{HLine, Legend, Line, LineStyle, Plot, PlotPoints};
+use eframe::egui::{ComboBox, Rangef, Ui};
+use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Points of a curve that are drawn.
 const POINTS: usize = 2000;
+
+/// Points of the screen between numbers at an axis, from hardly seen to clear: plots are small here.
+const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
 
 /// Height of a plot.
 const HEIGHT: f32 = 140.0;
@@ -63,7 +66,8 @@ fn curve(ui: &mut Ui, title: &'static str, x: &'static str, points: Vec<[f64; 2]
     ui.label(title);
     let step = points.len().div_ceil(POINTS).max(1);
     let points: PlotPoints<'_> = points.into_iter().step_by(step).collect();
-    Plot::new(title).height(HEIGHT).x_axis_label(x).include_y(0.0).allow_scroll(false).show(ui, |plot| {
+    let axis = AxisHints::new_x().label(x).label_spacing(SPACING);
+    Plot::new(title).height(HEIGHT).custom_x_axes(vec![axis]).include_y(0.0).allow_scroll(false).show(ui, |plot| {
         plot.line(Line::new(title, points));
     });
 }
