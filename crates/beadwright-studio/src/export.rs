@@ -1,6 +1,5 @@
 //! What is written: programs, plan, report. The bytes are those of `beadwright plan`, since the library makes them.
 
-use crate::settings::write_whole;
 use crate::state::PlanState;
 use beadwright::plan::deposit_settings_over;
 use beadwright::report::Report;
@@ -96,14 +95,21 @@ pub fn all(state: &PlanState) -> Result<BTreeMap<String, String>, String> {
     Ok(files)
 }
 
-/// Writes files into a folder, each whole or not at all.
+/// Writes files into a folder: all of them, or none. They come to their place when the last one is written, so that half a
+/// program never lies there.
 ///
 /// # Errors
 /// A sentence that names the file.
 pub fn write(folder: &Path, files: &BTreeMap<String, String>) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}.", folder.display()))?;
-    files.iter().try_for_each(|(name, text)| {
+    let named = |path: &Path, error: std::io::Error| format!("{}: {error}.", path.display());
+    std::fs::create_dir_all(folder).map_err(|error| named(folder, error))?;
+    let aside = tempfile::Builder::new().prefix(".beadwright-").tempdir_in(folder);
+    let aside = aside.map_err(|error| named(folder, error))?;
+    for (name, text) in files {
+        std::fs::write(aside.path().join(name), text).map_err(|error| named(&folder.join(name), error))?;
+    }
+    files.keys().try_for_each(|name| {
         let path = folder.join(name);
-        write_whole(&path, text.as_bytes()).map_err(|error| format!("{}: {error}.", path.display()))
+        std::fs::rename(aside.path().join(name), &path).map_err(|error| named(&path, error))
     })
 }

@@ -152,3 +152,15 @@ fn windows_at_a_time_keep_projects_of_their_own() {
     drop((first, third));
     assert_eq!(store().lost_project(), Some(project("star")));
 }
+
+#[test]
+fn files_of_a_program_are_all_written_or_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let files = |names: &[&str]| names.iter().map(|name| ((*name).to_owned(), "text".to_owned())).collect();
+    let error = beadwright_studio::export::write(&out, &files(&["a.src", "no/such/b.src"])).unwrap_err();
+    assert!(error.contains("b.src") && error.ends_with('.'), "{error}");
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0);
+    beadwright_studio::export::write(&out, &files(&["a.src", "b.src"])).unwrap();
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 2);
+}
