@@ -134,7 +134,8 @@ fn hybrid_layer(bencher: Bencher, vertices: usize) {
         DVec2::from_angle(turn) * (115.0 + 10.0 * (9.0 * turn).sin() + noise)
     };
     let island = beadwright::planar::Polygon::simple(beadwright::planar::Ring::new((0..vertices).map(place).collect()));
-    let settings = Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0);
+    let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    let settings = profile.fill_settings(0);
     let hybrid = beadwright::fill::strategy("hybrid").unwrap();
     bencher.bench(|| hybrid.fill(black_box(&island), &settings));
 }

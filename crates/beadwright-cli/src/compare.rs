@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let part = arguments.model.part();
-    let lead = format!("Profile {}, beads of {} mm; less is better in every column.", profile.name, profile.bead.width);
+    let lead = format!("Profile {}, beads of {} mm. {}", profile.name, profile.bead.width, compare::SCORE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
     if let (Some(layer), true) = (middle, names.iter().any(|name| name == "hybrid")) {
@@ -108,5 +108,5 @@ fn print(out: &mut impl Write, entries: &[Entry]) -> std::io::Result<()> {
         }
         writeln!(out)?;
     }
-    writeln!(out, "{:widest$} * best", "")
+    writeln!(out, "{:widest$} * best; {}", "", compare::SCORE)
 }

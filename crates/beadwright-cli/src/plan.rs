@@ -5,6 +5,7 @@ use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::model::{Part, RepairReport};
+use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
 use beadwright::plan_file;
 use beadwright::post::{self, Chunk, Post};
@@ -95,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
-    let profile = plan::profile_for(&model, &profile);
+    let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let output = Output::new(&arguments.output)?;
     let programmer = Programmer::of(&programs);
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
@@ -116,7 +117,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let planned = plan::plan_part(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
-    let summary = planned.map_err(|error| match error {
+    let mut summary = planned.map_err(|error| match error {
         PlanError::Sink(error) => error,
         PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
         other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
@@ -127,6 +128,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         arguments.from_layer,
         summary.metrics.layers
     );
+    summary.notes.splice(0..0, note);
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let names = files.finish(&summary, &profile, &model.repair())?;
 

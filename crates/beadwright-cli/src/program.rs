@@ -60,7 +60,7 @@ impl Reading {
         let options = readback::Options { arc: self.codes(profile), filament_diameter: None, inform_cm_per_min };
         let program = readback::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
         let settings = plan::deposit_settings(profile);
-        let mut layers = simulate::layers(&program, &settings, self.bead_width);
+        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, self.bead_width);
         let mut notes = program.notes.clone();
         if let Some(part) = part {
             if let Some(by) = simulate::shift(&layers, &part.mesh, &settings) {
@@ -73,7 +73,7 @@ impl Reading {
             simulate::outline(&mut layers, &part.mesh, profile.slice_options(), task)?;
         }
         let language = program.dialect.name();
-        let mut totals = Totals::of_program(&program.totals(), &layers, &settings.nominal);
+        let mut totals = Totals::of_program(&program.totals(), &layers, profile);
         if let Some(motion) = &profile.motion {
             totals.total_time_s = program.seconds(motion);
         }

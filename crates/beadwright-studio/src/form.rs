@@ -57,13 +57,14 @@ pub fn sections() -> &'static [Section] {
 }
 
 /// The sections that come first; the others follow by name.
-const FIRST: [&str; 12] = [
+const FIRST: [&str; 13] = [
     "fill",
     "bead",
     "layers",
     "process",
     "wire",
     "order",
+    "loop",
     "hybrid",
     "wall",
     "travel",

@@ -12,6 +12,7 @@ use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge, Judgement};
 use beadwright::example;
 use beadwright::model::{Mesh, Model, Part, PartError, Placement};
+use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Stage, Task};
@@ -203,7 +204,8 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
     let sentence = |text: String| Stop::Failed(Failure::Sentence(text));
     let profile = Profile::parse(&request.project.profile).map_err(|error| sentence(error.to_string()))?;
     let part = kept.part(&request.project, profile.bead.width, task)?;
-    let profile = Arc::new(plan::profile_for(&part, &profile));
+    let Choice { profile, note } = choice::choose(&part, &profile, false, task)?;
+    let profile = Arc::new(profile);
     let known = kept.mesh.as_ref().filter(|(of, _)| Arc::ptr_eq(of, &part)).map(|(_, mesh)| mesh.clone());
     let mesh = known.or_else(|| part.mesh().map(|mesh| Arc::new(mesh.clone())));
     kept.mesh = mesh.clone().map(|mesh| (part.clone(), mesh));
@@ -213,8 +215,9 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
         send(Event::Preview(Arc::new(layer), beads));
     }
     let mut layers = Layers { send, pace: Pace::of(&profile), layers: Vec::new(), torch: None };
-    let summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
+    let mut summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
     let layers = layers.layers;
+    summary.notes.splice(0..0, note);
     send(Event::Planned(Box::new(summary)));
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);

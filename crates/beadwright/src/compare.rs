@@ -1,6 +1,6 @@
 //! Strategies and programs side by side: what each lays, and what the deposit model says of it.
 
-use crate::deposit::{DepositSettings, Figures, Judge, Nominal, Patch, Picture, stack::Growth};
+use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, stack::Growth};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
@@ -51,6 +51,12 @@ pub struct Totals {
     pub metal_volume_mm3: f64,
     /// Turns sharper than 30° within passes.
     pub turns: usize,
+    /// The shortest time for which an arc moves, s; none without passes.
+    pub shortest_arc_s: Option<f64>,
+    /// Time for gas, starting and ending the arc, and for craters, s.
+    pub start_stop_time_s: f64,
+    /// Time lost to slowing down before corners and ends, s.
+    pub corner_time_s: f64,
 }
 
 /// One layer of an entry.
@@ -164,11 +170,17 @@ impl Totals {
             total_time_s: metrics.total_time_s,
             metal_volume_mm3: metrics.deposited_volume_mm3,
             turns: 0,
+            shortest_arc_s: metrics.shortest_arc_s,
+            start_stop_time_s: metrics.start_stop_time_s,
+            corner_time_s: metrics.corner_time_s,
         }
     }
 
-    /// Of a program read back; `layers` are its layers.
-    pub fn of_program(totals: &readback::Totals, layers: &[Layer], nominal: &Nominal) -> Self {
+    /// Of a program read back; `layers` are its layers. What its starts, ends and corners take follows from the profile.
+    pub fn of_program(totals: &readback::Totals, layers: &[Layer], profile: &Profile) -> Self {
+        let nominal = plan::deposit_settings(profile).nominal;
+        let mut metrics = Metrics::new(profile);
+        layers.iter().for_each(|layer| metrics.add(layer));
         let metal = |s: Segment| s.length() * nominal.bead_at(s.width, s.speed).area();
         Self {
             arc_starts: totals.arc_starts,
@@ -176,7 +188,7 @@ impl Totals {
             travel_length_mm: totals.travel_length_mm,
             total_time_s: totals.time_s,
             metal_volume_mm3: layers.iter().flat_map(|l| &l.passes).flat_map(Pass::segments).map(metal).sum(),
-            turns: 0,
+            ..Self::of_plan(&metrics)
         }
     }
 }
@@ -213,28 +225,48 @@ pub struct Column {
     pub decimals: usize,
     /// Its value.
     pub value: fn(&Entry) -> f64,
+    /// Whether more is better.
+    pub more: bool,
 }
 
-/// The columns; in each, less is better.
-pub const COLUMNS: [Column; 10] = [
-    Column { name: "arc starts", decimals: 0, value: |e| e.totals.arc_starts as f64 },
-    Column { name: "bead m", decimals: 2, value: |e| e.totals.deposited_length_mm / 1e3 },
-    Column { name: "travel m", decimals: 2, value: |e| e.totals.travel_length_mm / 1e3 },
-    Column { name: "time min", decimals: 1, value: |e| e.totals.total_time_s / 60.0 },
-    Column { name: "metal cm³", decimals: 1, value: |e| e.totals.metal_volume_mm3 / 1e3 },
-    Column { name: "turns", decimals: 0, value: |e| e.totals.turns as f64 },
-    Column { name: "void %", decimals: 2, value: |e| e.figures.void_percent() },
-    Column { name: "low %", decimals: 2, value: |e| e.figures.low_percent() },
-    Column { name: "overfill %", decimals: 2, value: |e| e.figures.overfill_percent() },
-    Column { name: "outside %", decimals: 2, value: |e| e.figures.outside_percent() },
+/// The columns.
+pub const COLUMNS: [Column; 14] = [
+    Column { name: "arc starts", decimals: 0, value: |e| e.totals.arc_starts as f64, more: false },
+    Column { name: "bead m", decimals: 2, value: |e| e.totals.deposited_length_mm / 1e3, more: false },
+    Column { name: "travel m", decimals: 2, value: |e| e.totals.travel_length_mm / 1e3, more: false },
+    Column { name: "time min", decimals: 1, value: |e| e.totals.total_time_s / 60.0, more: false },
+    Column { name: "metal cm³", decimals: 1, value: |e| e.totals.metal_volume_mm3 / 1e3, more: false },
+    Column { name: "turns", decimals: 0, value: |e| e.totals.turns as f64, more: false },
+    Column { name: "shortest s", decimals: 1, value: |e| e.totals.shortest_arc_s.unwrap_or_default(), more: true },
+    Column { name: "starts min", decimals: 1, value: |e| e.totals.start_stop_time_s / 60.0, more: false },
+    Column { name: "corners min", decimals: 1, value: |e| e.totals.corner_time_s / 60.0, more: false },
+    Column { name: "void %", decimals: 2, value: |e| e.figures.void_percent(), more: false },
+    Column { name: "low %", decimals: 2, value: |e| e.figures.low_percent(), more: false },
+    Column { name: "overfill %", decimals: 2, value: |e| e.figures.overfill_percent(), more: false },
+    Column { name: "outside %", decimals: 2, value: |e| e.figures.outside_percent(), more: false },
+    Column { name: "score", decimals: 1, value: Entry::score, more: false },
 ];
+
+/// How the score is made, in words.
+pub const SCORE: &str = "score: 10 for each % of void and of metal outside, 1 for each % of overfill, \
+                         10 for each arc start a metre of bead; the least is the best.";
+
+impl Entry {
+    /// One figure for what it builds and how it welds: the less the better ([`SCORE`]).
+    pub fn score(&self) -> f64 {
+        let starts_a_metre = 1e3 * self.totals.arc_starts as f64 / self.totals.deposited_length_mm.max(1.0);
+        10.0 * (self.figures.void_percent() + self.figures.outside_percent() + starts_a_metre)
+            + self.figures.overfill_percent()
+    }
+}
 
 /// The cells of the table as text, and whether each is the best of its column.
 pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
     let text = |entry: &Entry, column: &Column| format!("{:.*}", column.decimals, (column.value)(entry));
     let best = |column: &Column| {
-        let least = entries.iter().min_by(|a, b| (column.value)(a).total_cmp(&(column.value)(b)));
-        least.map(|entry| text(entry, column))
+        let sign = if column.more { -1.0 } else { 1.0 };
+        let best = entries.iter().min_by(|a, b| (sign * (column.value)(a)).total_cmp(&(sign * (column.value)(b))));
+        best.map(|entry| text(entry, column))
     };
     let cell = |entry: &Entry, column: &Column| {
         let text = text(entry, column);

@@ -29,6 +29,12 @@ pub struct Metrics {
     pub wire_length_m: f64,
     /// Wire, kg.
     pub wire_mass_kg: f64,
+    /// The shortest time for which an arc moves, s; none without passes.
+    pub shortest_arc_s: Option<f64>,
+    /// Time for gas, starting and ending the arc, and for craters, s: what every arc start costs.
+    pub start_stop_time_s: f64,
+    /// Time lost to slowing down before corners and ends, s; 0 where the profile gives no acceleration.
+    pub corner_time_s: f64,
     /// Heat per length of bead, J/mm, where the profile gives current and voltage.
     pub heat_input_j_per_mm: Option<f64>,
     /// Sum of the slice areas, mm².
@@ -74,6 +80,9 @@ impl Metrics {
             total_time_s: 0.0,
             wire_length_m: 0.0,
             wire_mass_kg: 0.0,
+            shortest_arc_s: None,
+            start_stop_time_s: 0.0,
+            corner_time_s: 0.0,
             heat_input_j_per_mm: profile.heat_input(),
             slice_area_mm2: 0.0,
             planned_area_mm2: 0.0,
@@ -107,6 +116,9 @@ impl Metrics {
             self.travel_length_mm += approach.length;
             self.arc_time_s += welded.moving + welded.crater;
             self.total_time_s += welded.moving + welded.crater + approach.moving + welded.delay;
+            self.shortest_arc_s = Some(self.shortest_arc_s.map_or(welded.moving, |least| least.min(welded.moving)));
+            self.start_stop_time_s += welded.delay + welded.crater;
+            self.corner_time_s += welded.slowed;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
         }

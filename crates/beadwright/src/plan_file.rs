@@ -1,6 +1,6 @@
 //! plan.json, version 1: the plan as text, written layer by layer, and read back.
 
-use crate::bead::Bead;
+use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
 use crate::fill::PassKind;
 use crate::number::push_fixed;
@@ -22,7 +22,7 @@ pub fn head(header: &Header, settings: &DepositSettings) -> String {
     let Nominal { bead, speed, rise } = settings.nominal;
     let fields = json!({
         "part": part, "profile": profile, "strategy": strategy,
-        "bead": { "width": bead.width, "height": bead.height, "speed": speed, "rise": rise },
+        "bead": { "width": bead.width, "height": bead.height, "speed": speed, "rise": rise, "section": bead.section },
         "machining_allowance": settings.machining_allowance,
     });
     let fields = fields.to_string();
@@ -143,7 +143,7 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
         return Err(PlanFileError::Bead);
     }
     let settings = file.bead.map(|b| {
-        let bead = Bead { width: b.width, height: b.height };
+        let bead = Bead { width: b.width, height: b.height, section: b.section };
         DepositSettings::new(Nominal { bead, speed: b.speed, rise: b.rise }, file.machining_allowance)
     });
     let layers = file.layers.into_iter().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
@@ -172,6 +172,8 @@ struct FileBead {
     height: f64,
     speed: f64,
     rise: f64,
+    #[serde(default)]
+    section: Section,
 }
 
 #[derive(Deserialize)]

@@ -1,5 +1,6 @@
 //! A program read back becomes layers that the deposit model can judge, over the slices of the part it was made for.
 
+use crate::bead::Law;
 use crate::deposit::DepositSettings;
 use crate::model::Mesh;
 use crate::pass::{Along, Pass};
@@ -10,20 +11,25 @@ use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::Bounds;
 
-/// The passes of a program by layer. Widths are `width`, else the program's own, else the nominal bead's. The speed of
+/// The passes of a program by layer. Widths are `width`; else, where the program tells the volume as printers do, those of
+/// beads that high with that volume; else the program's own, else those that the bead law gives beads laid so fast. The speed of
 /// a piece is that at which the nominal wire feed lays its metal: the program's own where the arc tells of metal, and
 /// from the volume where the program tells that.
-pub fn layers(program: &Program, settings: &DepositSettings, width: Option<f64>) -> Vec<Layer> {
+pub fn layers(program: &Program, settings: &DepositSettings, law: &Law, width: Option<f64>) -> Vec<Layer> {
     let read = program.layers();
     let layer = |(index, read): (usize, ReadLayer)| {
         let height = if read.height > 0.0 { read.height } else { settings.nominal.rise };
-        let passes = read.passes.iter().filter_map(|p| pass(p, settings, width)).collect();
+        let bead_height = settings.nominal.bead.height * height / settings.nominal.rise;
+        let passes = read.passes.iter().filter_map(|p| pass(p, settings, law, bead_height, width)).collect();
         Layer { index, z: read.z, height, passes, ..Layer::default() }
     };
     read.into_iter().enumerate().map(layer).collect()
 }
 
-fn pass(read: &ReadPass, settings: &DepositSettings, width: Option<f64>) -> Option<Pass> {
+/// A bead is no narrower and no wider than this, in nominal bead widths: blobs and stringing are no beads.
+const WIDTHS: (f64, f64) = (0.25, 4.0);
+
+fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64, width: Option<f64>) -> Option<Pass> {
     let nominal = &settings.nominal;
     let mut points = vec![*read.points.first()?];
     let (mut widths, mut speeds) = (Vec::new(), Vec::new());
@@ -33,7 +39,12 @@ fn pass(read: &ReadPass, settings: &DepositSettings, width: Option<f64>) -> Opti
             continue;
         }
         points.push(pair[1]);
-        widths.push(width.or(read.width[i]).unwrap_or(nominal.bead.width));
+        let of_volume = |volume: f64| nominal.bead.section.width_of(bead_height, volume / length);
+        let of_speed = |speed: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.speed / speed);
+        let told = read.volume[i].map(of_volume).or(read.width[i]);
+        let own = told.or_else(|| Some(read.speed[i]).filter(|speed| *speed > 0.0).map(of_speed));
+        let own = own.map(|own| own.clamp(WIDTHS.0 * nominal.bead.width, WIDTHS.1 * nominal.bead.width));
+        widths.push(width.or(own).unwrap_or(nominal.bead.width));
         speeds.push(match read.volume[i] {
             Some(volume) => nominal.speed * nominal.bead.area() * length / volume.max(1e-9),
             None if read.speed[i] > 0.0 => read.speed[i],

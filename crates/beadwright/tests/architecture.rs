@@ -37,6 +37,7 @@ const ROWS: &[&[&str]] = &[
 const ALLOWED: &[(&str, &str, &str)] = &[
     ("fill", "pass", "a centre-line tells its width as a pass does"),
     ("pass", "fill", "a pass tells what it is for"),
+    ("fill", "deposit", "beads are moved to where the deposit model would see a void"),
     ("metrics", "plan", "totals are taken from planned layers"),
     ("plan", "metrics", "a plan carries its totals"),
     ("profile", "post", "a profile names only posts that exist"),

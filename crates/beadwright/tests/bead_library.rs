@@ -350,7 +350,7 @@ fn the_demonstration_is_plausible() {
     assert!(library.width.r_squared > 0.99 && library.height.r_squared > 0.99);
     for sample in &library.measured {
         let [current, speed] = sample.inputs[..] else { panic!() };
-        let bead = beadwright::bead::Bead { width: sample.width, height: sample.height };
+        let bead = beadwright::bead::Bead::parabola(sample.width, sample.height);
         let feed = 0.0305 * current + 1.1e-5 * current * current;
         assert!((MassBalance::new(bead, feed, 1.2, 1.0, speed).ratio() - 1.0).abs() < 0.02);
         assert!((0.5..1.0).contains(&(feed * 1000.0 / 60.0 * wire_area(1.2) / current)));

@@ -1,7 +1,7 @@
 //! The deposit model against closed forms, and what it says of the strategies.
 #![allow(clippy::unwrap_used)]
 
-use beadwright::bead::Bead;
+use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{
     self, Cause, DepositSettings, Figures, Judge, Judgement, Nominal, Stroke, Subject, corner, field,
 };
@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use proptest::prelude::*;
 
-const BEAD: Bead = Bead { width: 5.0, height: 1.5 };
+const BEAD: Bead = Bead { width: 5.0, height: 1.5, section: Section::Parabola };
 const NOMINAL: Nominal = Nominal { bead: BEAD, speed: 4.0, rise: 1.355 };
 
 fn stroke(from: (f64, f64), to: (f64, f64)) -> Stroke {

@@ -102,11 +102,12 @@ fn sparse_infill_is_solid_at_tops_and_bottoms() {
 
 #[test]
 fn the_best_angle_has_no_more_turns_than_any_other() {
-    let settings = profile().fill_settings(0);
+    let profile = profile();
+    let settings = profile.fill_settings(0);
     for part in ["plate", "gear", "star", "cross", "propeller"] {
         let mut mesh = example::find(part).unwrap().mesh();
         mesh.place(0.3, glam::DVec3::ZERO);
-        let plan = plan::plan(part, &mesh, &profile(), &Task::new()).unwrap();
+        let plan = plan::plan(part, &mesh, &profile, &Task::new()).unwrap();
         let island = &plan.layers[5].islands[0];
         let (core, spacing) = (Compound.infill(island, &settings), Spacing::AtMost(settings.stepover));
         let alone = angle::best(&Compound, &[std::slice::from_ref(island)], &settings).unwrap();
@@ -136,7 +137,8 @@ fn an_edge_with_hardly_more_turns_wins() {
     let islands = &layers[layers.len() / 2].islands;
     // Lines of 0.32 and 0.6 mm would lie at 89.94 and 89.93° for 0.1 % less turns.
     for width in [0.8, 1.0, 1.2, 1.5] {
-        let mut settings = profile().fill_settings(0);
+        let profile = profile();
+        let mut settings = profile.fill_settings(0);
         settings.stepover *= width;
         for count in [1, 2] {
             let best = angle::best(&Compound, &vec![&islands[..]; count], &settings).unwrap().to_degrees();
@@ -147,7 +149,8 @@ fn an_edge_with_hardly_more_turns_wins() {
 
 #[test]
 fn a_turned_part_has_a_turned_angle() {
-    let settings = profile().fill_settings(0);
+    let profile = profile();
+    let settings = profile.fill_settings(0);
     let ring = |turn: f64| {
         let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 15.0), (0.0, 15.0)].map(DVec2::from);
         Polygon {

@@ -13,13 +13,16 @@ use beadwright::slice::{SliceOptions, Slicer};
 use beadwright::task::Task;
 use glam::DVec2;
 use planar::{Polygon, Region, Ring};
+use std::sync::LazyLock;
+
+static PROFILE: LazyLock<Profile> = LazyLock::new(|| Profile::built_in("cmt-al2319-kuka").unwrap());
 
 fn profile() -> Profile {
-    Profile::built_in("cmt-al2319-kuka").unwrap()
+    PROFILE.clone()
 }
 
 fn settings() -> FillSettings<'static> {
-    profile().fill_settings(0)
+    PROFILE.fill_settings(0)
 }
 
 fn polygon(points: &[(f64, f64)]) -> Polygon {
@@ -163,11 +166,13 @@ fn judged(islands: &[Polygon], strategy: &str, profile: &Profile) -> (Figures, V
 }
 
 /// What was reached when this was written, with some room: void and overfill in %, and the void of plain contours over
-/// ours. The goals are 0.5 %, no more overfill than contours, and 5.
+/// ours. The goals are 0.5 %, no more overfill than contours, and 5. All but the cross lost when passes that are
+/// over before their arc is steady were left out.
 #[test]
 fn hybrid_fills_what_contours_leave() {
     let profile = profile();
-    for (name, void, ratio) in [("cross", 0.5, 5.0), ("star", 0.6, 3.0), ("gear", 0.5, 5.0), ("propeller", 0.5, 3.0)] {
+    for (name, void, ratio) in [("cross", 0.5, 5.0), ("star", 0.75, 2.5), ("gear", 0.75, 3.5), ("propeller", 0.65, 2.0)]
+    {
         let islands = example_slice(name);
         let (contour, _) = judged(&islands, "contour", &profile);
         let (hybrid, _) = judged(&islands, "hybrid", &profile);
@@ -182,7 +187,7 @@ fn hybrid_fills_what_contours_leave() {
 #[test]
 fn widths_stay_in_the_window_and_beads_in_the_outline() {
     let (profile, settings) = (profile(), settings());
-    let w = settings.bead_width;
+    let w = settings.bead.width;
     for name in ["cross", "star", "gear", "propeller"] {
         let islands = example_slice(name);
         let region = Region::from_normalised(islands.clone()).offset(0.01, planar::Join::ROUND);
@@ -218,12 +223,12 @@ fn chaining_at_least_halves_the_passes_of_complete_contours() {
 fn seams_of_neighbouring_layers_lie_apart() {
     let island = polygon(&[(0.0, 0.0), (200.0, 0.0), (200.0, 120.0), (0.0, 120.0)]);
     let start = |layer: usize| {
-        let settings = profile().fill_settings(layer);
+        let settings = PROFILE.fill_settings(layer);
         Steps::of(&island, &settings).chains[0].points[0]
     };
     for layer in 0..12 {
         let apart = start(layer).distance(start(layer + 1));
-        assert!(apart >= 2.0 * settings().bead_width, "layers {layer} and the next: {apart} mm");
+        assert!(apart >= 2.0 * settings().bead.width, "layers {layer} and the next: {apart} mm");
     }
 }
 

@@ -10,6 +10,7 @@ use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
 use proptest::prelude::*;
 use solids::runner;
+use std::sync::LazyLock;
 
 fn open(points: &[(f64, f64)], reversible: bool) -> Pass {
     let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
@@ -83,7 +84,8 @@ fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Pass>, Vec<(usize, usiz
 }
 
 fn settings() -> FillSettings<'static> {
-    Profile::built_in("cmt-al2319-kuka").unwrap().fill_settings(0)
+    static PROFILE: LazyLock<Profile> = LazyLock::new(|| Profile::built_in("cmt-al2319-kuka").unwrap());
+    PROFILE.fill_settings(0)
 }
 
 fn square(x: f64, y: f64, side: f64) -> Polygon {

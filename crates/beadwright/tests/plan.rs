@@ -59,11 +59,13 @@ fn to_boundary(layer: &Layer, p: DVec2) -> f64 {
 fn centre_lines_keep_half_a_bead_from_the_outline() {
     each_case(|case, plan, profile| {
         // Beads of a wall are as wide as it is, and cut corners where walls meet.
-        let bead = if profile.fill.strategy == "wall" { 2.8 } else { profile.bead.width };
-        let keep = bead / 2.0 - profile.fill.machining_allowance - TOLERANCE;
+        let wall = profile.fill.strategy == "wall";
+        // Widths change in steps: half a step on either side of a bead.
+        let slack = profile.fill.machining_allowance + TOLERANCE + 0.03 * profile.bead.width;
         for layer in plan.layers.iter().step_by(4) {
             for pass in &layer.passes {
-                for p in pass.points.iter().map(|p| p.truncate()) {
+                for (i, p) in pass.points.iter().map(|p| p.truncate()).enumerate() {
+                    let keep = if wall { 1.4 } else { pass.width.after(i).min(profile.bead.width) / 2.0 } - slack;
                     assert!(layer.islands.iter().any(|i| i.contains(p)), "{case}: {p} lies outside");
                     assert!(to_boundary(layer, p) >= keep, "{case}: {p} is {} from the outline", to_boundary(layer, p));
                 }
@@ -292,7 +294,7 @@ fn what_is_thinner_than_a_bead_is_reported() {
     assert!((85.0..91.0).contains(&thin.largest.size), "{text:?}");
     let m = &plan.summary.metrics;
     // Corners are lost too: (1 − π/4) r² at each of the block's four.
-    let corners = 4.0 * (1.0 - std::f64::consts::FRAC_PI_4) * 3.77_f64.powi(2);
+    let corners = 4.0 * (1.0 - std::f64::consts::FRAC_PI_4) * (0.35 * 7.54_f64).powi(2);
     let expected = 1.0 - (thin.largest.size + corners) / 1690.0;
     assert!((m.coverage() - expected).abs() < 2e-3, "{} for {expected}", m.coverage());
 }

@@ -346,7 +346,7 @@ fn impossible_counts_are_refused_with_line_and_key() {
 #[test]
 fn impossible_words_are_refused_with_line_and_key() {
     impossible(KUKA, "fill.strategy", "spiral");
-    check(KUKA, "\"compound\"", "\"spiral\"", &["the strategies are raster, zigzag, contour, compound"]);
+    check(KUKA, "\"loop\"", "\"spiral\"", &["the strategies are loop, raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
     check(
         KUKA,

@@ -505,8 +505,19 @@ fn our_own_programs_read_back_as_planned() {
                     .zip(&plan.layers)
                     .all(|(a, b)| (a.z - b.z).abs() < 1e-3 && a.passes.len() == b.passes.len())
             );
-            let speeds = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.speed);
-            assert!(speeds.into_iter().all(|s| (s - profile.process.deposition_speed).abs() < 0.01));
+            let (bead, law, nominal) = (profile.bead(), &profile.bead.law, profile.process.deposition_speed);
+            let paces = |pass: &beadwright::pass::Pass| pass.segments().map(|s| s.speed).collect::<Vec<_>>();
+            for (read, planned) in layers.iter().zip(&plan.layers) {
+                for (read, planned) in read.passes.iter().zip(&planned.passes) {
+                    let paces = paces(planned);
+                    assert!(
+                        read.speed.iter().all(|s| paces.iter().any(|pace| (s - pace).abs() < 0.01)),
+                        "{part} {post}"
+                    );
+                    let law_says = |s: beadwright::pass::Segment| nominal * law.pace(&bead, s.width);
+                    assert!(planned.segments().all(|s| (s.speed - law_says(s)).abs() < 1e-9));
+                }
+            }
             assert!(program.moves.iter().all(|m| !matches!(m.metal, Metal::Volume(_))));
         }
     }

@@ -92,8 +92,8 @@ fn every_dialect_of_a_hybrid_layer_reads_back_as_planned() {
             assert_eq!(totals.arc_starts, planned.len(), "{post}");
             let off = (totals.deposited_length_mm - length).abs();
             assert!(off < if arcs { 2e-3 * length } else { 0.01 * planned.len() as f64 }, "{post} arcs {arcs}: {off}");
-            let layers = simulate::layers(&program, &settings, None);
-            let volume = Totals::of_program(&totals, &layers, &settings.nominal).metal_volume_mm3;
+            let layers = simulate::layers(&program, &settings, &profile.bead.law, None);
+            let volume = Totals::of_program(&totals, &layers, &profile).metal_volume_mm3;
             // Speeds have one decimal in some dialects.
             let exact = matches!(dialect, Dialect::Krl | Dialect::Gcode | Dialect::Urscript);
             let part = (volume / metal - 1.0).abs();
@@ -115,9 +115,9 @@ fn every_dialect_is_judged_alike() {
         let mut profile = profile.clone();
         change(&mut profile);
         let program = read_files(&files(post, &plan, &profile), main, &options());
-        let mut layers = simulate::layers(&program, &settings, None);
+        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, None);
         simulate::outline(&mut layers, &mesh, profile.slice_options(), &Task::new()).unwrap();
-        let totals = Totals::of_program(&program.totals(), &layers, &settings.nominal);
+        let totals = Totals::of_program(&program.totals(), &layers, &profile);
         let entry = compare::program(post, &layers, totals, settings, &None, &Task::new()).unwrap();
         let f = entry.figures;
         let figures = [f.void_percent(), f.low_percent(), f.overfill_percent(), f.outside_percent()];

@@ -51,6 +51,7 @@ fn with_ends() -> Profile {
         interpass_time: 7.5,
         min_layer_time: 700.0,
         dwell_height: 15.0,
+        ..StartStop::default()
     };
     let krl = profile.krl.as_mut().unwrap();
     krl.wire_feed = lines(&["$ANOUT[1] = {{wire_feed_ratio}}"]);

@@ -231,7 +231,8 @@ fn moved(polygon: &Polygon, place: impl Fn(DVec2) -> DVec2, mirrored: bool) -> P
 
 #[test]
 fn turned_and_mirrored_parts_get_the_same_paths() {
-    let settings = profile(5.0, 1.5, 1.35).fill_settings(0);
+    let profile = profile(5.0, 1.5, 1.35);
+    let settings = profile.fill_settings(0);
     let island = lopsided();
     let plain = filled(&island, &settings);
     assert!(plain.len() >= 2, "{}", plain.len());
@@ -248,7 +249,8 @@ fn turned_and_mirrored_parts_get_the_same_paths() {
 
 #[test]
 fn thin_walls_get_the_narrowest_bead_and_thick_ones_several() {
-    let settings = profile(5.0, 1.5, 1.35).fill_settings(0);
+    let profile = profile(5.0, 1.5, 1.35);
+    let settings = profile.fill_settings(0);
     let bar = |thickness: f64| outline(&[(0.0, 0.0), (80.0, 0.0), (80.0, thickness), (0.0, thickness)]);
     let thin = filled(&bar(2.0), &settings);
     assert_eq!((thin.len(), thin[0].width.max()), (1, 3.5));
@@ -299,7 +301,8 @@ fn a_graph_is_found_among_loose_lines() {
 
 #[test]
 fn odd_outlines_are_survived() {
-    let settings = profile(5.0, 1.5, 1.35).fill_settings(1);
+    let profile = profile(5.0, 1.5, 1.35);
+    let settings = profile.fill_settings(1);
     let disc: Vec<(f64, f64)> =
         (0..60).map(|k| f64::from(k) * 0.10472).map(|a| (3.0 * a.cos(), 3.0 * a.sin())).collect();
     for island in [

@@ -1,7 +1,7 @@
 //! The fewest trails that cover a plane graph and never cross, on random graphs.
 #![allow(clippy::unwrap_used)]
 
-use beadwright::fill::wall::trails::{Dart, Network, Trail, trails};
+use beadwright::fill::trails::{Dart, Network, Trail, trails};
 use glam::DVec2;
 use std::collections::HashMap;
 

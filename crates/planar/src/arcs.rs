@@ -82,6 +82,11 @@ impl Fit {
         pieces
     }
 
+    /// The longest piece from the first of at least two points.
+    pub fn next(&self, points: &[DVec2]) -> Piece {
+        self.farthest(points, 0)
+    }
+
     /// The piece from a point that replaces most. Coarse arcs begin with pieces that no straight one replaces, so it
     /// is sought from there too.
     fn farthest(&self, points: &[DVec2], start: usize) -> Piece {

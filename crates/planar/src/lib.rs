@@ -12,7 +12,10 @@
 //! | [`clip`] | open lines cut by a region |
 //! | [`scan`] | parallel scan lines through a region, and how their ends hang together along its boundary |
 //! | [`polyline`] | length, simplification |
+//! | [`isolines`] | closed lines of equal value of a field on a lattice |
 //! | [`hull`] | convex hull, minimum-area rectangle |
+//! | [`lattice`] | square lattices of points and values on them |
+//! | [`nearest`] | the nearest segment of each point of a lattice |
 //! | [`ladder`] | narrow regions as pairs of opposite boundary points: their medial axis and thickness |
 //! | [`stroke`] | lines grown to areas |
 //! | [`medial`] | medial axis: centre-lines with local thickness |
@@ -31,8 +34,11 @@ pub mod boolean;
 pub mod clip;
 mod grid;
 pub mod hull;
+pub mod isolines;
 pub mod ladder;
+pub mod lattice;
 pub mod medial;
+pub mod nearest;
 pub mod offset;
 pub mod polyline;
 pub mod ring;
@@ -45,6 +51,7 @@ pub mod turns;
 pub use glam::DVec2;
 pub use grid::{GRID_MM, MAX_COORDINATE_MM};
 pub use hull::{OrientedRect, convex_hull, min_area_rect};
+pub use lattice::Lattice;
 pub use offset::Join;
 pub use ring::{Bounds, FillRule, Polygon, Region, Ring};
 pub use stroke::buffer;

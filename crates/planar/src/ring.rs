@@ -41,6 +41,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// A box about the origin without extent.
+    pub const EMPTY: Self = Self { min: DVec2::ZERO, max: DVec2::ZERO };
+
     /// The box around `points`; `None` when there are none.
     pub fn of(points: impl IntoIterator<Item = DVec2>) -> Option<Self> {
         let mut points = points.into_iter();

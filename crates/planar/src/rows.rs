@@ -6,15 +6,25 @@ impl Region {
     /// For each of `count` rows y = `first` + k · `step`: the sorted places in x at which it crosses the boundary.
     /// The row is inside between the first and the second, the third and the fourth, and so on.
     pub fn rows(&self, first: f64, step: f64, count: usize) -> Vec<Vec<f64>> {
-        let mut rows = vec![Vec::new(); count];
-        for ring in self.rings() {
-            cross(ring, first, step, &mut rows);
-        }
-        for row in &mut rows {
-            row.sort_unstable_by(f64::total_cmp);
-        }
-        rows
+        crossings(self.rings(), first, step, count)
     }
+}
+
+/// [`Region::rows`] of loose rings.
+pub(crate) fn crossings<'a>(
+    rings: impl IntoIterator<Item = &'a Ring>,
+    first: f64,
+    step: f64,
+    count: usize,
+) -> Vec<Vec<f64>> {
+    let mut rows = vec![Vec::new(); count];
+    for ring in rings {
+        cross(ring, first, step, &mut rows);
+    }
+    for row in &mut rows {
+        row.sort_unstable_by(f64::total_cmp);
+    }
+    rows
 }
 
 /// Adds the crossings of one ring. An edge holds its lower end and not its upper one, so every row is crossed an even

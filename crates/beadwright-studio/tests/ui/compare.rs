@@ -28,7 +28,7 @@ fn two_strategies_are_compared() {
     harness.run_steps(3);
     click(&mut harness, "hybrid");
     wait(&mut harness);
-    let (own, other) = (totals("compound"), totals("hybrid"));
+    let (own, other) = (totals("loop"), totals("hybrid"));
     let mut different = 0;
     for ((name, value), (_, theirs)) in own.iter().zip(&other) {
         assert!(sees(&harness, value) && sees(&harness, theirs), "{name}: {value}, {theirs}");
@@ -37,7 +37,7 @@ fn two_strategies_are_compared() {
     assert!(different > 3, "the strategies do the same");
     assert!(sees(&harness, "Layer view") && sees(&harness, "Layer view, other strategy"));
     // The project keeps its own strategy.
-    assert!(harness.state().project().profile.contains("strategy = \"compound\""));
+    assert!(harness.state().project().profile.contains("strategy = \"loop\""));
 }
 
 #[test]
@@ -48,7 +48,7 @@ fn a_strategy_that_cannot_be_compared_says_why() {
     harness.run_steps(3);
     harness.state_mut().compare_with(Some("no-such-strategy"));
     wait(&mut harness);
-    assert!(harness.query_by_label_contains("the strategies are raster").is_some(), "no sentence");
+    assert!(harness.query_by_label_contains("the strategies are loop").is_some(), "no sentence");
 }
 
 #[test]

@@ -2,28 +2,42 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
+//! | [`law`] | how the height of a bead follows its width at a constant wire feed |
+//! | [`section`] | the shape of its cross-section |
 //! | [`wall`] | how high walls of one bead a layer grow |
 //! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
 
+pub mod law;
 pub mod library;
+pub mod section;
 pub mod wall;
+
+pub use law::Law;
+pub use section::Section;
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// A single bead with the cross-section of a parabola.
+/// A single bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bead {
     /// Width at the foot, mm.
     pub width: f64,
     /// Height at the crown, mm.
     pub height: f64,
+    /// Shape of the cross-section.
+    pub section: Section,
 }
 
 impl Bead {
-    /// Area of the cross-section, mm²: two thirds of the box around a parabola.
+    /// A bead with the cross-section of a parabola.
+    pub fn parabola(width: f64, height: f64) -> Self {
+        Self { width, height, section: Section::Parabola }
+    }
+
+    /// Area of the cross-section, mm².
     pub fn area(&self) -> f64 {
-        2.0 / 3.0 * self.width * self.height
+        self.section.area(self.width, self.height)
     }
 
     /// Height of a closed layer of such beads `stepover` (mm) apart, mm: the area is spread over the stepover.
@@ -31,9 +45,11 @@ impl Bead {
         self.area() / stepover
     }
 
-    /// The bead of `width` whose layer at `stepover` rises by `layer_height` (all mm).
-    pub fn for_rise(width: f64, stepover: f64, layer_height: f64) -> Self {
-        Self { width, height: 1.5 * stepover * layer_height / width }
+    /// The bead of this width and section whose layer at `stepover` rises by `layer_height` (all mm).
+    #[must_use]
+    pub fn for_rise(self, stepover: f64, layer_height: f64) -> Self {
+        let area = stepover * layer_height;
+        Self { height: self.section.height_of(self.width, area), ..self }
     }
 }
 

@@ -14,6 +14,7 @@ mod overfill;
 mod overhang;
 mod points;
 mod program_size;
+mod short_arc;
 mod short_pass;
 mod speed_window;
 mod stacked_starts;
@@ -31,12 +32,13 @@ use serde::Serialize;
 use std::borrow::Borrow;
 
 /// The checks.
-pub const CHECKS: [Check; 17] = [
+pub const CHECKS: [Check; 18] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
     crossing::CHECK,
     short_pass::CHECK,
+    short_arc::CHECK,
     speed_window::CHECK,
     bead_width::CHECK,
     wire_balance::CHECK,

@@ -1,7 +1,8 @@
 //! The height field of a layer on a grid, worked out in bands of rows: only the pieces of bead that reach a band are
 //! looked at, bands run in parallel, and none is kept unless somebody asks.
 
-use super::stroke::{Frame, Stroke};
+use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
+use crate::bead::Section;
 use glam::{DVec2, I64Vec2};
 use planar::Bounds;
 use rayon::prelude::*;
@@ -94,14 +95,19 @@ pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) 
         let rows = height.min(grid.rows - first);
         let mut band = Band { grid, first, heights: vec![0.0; rows * grid.columns], work: 0 };
         for &i in reaching {
-            lay(&frames[i as usize], &mut band);
+            let frame = &frames[i as usize];
+            match frame.section {
+                Section::Parabola => lay::<Domed>(frame, &mut band),
+                Section::Ellipse => lay::<Even>(frame, &mut band),
+                Section::Stadium => lay::<Rimmed>(frame, &mut band),
+            }
         }
         visit(band)
     };
     reaching.par_iter().enumerate().map(answer).collect()
 }
 
-fn lay(frame: &Frame, band: &mut Band<'_>) {
+fn lay<F: Footprint>(frame: &Frame, band: &mut Band<'_>) {
     let grid = band.grid;
     let first = band.first;
     let mut work = 0;
@@ -113,9 +119,9 @@ fn lay(frame: &Frame, band: &mut Band<'_>) {
         let plain = plain.start.clamp(all.start, all.end)..plain.end.clamp(all.start, all.end);
         let plain = if plain.is_empty() { all.end..all.end } else { plain };
         let place = |column: usize| DVec2::new((grid.low.x + column as i64) as f64 * grid.step, y);
-        add(&mut row[all.start..plain.start], all.start, |column| frame.height_at(place(column)));
-        add(&mut row[plain.clone()], plain.start, |column| frame.parabola_at(place(column)));
-        add(&mut row[plain.end..all.end], plain.end, |column| frame.height_at(place(column)));
+        add(&mut row[all.start..plain.start], all.start, |column| frame.height_of::<F>(place(column)));
+        add(&mut row[plain.clone()], plain.start, |column| frame.passed_over::<F>(place(column)));
+        add(&mut row[plain.end..all.end], plain.end, |column| frame.height_of::<F>(place(column)));
         work += all.len();
     }
     band.work += work;

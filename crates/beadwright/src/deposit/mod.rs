@@ -246,7 +246,15 @@ fn columns<'a>(
     row: usize,
 ) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
     let pairs = crossings.get(row).map_or(&[][..], Vec::as_slice).chunks_exact(2);
-    pairs.map(|pair| grid.columns_between(pair[0], pair[1])).filter(|columns| !columns.is_empty())
+    let mut end = 0;
+    let columns = pairs.map(move |pair| {
+        let columns = grid.columns_between(pair[0], pair[1]);
+        // Where two outlines touch on a grid point it counts once.
+        let start = columns.start.max(end);
+        end = columns.end.max(end);
+        start..columns.end
+    });
+    columns.filter(|columns| !columns.is_empty())
 }
 
 /// Height at one point, mm: the sum over all pieces.

@@ -4,8 +4,12 @@
 //! bead h (1 − (2y/w)²), when c = 2h/(π a²). The height that a piece from t = 0 to L adds at a point (t, y) is
 //! c [F(q₂) − F(q₁)] with ρ = √(a² − y²), q₁ = −t and q₂ = L − t, both clamped to ±ρ, and
 //! F(q) = ½ (q √(ρ² − q²) + ρ² asin(q/ρ)). Pieces add up: cutting one in two changes nothing, and no volume is lost.
+//!
+//! Other cross-sections come from other footprints alike: an even one, k = h/(2a), builds half an ellipse, F(q) = q; and
+//! k(r) = h/(π √(a² − r²)) builds a flat bead, F(q) = asin(q/ρ), the stadium of a printer taken as wide as its area over
+//! its height.
 
-use crate::bead::Bead;
+use crate::bead::{Bead, Section};
 use crate::pass::Pass;
 use glam::DVec2;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
@@ -36,7 +40,9 @@ impl Nominal {
     /// The bead of that width at that speed (mm/s) with the same wire feed: the metal per length is that of the
     /// nominal bead times the ratio of the speeds.
     pub fn bead_at(&self, width: f64, speed: f64) -> Bead {
-        Bead { width, height: self.bead.height * (self.speed / speed) * (self.bead.width / width) }
+        let section = self.bead.section;
+        let area = self.bead.area() * self.speed / speed;
+        Bead { width, height: section.height_of(width, area), section }
     }
 }
 
@@ -61,15 +67,10 @@ impl Stroke {
 
     /// What does not change from point to point; `None` for a piece of no length or no bead.
     pub(super) fn frame(&self) -> Option<Frame> {
-        let (way, a) = (self.to - self.from, self.bead.width / 2.0);
+        let Bead { width, height, section } = self.bead;
+        let (way, a) = (self.to - self.from, section.footprint(width, height) / 2.0);
         let length = way.length();
-        (length > 0.0 && a > 0.0).then(|| Frame {
-            from: self.from,
-            along: way / length,
-            length,
-            a,
-            height: self.bead.height,
-        })
+        (length > 0.0 && a > 0.0).then(|| Frame { from: self.from, along: way / length, length, a, height, section })
     }
 }
 
@@ -80,27 +81,91 @@ pub(super) struct Frame {
     pub(super) along: DVec2,
     pub(super) length: f64,
     pub(super) a: f64,
+    pub(super) section: Section,
     height: f64,
 }
 
+/// The footprint of a pool: what it adds while it passes.
+pub(super) trait Footprint {
+    /// The share of the height that has been added when the pool has come from 0 to `u` of half its chord, at a place where
+    /// `inside` = 1 − (y/a)²: half of the whole at u = 1.
+    fn swept(inside: f64, u: f64) -> f64;
+
+    /// The share that the whole pool adds.
+    fn whole(inside: f64) -> f64;
+}
+
+/// Builds a parabola.
+pub(super) struct Domed;
+/// Builds half an ellipse.
+pub(super) struct Even;
+/// Builds a flat bead.
+pub(super) struct Rimmed;
+
+impl Footprint for Domed {
+    #[inline]
+    fn swept(inside: f64, u: f64) -> f64 {
+        inside * FRAC_1_PI * swept(u)
+    }
+
+    #[inline]
+    fn whole(inside: f64) -> f64 {
+        inside.max(0.0)
+    }
+}
+
+impl Footprint for Even {
+    #[inline]
+    fn swept(inside: f64, u: f64) -> f64 {
+        0.5 * inside.sqrt() * u.clamp(-1.0, 1.0)
+    }
+
+    #[inline]
+    fn whole(inside: f64) -> f64 {
+        inside.max(0.0).sqrt()
+    }
+}
+
+impl Footprint for Rimmed {
+    #[inline]
+    fn swept(inside: f64, u: f64) -> f64 {
+        // Off the bead there is nothing to sweep.
+        if inside > 0.0 { FRAC_1_PI * asin(u.clamp(-1.0, 1.0)) } else { 0.0 }
+    }
+
+    #[inline]
+    fn whole(inside: f64) -> f64 {
+        if inside > 0.0 { 1.0 } else { 0.0 }
+    }
+}
+
 impl Frame {
+    /// Height at a point, mm.
+    pub(super) fn height_at(&self, p: DVec2) -> f64 {
+        match self.section {
+            Section::Parabola => self.height_of::<Domed>(p),
+            Section::Ellipse => self.height_of::<Even>(p),
+            Section::Stadium => self.height_of::<Rimmed>(p),
+        }
+    }
+
     /// Height at a point, mm. Straight-line code without branches: the loops over rows become vector instructions.
     #[inline]
-    pub(super) fn height_at(&self, p: DVec2) -> f64 {
+    pub(super) fn height_of<F: Footprint>(&self, p: DVec2) -> f64 {
         let d = p - self.from;
         let (t, y) = (d.dot(self.along), self.along.perp_dot(d));
         let square = 1.0 - (y / self.a) * (y / self.a);
         // Off the bead the square is negative and the product nothing.
         let inside = square.max(0.0);
         let reach = self.a * inside.max(f64::MIN_POSITIVE).sqrt();
-        self.height * inside * FRAC_1_PI * (swept((self.length - t) / reach) - swept(-t / reach))
+        self.height * (F::swept(inside, (self.length - t) / reach) - F::swept(inside, -t / reach))
     }
 
-    /// Height at a point that the whole footprint passes over, mm: the parabola.
+    /// Height at a point that the whole footprint passes over, mm.
     #[inline]
-    pub(super) fn parabola_at(&self, p: DVec2) -> f64 {
+    pub(super) fn passed_over<F: Footprint>(&self, p: DVec2) -> f64 {
         let y = self.along.perp_dot(p - self.from) / self.a;
-        self.height * (1.0 - y * y).max(0.0)
+        self.height * F::whole(1.0 - y * y)
     }
 
     /// The part of row `y` over which there is metal, and the part of that where the parabola holds; x in mm.

@@ -74,7 +74,7 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
 /// Area laid twice at all turns, mm²: `S = r² (cot(θ/2) + θ/2 − π/2)` at a turn of the angle θ between line and edge,
 /// r half a bead (eqs 10 and 11). An edge has as many turns as lines fit across it, half of them at π − θ.
 fn corner_area(region: &Region, angle: f64, settings: &FillSettings) -> f64 {
-    let (r, line) = (settings.bead_width / 2.0, DVec2::from_angle(angle));
+    let (r, line) = (settings.bead.width / 2.0, DVec2::from_angle(angle));
     let area = |theta: f64| r * r * (1.0 / (theta / 2.0).tan() + theta / 2.0 - FRAC_PI_2);
     let edge = |(a, b): (DVec2, DVec2)| {
         let theta = line.angle_to(b - a).rem_euclid(PI).clamp(1e-6, PI - 1e-6);

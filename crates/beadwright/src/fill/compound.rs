@@ -4,6 +4,7 @@
 //! Inside the part the infill may be sparse; what is near a top or a bottom stays solid.
 
 use super::contour::rings;
+use super::thin;
 use super::zigzag::{zigzag, zigzag_spaced};
 use super::{Fill, FillSettings, Pass, Strategy};
 use planar::scan::Spacing;
@@ -18,21 +19,25 @@ impl Strategy for Compound {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let outermost = settings.outermost(island);
-        if outermost.is_empty() {
-            return Fill::default();
-        }
-        let (perimeters, innermost) = rings(outermost, settings, settings.perimeters);
-        let mut stages = settings.ordered(perimeters);
-        let infill = infill(&core(&innermost, settings), settings);
-        stages.insert(if settings.perimeters_first { stages.len() } else { 0 }, infill);
-        Fill { stages, fixed_order: false }
+        thin::around(island, settings, thick)
     }
 
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
         let (_, innermost) = rings(settings.outermost(island), settings, settings.perimeters);
         core(&innermost, settings)
     }
+}
+
+fn thick(part: &Polygon, settings: &FillSettings) -> Fill {
+    let outermost = settings.outermost(part);
+    if outermost.is_empty() {
+        return Fill::default();
+    }
+    let (perimeters, innermost) = rings(outermost, settings, settings.perimeters);
+    let mut stages = settings.ordered(perimeters);
+    let infill = infill(&core(&innermost, settings), settings);
+    stages.insert(if settings.perimeters_first { stages.len() } else { 0 }, infill);
+    Fill { stages, fixed_order: false }
 }
 
 fn core(innermost: &Region, settings: &FillSettings) -> Region {

@@ -1,5 +1,6 @@
 //! Rings parallel to the boundary, one stepover apart, until nothing is left.
 
+use super::thin;
 use super::{Fill, FillSettings, Pass, Strategy};
 use planar::{Join, Polygon, Region};
 
@@ -12,8 +13,10 @@ impl Strategy for Contour {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let (rings, _) = rings(settings.outermost(island), settings, u32::MAX);
-        Fill { stages: settings.ordered(rings), fixed_order: false }
+        thin::around(island, settings, |part, settings| {
+            let (rings, _) = rings(settings.outermost(part), settings, u32::MAX);
+            Fill { stages: settings.ordered(rings), fixed_order: false }
+        })
     }
 }
 
@@ -22,7 +25,7 @@ pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (
     let mut stages = Vec::new();
     let mut region = outermost;
     for done in 1.. {
-        stages.push(region.rings().map(|ring| Pass::contour(ring.clone(), settings.bead_width)).collect());
+        stages.push(region.rings().map(|ring| Pass::contour(ring.clone(), settings.bead.width)).collect());
         if done == count {
             break;
         }

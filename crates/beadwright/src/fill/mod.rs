@@ -16,10 +16,14 @@ pub mod angle;
 pub mod compound;
 pub mod contour;
 pub mod hybrid;
+pub mod one_loop;
 pub mod raster;
+pub mod thin;
+pub mod trails;
 pub mod wall;
 pub mod zigzag;
 
+use crate::bead::{Bead, Law};
 use crate::pass::Along;
 use glam::DVec2;
 use planar::scan::Spacing;
@@ -27,8 +31,15 @@ use planar::{Join, Polygon, Region, Ring};
 use serde::{Deserialize, Serialize};
 
 /// The strategies by name.
-pub const STRATEGIES: [&dyn Strategy; 6] =
-    [&raster::Raster, &zigzag::Zigzag, &contour::Contour, &compound::Compound, &hybrid::Hybrid, &wall::Wall];
+pub const STRATEGIES: [&dyn Strategy; 7] = [
+    &one_loop::OneLoop,
+    &raster::Raster,
+    &zigzag::Zigzag,
+    &contour::Contour,
+    &compound::Compound,
+    &hybrid::Hybrid,
+    &wall::Wall,
+];
 
 /// The strategy of that name.
 pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
@@ -50,7 +61,7 @@ pub trait Strategy: Sync {
 
     /// What is narrower than this gets no metal, mm.
     fn narrowest(&self, settings: &FillSettings) -> f64 {
-        settings.bead_width
+        settings.wall.width_limits.0
     }
 
     /// Whether what is narrower gets metal all the same, that then lies beside it too.
@@ -132,6 +143,21 @@ pub struct Fill {
     pub fixed_order: bool,
 }
 
+impl Fill {
+    /// Takes in the passes of a neighbour, its outermost contours to the outermost ones here.
+    fn add(&mut self, other: Self, order: ContourOrder) {
+        let (mut own, mut stages) = (std::mem::take(&mut self.stages), other.stages);
+        let count = own.len().max(stages.len());
+        for list in [&mut own, &mut stages] {
+            let missing = vec![Vec::new(); count - list.len()];
+            let at = if order == ContourOrder::InsideOut { 0 } else { list.len() };
+            list.splice(at..at, missing);
+        }
+        own.iter_mut().zip(stages).for_each(|(stage, passes)| stage.extend(passes));
+        *self = Self { stages: own, fixed_order: self.fixed_order || other.fixed_order };
+    }
+}
+
 /// Order of contours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -159,8 +185,10 @@ pub enum RasterSpacing {
 pub struct FillSettings<'a> {
     /// Index of the layer, from 0: seams move from layer to layer.
     pub layer: usize,
-    /// Bead width, mm.
-    pub bead_width: f64,
+    /// The nominal bead.
+    pub bead: Bead,
+    /// How a bead's height follows its width.
+    pub law: &'a Law,
     /// Distance between neighbouring centre-lines, mm.
     pub stepover: f64,
     /// Distance from the innermost perimeter to the infill, mm.
@@ -181,18 +209,27 @@ pub struct FillSettings<'a> {
     pub raster_angle: f64,
     /// How scan lines are spread.
     pub raster_spacing: RasterSpacing,
-    /// Shorter passes are left out, mm.
+    /// Shorter passes are left out, mm: the arc is not steady before they are over.
     pub min_pass_length: f64,
     /// Thresholds of the hybrid.
     pub hybrid: hybrid::HybridSettings,
     /// How walls are laid.
     pub wall: wall::WallSettings,
+    /// How loops are laid.
+    pub one_loop: one_loop::LoopOptions,
+    /// A place that is the same on all layers of a part: what repeats over the layers is measured from it.
+    pub datum: DVec2,
 }
 
 impl FillSettings<'_> {
     /// The outermost centre-line: half a bead inside the island, less the machining allowance.
     pub fn outermost(&self, island: &Polygon) -> Region {
-        island.offset(self.machining_allowance - self.bead_width / 2.0, Join::ROUND)
+        island.offset(self.machining_allowance - self.bead.width / 2.0, Join::ROUND)
+    }
+
+    /// From this thickness on a wall has room for two of the narrowest beads side by side, mm.
+    pub fn double(&self) -> f64 {
+        self.one_loop.width_limits.0 * (1.0 + self.stepover / self.bead.width)
     }
 
     fn spacing(&self) -> Spacing {

@@ -16,9 +16,13 @@ impl Strategy for Raster {
         let scan = Scan::new(&self.infill(island, settings), settings.raster_angle, settings.spacing());
         let line = |span| {
             let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
-            Pass { reversible: false, ..Pass::line(PassKind::Infill, points.to_vec(), settings.bead_width) }
+            Pass { reversible: false, ..Pass::line(PassKind::Infill, points.to_vec(), settings.bead.width) }
         };
         Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
+    }
+
+    fn narrowest(&self, settings: &FillSettings) -> f64 {
+        settings.bead.width
     }
 
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {

@@ -5,6 +5,8 @@ use crate::fill::{Fill, FillSettings, Pass as Path, Strategy};
 use crate::profile::Profile;
 use crate::slice::Layer as Slice;
 use crate::warning::{Warning, WarningKind};
+use crate::weld;
+use glam::DVec2;
 use planar::{Bounds, Join, Polygon, Region};
 
 /// A slice with the passes of its islands, not yet in order.
@@ -14,14 +16,16 @@ pub(super) struct Filled {
     pub(super) planned_area: f64,
 }
 
-pub(super) fn fill_planned(layer: Planned, strategy: &dyn Strategy, profile: &Profile) -> Filled {
+/// Fills a slice; `datum` is the place of the part.
+pub(super) fn fill_planned(layer: Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
     let mut settings = profile.fill_settings(layer.slice.index);
+    settings.datum = datum;
     settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
     settings.solid = layer.solid.as_ref();
-    fill_layer(layer.slice, strategy, &settings)
+    fill_layer(layer.slice, strategy, profile, &settings)
 }
 
-fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings) -> Filled {
+fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, settings: &FillSettings) -> Filled {
     let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
     for island in &slice.islands {
         let thin = strategy.welds_thin_walls();
@@ -31,19 +35,30 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, settings: &FillSettings
             slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
         }
         let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
-        for stage in &mut fill.stages {
-            drop_short(stage, settings.min_pass_length, slice.index, &mut slice.warnings);
+        if reached > 0.0 && fill.stages.iter().all(Vec::is_empty) {
+            // Wide enough for a bead, but neither a ring nor a wall.
+            let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
+            let (kind, size) = (WarningKind::IslandTooSmall, island.area());
+            slice.warnings.push(Warning { kind, layer: slice.index, place, size });
         }
-        planned_area += reached;
+        for stage in &mut fill.stages {
+            drop_short(stage, profile, slice.index, &mut slice.warnings);
+        }
+        if fill.stages.iter().any(|stage| !stage.is_empty()) {
+            planned_area += reached;
+        }
         fills.push(fill);
     }
     Filled { slice, fills, planned_area }
 }
 
-pub(super) fn drop_short(stage: &mut Vec<Path>, shortest: f64, layer: usize, warnings: &mut Vec<Warning>) {
+/// Leaves out passes that are too short to weld, and tells so.
+pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize, warnings: &mut Vec<Warning>) {
+    let (shortest, soonest) = (profile.fill.min_pass_length, profile.soonest_arc_end());
     stage.retain(|pass| {
         let length = pass.length();
-        let keep = length >= shortest && pass.points.len() >= 2;
+        let steady = length >= shortest && arc_time(pass, profile) >= soonest;
+        let keep = steady && pass.points.len() >= 2;
         // A zigzag that touches a corner with a line of no length loses nothing.
         if !keep && length > 0.1 * shortest {
             let place = pass.points.first().copied().unwrap_or_default();
@@ -51,6 +66,17 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, shortest: f64, layer: usize, war
         }
         keep
     });
+}
+
+/// How long the torch takes along a pass, s.
+fn arc_time(pass: &Path, profile: &Profile) -> f64 {
+    let (bead, nominal) = (profile.bead(), profile.process.deposition_speed);
+    let path = pass.path();
+    let time = |(i, ends): (usize, &[DVec2])| {
+        let pace = nominal * profile.bead.law.pace(&bead, pass.width.after(i));
+        ends[0].distance(ends[1]) / weld::speed_and_feed(pace, &profile.process).0
+    };
+    path.windows(2).enumerate().map(time).sum()
 }
 
 /// A feature is reported from this area on, in squared bead widths.

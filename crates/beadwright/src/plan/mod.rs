@@ -6,11 +6,13 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
+//! | [`choice`] | which strategy a part is planned with |
 //! | `filled` | a slice with its passes, and what a bead cannot reach of it |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer before the others |
 //! | `scan_lines` | best raster angles, and what of a sparse infill is solid |
 
+pub mod choice;
 mod filled;
 mod levels;
 mod preview;
@@ -69,13 +71,14 @@ impl Layer {
     }
 }
 
-/// A layer as it is welded, for the deposit model: with overlaps, hot starts and lead-outs where the profile has them.
+/// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the profile has
+/// them.
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let ends = &profile.start_stop;
     if !ends.changes_passes() {
         return Cow::Borrowed(layer);
     }
-    let passes = layer.passes.iter().map(|pass| weld::welded(pass, ends)).collect();
+    let passes = layer.passes.iter().map(|pass| weld::welded(pass, ends, profile.bead.height)).collect();
     Cow::Owned(Layer { passes, ..layer.clone() })
 }
 
@@ -240,15 +243,6 @@ pub fn plan_part<S: Sink + Send>(
     }
 }
 
-/// The profile that a part is planned with: curves are welded by the strategy for walls.
-pub fn profile_for(part: &Part, profile: &Profile) -> Profile {
-    let mut profile = profile.clone();
-    if let Part::Curves { .. } = part {
-        "wall".clone_into(&mut profile.fill.strategy);
-    }
-    profile
-}
-
 /// Plans a mesh that stands on z = 0 and hands every layer to `sink`. The result does not depend on the number of
 /// threads: layers are filled in parallel, but ordered and handed over one after another.
 ///
@@ -263,11 +257,12 @@ pub fn plan_layers<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
         let fill = |layer: Planned| {
             task.check()?;
-            Ok(fill_planned(layer, strategy, profile))
+            Ok(fill_planned(layer, strategy, profile, datum))
         };
         planned.into_par_iter().map(fill).collect()
     };
@@ -281,6 +276,12 @@ pub fn plan_layers<S: Sink + Send>(
         )));
     }
     Ok(summary)
+}
+
+/// The middle of a part, seen from above.
+fn middle(mesh: &Mesh) -> DVec2 {
+    let (low, high) = mesh.bounds();
+    low.midpoint(high).truncate()
 }
 
 /// The strategy of a profile, and where the layers of a mesh lie.
@@ -369,7 +370,7 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     };
     let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
     for stage in &mut fill.stages {
-        drop_short(stage, settings.min_pass_length, index, &mut slice.warnings);
+        drop_short(stage, profile, index, &mut slice.warnings);
     }
     let covered = sections.iter().fold(Region::default(), |region, section| {
         region.union(&planar::buffer(
@@ -413,13 +414,14 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let (nominal, speed) = (self.profile.bead.width, self.profile.process.deposition_speed);
+        let (nominal, law) = (self.profile.bead(), &self.profile.bead.law);
+        let speed = self.profile.process.deposition_speed;
         let lift = |path: Path| Pass {
             kind: path.kind,
             closed: path.closed,
             points: path.points.into_iter().map(|p| p.extend(z)).collect(),
-            // The bead keeps its height: a wider one is laid more slowly.
-            speed: path.width.map(|width| speed * nominal / width),
+            // The wire feed stays: a wider bead is laid more slowly.
+            speed: path.width.map(|width| speed * law.pace(&nominal, width)),
             width: path.width,
         };
         let passes =

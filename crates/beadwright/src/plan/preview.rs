@@ -47,7 +47,7 @@ fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
         layer.slice.index = index;
         layer.slice.warnings.iter_mut().for_each(|warning| warning.layer = index);
-        fill_planned(layer, strategy, profile)
+        fill_planned(layer, strategy, profile, super::middle(mesh))
     });
     Ok(layer)
 }

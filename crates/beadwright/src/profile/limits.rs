@@ -127,6 +127,7 @@ pub(super) fn ranges(p: &Profile) -> Vec<Range> {
         ("program.torch_angle", p.program.torch_angle, -360.0, 360.0, "°"),
         ("program.table_angle", p.program.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°"),
     ];
+    ranges.extend(p.one_loop.ranges());
     ranges.extend(p.krl.iter().flat_map(|krl| krl.ranges()));
     if let Some(gcode) = &p.gcode {
         ranges.push(("gcode.decimals", gcode.decimals as f64, 1.0, 4.0, "decimals"));

@@ -14,6 +14,7 @@ mod inform;
 mod krl;
 mod limits;
 mod marlin;
+mod one_loop;
 mod process;
 mod rapid;
 mod read;
@@ -29,6 +30,7 @@ pub use hybrid::Hybrid;
 pub use inform::{Inform, InformSpeed};
 pub use krl::Krl;
 pub use marlin::Marlin;
+pub use one_loop::Loop;
 pub use process::{Follow, Process};
 pub use rapid::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 pub use read::ProfileError;
@@ -37,13 +39,14 @@ pub use start_stop::StartStop;
 pub use urscript::Urscript;
 
 use crate::bead::wall::{WallBead, WallError};
-use crate::bead::{Bead, MassBalance, Overlap};
+use crate::bead::{Bead, Law, MassBalance, Overlap, Section};
 use crate::fill::hybrid::HybridSettings;
 use crate::fill::wall::WallSettings;
 use crate::fill::{ContourOrder, FillSettings, RasterSpacing};
 use crate::motion::Motion;
 use crate::order::{Method, OrderSettings, Seam};
 use crate::slice::SliceOptions;
+use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
@@ -79,6 +82,9 @@ pub struct Profile {
     /// Thresholds of the strategy `hybrid`; optional.
     #[serde(default)]
     pub hybrid: Hybrid,
+    /// How the strategy `loop` lays; optional.
+    #[serde(default, rename = "loop")]
+    pub one_loop: Loop,
     /// How the strategy `wall` lays; optional.
     #[serde(default)]
     pub wall: Wall,
@@ -133,7 +139,7 @@ pub struct Wire {
     pub density: f64,
 }
 
-/// The single bead, a parabola.
+/// The single bead.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -142,6 +148,13 @@ pub struct BeadShape {
     pub width: f64,
     /// Height at the crown, mm.
     pub height: f64,
+    /// Cross-section: `parabola`, `ellipse`, or `stadium` for the flat beads of printers; default parabola.
+    #[serde(default)]
+    pub section: Section,
+    /// How the height follows the width at a constant wire feed: `constant-height`, `constant-ratio`, or measured beads as
+    /// `{ library = [[width, height], …] }` in mm; default constant-height.
+    #[serde(default)]
+    pub law: Law,
 }
 
 /// The layers.
@@ -191,7 +204,7 @@ pub enum RasterTurn {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fill {
-    /// Strategy: `raster`, `zigzag`, `contour`, `compound`, `hybrid` or `wall`.
+    /// Strategy: `loop`, `raster`, `zigzag`, `contour`, `compound`, `hybrid` or `wall`.
     pub strategy: String,
     /// Model of the overlap of neighbouring beads, which gives the stepover.
     pub overlap: Overlap,
@@ -400,7 +413,8 @@ impl Profile {
 
     /// The single bead.
     pub fn bead(&self) -> Bead {
-        Bead { width: self.bead.width, height: self.bead.height }
+        let BeadShape { width, height, section, .. } = self.bead;
+        Bead { width, height, section }
     }
 
     /// The wall whose heights tell where the layers lie; `None` where they are one thickness apart.
@@ -442,7 +456,7 @@ impl Profile {
     }
 
     /// How a layer is filled.
-    pub fn fill_settings(&self, layer: usize) -> FillSettings<'static> {
+    pub fn fill_settings(&self, layer: usize) -> FillSettings<'_> {
         let fill = &self.fill;
         let turned = match fill.raster_turn {
             // The plan chooses the best angle, which depends on the layer.
@@ -451,7 +465,8 @@ impl Profile {
             RasterTurn::Increment => fill.raster_increment * layer as f64,
         };
         FillSettings {
-            bead_width: self.bead.width,
+            bead: self.bead(),
+            law: &self.bead.law,
             stepover: self.stepover(),
             contour_gap: fill.contour_gap * self.bead.width,
             perimeters: fill.perimeters,
@@ -462,11 +477,19 @@ impl Profile {
             machining_allowance: fill.machining_allowance,
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,
-            min_pass_length: fill.min_pass_length,
+            min_pass_length: fill.min_pass_length.max(self.soonest_arc_end() * self.process.deposition_speed),
             layer,
             hybrid: self.hybrid_settings(),
             wall: self.wall_settings(),
+            one_loop: self.one_loop.options(self.bead.width),
+            datum: DVec2::ZERO,
         }
+    }
+
+    /// A pass that is over sooner than this, s, is over before its arc is steady. Where the hybrid follows its paper to the
+    /// letter it lays such passes all the same.
+    pub fn soonest_arc_end(&self) -> f64 {
+        if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
     }
 
     fn wall_settings(&self) -> WallSettings {
@@ -512,7 +535,7 @@ impl Profile {
         let height = self.layers.height;
         let foretold = self.wall_bead().is_ok_and(|wall| wall.is_some());
         let rise_note = (!foretold && (rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
-            let fitting = Bead::for_rise(self.bead.width, self.stepover(), height);
+            let fitting = self.bead().for_rise(self.stepover(), height);
             format!(
                 "Beads {:.2} mm high at a stepover of {:.2} mm rise {rise:.2} mm a layer, but layers are {height:.2} mm \
                  high. A bead.height of {:.2} mm or a layers.height of {rise:.2} mm would fit.",

@@ -24,6 +24,15 @@ pub struct StartStop {
     pub lead_out_length: f64,
     /// Power along it, of the nominal one, 1 or less; default 1.
     pub lead_out_power: f64,
+    /// How much higher than the bead a pass is where it starts, mm: the cold bead stands up before it flows; default 0. Used
+    /// by the deposit model only, as the next three are; 0 where it was never measured.
+    pub hump_height: f64,
+    /// Length over which that hump falls to nothing, mm; default 0.
+    pub hump_length: f64,
+    /// How much lower than the bead a pass is where it ends, mm; default 0.
+    pub crater_depth: f64,
+    /// Length over which the bead falls to that, mm; default 0.
+    pub crater_length: f64,
     /// Time for which the arc stands at the end of a pass to fill the crater, s; default 0.
     pub crater_fill_time: f64,
     /// Wire feed meanwhile, of the nominal one, 1 or less; default 1. Below 1 it is written by the dialect's
@@ -48,6 +57,10 @@ impl Default for StartStop {
             lead_in_power: 1.0,
             lead_out_length: 0.0,
             lead_out_power: 1.0,
+            hump_height: 0.0,
+            hump_length: 0.0,
+            crater_depth: 0.0,
+            crater_length: 0.0,
             crater_fill_time: 0.0,
             crater_power: 1.0,
             wire_retract: 0.0,
@@ -60,13 +73,17 @@ impl Default for StartStop {
 
 impl StartStop {
     /// Ranges of the numbers.
-    pub(super) fn ranges(&self) -> [Range; 11] {
+    pub(super) fn ranges(&self) -> [Range; 15] {
         [
             ("start_stop.end_overlap", self.end_overlap, 0.0, 200.0, "mm"),
             ("start_stop.lead_in_length", self.lead_in_length, 0.0, 200.0, "mm"),
             ("start_stop.lead_in_power", self.lead_in_power, 1.0, 4.0, "of the nominal power"),
             ("start_stop.lead_out_length", self.lead_out_length, 0.0, 200.0, "mm"),
             ("start_stop.lead_out_power", self.lead_out_power, 0.1, 1.0, "of the nominal power"),
+            ("start_stop.hump_height", self.hump_height, 0.0, 50.0, "mm"),
+            ("start_stop.hump_length", self.hump_length, 0.0, 200.0, "mm"),
+            ("start_stop.crater_depth", self.crater_depth, 0.0, 50.0, "mm"),
+            ("start_stop.crater_length", self.crater_length, 0.0, 200.0, "mm"),
             ("start_stop.crater_fill_time", self.crater_fill_time, 0.0, 60.0, "s"),
             ("start_stop.crater_power", self.crater_power, 0.05, 1.0, "of the wire feed"),
             ("start_stop.wire_retract", self.wire_retract, 0.0, 50.0, "mm of wire"),
@@ -79,7 +96,10 @@ impl StartStop {
     /// Whether metal is laid otherwise than a plan's passes tell.
     pub fn changes_passes(&self) -> bool {
         let leads = [(self.lead_in_length, self.lead_in_power), (self.lead_out_length, self.lead_out_power)];
-        self.end_overlap > 0.0 || leads.iter().any(|(length, power)| *length > 0.0 && *power != 1.0)
+        self.end_overlap > 0.0
+            || leads.iter().any(|(length, power)| *length > 0.0 && *power != 1.0)
+            || self.hump_height * self.hump_length > 0.0
+            || self.crater_depth * self.crater_length > 0.0
     }
 
     /// Whether the wire feed changes at the end of a pass.

@@ -22,9 +22,11 @@ pub fn path(pass: &Pass, ends: &StartStop) -> Vec<(DVec3, f64)> {
     moves(pass, ends).into_iter().map(|m| (m.to, m.pace)).collect()
 }
 
-/// The pass that is welded, for the deposit model. Craters are not in it.
-pub fn welded(pass: &Pass, ends: &StartStop) -> Pass {
-    let moves = moves(pass, ends);
+/// The pass that is welded, for the deposit model: with the hump at its start and the crater at its end, for beads that high
+/// (mm). What fills craters is not in it.
+pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
+    let mut moves = moves(pass, ends);
+    hump_and_crater(&mut moves, ends, bead_height);
     if moves.len() < 2 {
         return pass.clone();
     }
@@ -80,6 +82,28 @@ fn lead(moves: &mut Vec<Move>, ends: &StartStop) {
     if wanted[1] > 0.0 {
         let begin = cut(moves, total - wanted[1] * part);
         moves[begin + 1..].iter_mut().for_each(|m| m.pace /= ends.lead_out_power);
+    }
+}
+
+/// Humps and craters fall in so many steps.
+const STEPS: u32 = 4;
+/// Of the bead this part is left in the deepest crater.
+const LEAST: f64 = 0.05;
+
+/// A bead of the same width is higher where it is laid more slowly: the paces that build a pass's hump and crater.
+fn hump_and_crater(moves: &mut Vec<Move>, ends: &StartStop, bead_height: f64) {
+    let total = length(moves);
+    let slopes = [(ends.hump_height, ends.hump_length, false), (-ends.crater_depth, ends.crater_length, true)];
+    for (height, wanted, at_end) in slopes.into_iter().filter(|(height, length, _)| *height != 0.0 && *length > 0.0) {
+        let step = wanted.min(total) / f64::from(STEPS);
+        for k in 0..STEPS {
+            let near = f64::from(k) * step;
+            let [from, to] = if at_end { [total - near - step, total - near] } else { [near, near + step] };
+            let first = cut(moves, from);
+            let last = cut(moves, to);
+            let higher = height / bead_height * (1.0 - (f64::from(k) + 0.5) / f64::from(STEPS));
+            moves[first + 1..=last].iter_mut().for_each(|m| m.pace /= (1.0 + higher).max(LEAST));
+        }
     }
 }
 

@@ -54,6 +54,8 @@ pub struct Welded {
     pub length: f64,
     /// Time with the torch moving, s.
     pub moving: f64,
+    /// What of it is lost to speeding up and slowing down, s.
+    pub slowed: f64,
     /// Time in which the nominal wire feed lays its metal, with the crater's, s.
     pub metal: f64,
     /// Time for which the arc stands in the crater, s.
@@ -148,13 +150,21 @@ impl Torch {
     pub fn weld(&mut self, moves: &[(DVec3, f64)]) -> Welded {
         let pieces = || moves.windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
         let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_and_feed(pace).0));
+        let steady: f64 = pieces().map(|(length, pace)| length / self.speed_and_feed(pace).0).sum();
         let moving = match (&self.motion, moves.first()) {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
-            _ => pieces().map(|(length, pace)| length / self.speed_and_feed(pace).0).sum(),
+            _ => steady,
         };
         let crater = self.ends.crater_fill_time;
         let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + crater * self.ends.crater_power;
-        let welded = Welded { length: pieces().map(|p| p.0).sum(), moving, metal, crater, delay: self.delay() };
+        let welded = Welded {
+            length: pieces().map(|p| p.0).sum(),
+            moving,
+            slowed: moving - steady,
+            metal,
+            crater,
+            delay: self.delay(),
+        };
         self.seconds += moving + crater + welded.delay;
         if let Some(&(end, _)) = moves.last() {
             (self.at, self.low) = (Some(end), end.z);

@@ -130,7 +130,7 @@ impl Prediction {
 
     /// The bead.
     pub fn bead(&self) -> Bead {
-        Bead { width: self.width.value, height: self.height.value }
+        Bead::parabola(self.width.value, self.height.value)
     }
 }
 

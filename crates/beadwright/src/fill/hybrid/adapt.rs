@@ -42,7 +42,7 @@ fn adapt(number: usize, pass: &mut Pass, near: &Near, settings: &FillSettings) {
     for (k, pair) in path.windows(2).enumerate() {
         let (a, b) = (pair[0], pair[1]);
         let Some(way) = (b - a).try_normalize() else { continue };
-        let count = (a.distance(b) / (STEP * settings.bead_width)).ceil().max(1.0) as usize;
+        let count = (a.distance(b) / (STEP * settings.bead.width)).ceil().max(1.0) as usize;
         for i in 0..count {
             let middle = a.lerp(b, (i as f64 + 0.5) / count as f64);
             let (low, mut high) = settings.hybrid.width_limits;
@@ -53,14 +53,14 @@ fn adapt(number: usize, pass: &mut Pass, near: &Near, settings: &FillSettings) {
                         // A bead may reach up to the outline and its allowance; one in a thin wall does.
                         let reach = distance + settings.machining_allowance;
                         high = high.min(2.0 * reach + 1e-3);
-                        if pass.kind == PassKind::Skeleton { reach * d / settings.bead_width } else { d / 2.0 }
+                        if pass.kind == PassKind::Skeleton { reach * d / settings.bead.width } else { d / 2.0 }
                     }
                     Some((_, distance)) => distance / 2.0,
                     None => d / 2.0,
                 };
             }
-            let grain = GRAIN * settings.bead_width;
-            let width = ((settings.bead_width * room / d / grain).round() * grain).max(low).min(high);
+            let grain = GRAIN * settings.bead.width;
+            let width = ((settings.bead.width * room / d / grain).round() * grain).max(low).min(high);
             // Pieces of one line with one width are one.
             if i > 0 && widths.last() == Some(&width) {
                 continue;

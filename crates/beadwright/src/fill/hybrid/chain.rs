@@ -100,15 +100,15 @@ fn next_ring(
 fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettings) -> Pass {
     let turn = |(ring, seam): &(usize, DVec2)| turned_to(&rings[*ring].1, *seam);
     match chain {
-        [only] => Pass::contour(Ring::new(turn(only)), settings.bead_width),
+        [only] => Pass::contour(Ring::new(turn(only)), settings.bead.width),
         [outer @ .., last] => {
             let gap = LEFT_OPEN * settings.stepover;
             let mut points: Vec<DVec2> = outer.iter().flat_map(|ring| shortened(&turn(ring), gap)).collect();
             points.extend(turn(last));
             points.push(last.1);
-            Pass::line(PassKind::Contour, points, settings.bead_width)
+            Pass::line(PassKind::Contour, points, settings.bead.width)
         }
-        [] => Pass::line(PassKind::Contour, Vec::new(), settings.bead_width),
+        [] => Pass::line(PassKind::Contour, Vec::new(), settings.bead.width),
     }
 }
 
@@ -140,7 +140,7 @@ fn join_incomplete(pieces: &[Piece], laid: &Near, outermost: &Region, settings: 
             }
             points.reverse();
         }
-        passes.push(Pass::line(PassKind::Contour, points, settings.bead_width));
+        passes.push(Pass::line(PassKind::Contour, points, settings.bead.width));
     }
     passes
 }

@@ -129,7 +129,7 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
         // The region lies on the left: a left turn is convex.
         (a.perp_dot(b) > 0.0 && a.dot(b) < SHARP).then(|| {
             let half_sine = ((1.0 + a.dot(b)) / 2.0).max(1e-3).sqrt();
-            let reach = (d - 0.42 * settings.bead_width) / half_sine - 0.45 * d;
+            let reach = (d - 0.42 * settings.bead.width) / half_sine - 0.45 * d;
             (at, (a - b).normalize_or_zero(), settings.hybrid.tip_reach * reach.clamp(0.0, 1.2 * d))
         })
     };

@@ -28,7 +28,7 @@ const SHORTEST_PART: f64 = 0.6;
 /// The passes of a narrow piece. `laid` holds all that is laid already, and then these too; `outermost` is where
 /// centre-lines may lie.
 pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut Near, settings: &FillSettings) -> Vec<Pass> {
-    let spacing = settings.bead_width / SAMPLES;
+    let spacing = settings.bead.width / SAMPLES;
     let mut lines: Vec<Line> = Vec::new();
     for ladder in ladders(&piece.clone().into(), spacing).iter().filter(|ladder| !is_knot(ladder)) {
         lines.extend(climb(ladder, piece, settings));
@@ -102,7 +102,7 @@ fn across(piece: &Polygon, outermost: &Region, settings: &FillSettings) -> Optio
     }
     let inside = outermost.clip_line(&[middle - half, middle + half], Keep::Inside);
     let points = inside.into_iter().find(|part| part.len() == 2)?;
-    Some(Line { points, widths: vec![settings.bead_width; 2], closed: false })
+    Some(Line { points, widths: vec![settings.bead.width; 2], closed: false })
 }
 
 /// A centre-line with the width at each point.
@@ -137,7 +137,7 @@ impl Line {
 
 /// The lines along one ladder.
 fn climb(ladder: &Ladder, piece: &Polygon, settings: &FillSettings) -> Vec<Line> {
-    let rungs = thinned(ladder, POINT_STEP * settings.bead_width);
+    let rungs = thinned(ladder, POINT_STEP * settings.bead.width);
     let counts = counts(&rungs, settings);
     let mut lines = Vec::new();
     for run in runs(&counts) {
@@ -183,7 +183,7 @@ fn counts(rungs: &[Rung], settings: &FillSettings) -> Vec<usize> {
     };
     loop {
         let found = runs(&counts);
-        let short = |run: &&Range<usize>| length(run) < SHORTEST_RUN * settings.bead_width;
+        let short = |run: &&Range<usize>| length(run) < SHORTEST_RUN * settings.bead.width;
         let Some(run) = found.iter().filter(short).min_by(|a, b| length(a).total_cmp(&length(b))) else { break };
         if found.len() == 1 {
             break;
@@ -218,7 +218,7 @@ fn line(rungs: &[Rung], j: usize, n: usize, settings: &FillSettings) -> Line {
     };
     let width = |rung: &Rung| {
         let share = (rung.thickness + 2.0 * gap - d) / (n as f64 * d);
-        (settings.bead_width * share).clamp(limits.0, limits.1)
+        (settings.bead.width * share).clamp(limits.0, limits.1)
     };
     Line { points: rungs.iter().map(at).collect(), widths: rungs.iter().map(width).collect(), closed: false }
 }
@@ -248,8 +248,8 @@ fn extend(line: &mut Line, free: [bool; 2], piece: &Polygon, settings: &FillSett
         }
         if let ([.., a, b], true) = (&line.points[..], free) {
             let (b, way) = (*b, (*b - *a).normalize_or_zero());
-            let reach = (hit(piece, b, way) - beyond).min(1.5 * settings.bead_width);
-            if reach > 0.1 * settings.bead_width && reach.is_finite() {
+            let reach = (hit(piece, b, way) - beyond).min(1.5 * settings.bead.width);
+            if reach > 0.1 * settings.bead.width && reach.is_finite() {
                 line.points.push(b + way * reach);
                 line.widths.extend(line.widths.last().copied());
             }

@@ -24,6 +24,7 @@ pub mod near;
 pub mod pockets;
 pub mod skeleton;
 
+use super::thin;
 use super::{Fill, FillSettings, Pass, Strategy};
 use contours::Contours;
 use planar::{Join, Polygon, Region};
@@ -101,7 +102,12 @@ impl Strategy for Hybrid {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        Steps::of(island, settings).fill(settings)
+        let thick = |part: &Polygon, settings: &FillSettings| Steps::of(part, settings).fill(settings);
+        if settings.hybrid.literal { thick(island, settings) } else { thin::around(island, settings, thick) }
+    }
+
+    fn narrowest(&self, settings: &FillSettings) -> f64 {
+        if settings.hybrid.literal { settings.bead.width } else { settings.wall.width_limits.0 }
     }
 }
 

@@ -161,7 +161,7 @@ fn length(shape: &Polygon, openings: &[Vec<DVec2>], edge: &[(DVec2, DVec2)], set
     let (Some(&first), Some(&last)) = (opening.first(), opening.last()) else { return 0.0 };
     let middle = point_at(opening, span(opening) / 2.0).unwrap_or(first);
     let along = (last - first).normalize_or_zero();
-    let own = shape.outer.edges().flat_map(|(a, b)| densified(a, b, settings.bead_width));
+    let own = shape.outer.edges().flat_map(|(a, b)| densified(a, b, settings.bead.width));
     let own = own.filter(|p| distance_to(edge, *p) > near);
     // The cosine of the angle to the opening is 0 where a vector stands square to it.
     let slant = |p: &DVec2| (*p - middle).normalize_or_zero().dot(along).abs();

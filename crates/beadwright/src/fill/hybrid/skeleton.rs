@@ -76,7 +76,7 @@ fn room(free: &Region, laid: &[Pass], settings: &FillSettings) -> Region {
     let closed: Vec<Vec<DVec2>> = closed.into_iter().map(|pass| pass.points.clone()).collect();
     let open: Vec<Vec<DVec2>> =
         open.into_iter().map(|pass| shortened(&pass.points, settings.hybrid.end_overlap)).collect();
-    let tolerance = BUFFER * settings.bead_width;
+    let tolerance = BUFFER * settings.bead.width;
     free.difference(&buffer(&closed, true, gap, tolerance)).difference(&buffer(&open, false, gap, tolerance))
 }
 

@@ -6,7 +6,7 @@
 //! | a graph of nodes and edges | [`graph`] |
 //! | edges straight into their nodes, and fitted smooth | [`smooth`] |
 //! | one bead or more along every edge, by its thickness | [`strand`] |
-//! | the fewest trails that lay all strands and never cross | [`trails`] |
+//! | the fewest trails that lay all strands and never cross | [`trails`](super::trails) |
 //! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
 //!
 //! Every second layer runs all paths backwards, the last one first: it starts where the layer below ended.
@@ -20,8 +20,8 @@ pub mod graph;
 pub mod rounding;
 pub mod smooth;
 pub mod strand;
-pub mod trails;
 
+use super::trails;
 use super::{Fill, FillSettings, Pass, PassKind, Strategy};
 use crate::pass::Along;
 use glam::DVec2;
@@ -58,7 +58,7 @@ impl Strategy for Wall {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let lines = centre::lines(island, settings.bead_width / SAMPLES);
+        let lines = centre::lines(island, settings.bead.width / SAMPLES);
         along(&lines, settings)
     }
 

@@ -8,7 +8,7 @@
 
 use super::WallSettings;
 use super::strand::{Point, Strand};
-use super::trails::{Dart, Network, Trail};
+use crate::fill::trails::{Dart, Network, Trail};
 use glam::DVec2;
 use std::f64::consts::PI;
 

@@ -6,8 +6,8 @@
 
 use super::WallSettings;
 use super::graph::{Edge, Graph};
-use super::trails::{Dart, Network};
 use crate::fill::FillSettings;
+use crate::fill::trails::{Dart, Network};
 use glam::DVec2;
 use planar::medial::Node;
 
@@ -71,7 +71,7 @@ fn beads(edge: &Edge, settings: &FillSettings) -> usize {
     let mut thickness: Vec<f64> = edge.nodes.iter().map(|node| 2.0 * node.radius).collect();
     thickness.sort_by(f64::total_cmp);
     let thickness = thickness.get(thickness.len() / 2).copied().unwrap_or_default();
-    let misfit = |n: usize| (width(thickness, n, settings) / settings.bead_width).ln().abs();
+    let misfit = |n: usize| (width(thickness, n, settings) / settings.bead.width).ln().abs();
     let most = (thickness / settings.stepover).ceil().clamp(1.0, MOST_BEADS as f64) as usize;
     (1..=most + 1).min_by(|&a, &b| misfit(a).total_cmp(&misfit(b))).unwrap_or(1)
 }
@@ -79,13 +79,13 @@ fn beads(edge: &Edge, settings: &FillSettings) -> usize {
 /// Width of each of `n` beads that fill a wall together, mm.
 fn width(thickness: f64, n: usize, settings: &FillSettings) -> f64 {
     let covered = thickness + 2.0 * settings.machining_allowance;
-    covered / (1.0 + (n - 1) as f64 * settings.stepover / settings.bead_width)
+    covered / (1.0 + (n - 1) as f64 * settings.stepover / settings.bead.width)
 }
 
 /// The strand `side` strands to the left of an edge's middle.
 fn beside(edge: &Edge, side: f64, count: usize, ring: bool, settings: &FillSettings) -> Vec<Point> {
     let WallSettings { width_limits: (low, high), .. } = settings.wall;
-    let (q, grain) = (settings.stepover / settings.bead_width, GRAIN * settings.bead_width);
+    let (q, grain) = (settings.stepover / settings.bead.width, GRAIN * settings.bead.width);
     let point = |(i, node): (usize, &Node)| {
         let exact = width(2.0 * node.radius, count, settings);
         let width = ((exact / grain).round() * grain).clamp(low, high);

@@ -6,6 +6,7 @@
 
 pub mod regions;
 
+use super::thin;
 use super::{Fill, FillSettings, Pass, PassKind, Strategy};
 use planar::scan::{Scan, Spacing};
 use planar::{Polygon, Region};
@@ -20,7 +21,10 @@ impl Strategy for Zigzag {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        Fill { stages: vec![zigzag(&self.infill(island, settings), settings)], fixed_order: false }
+        thin::around(island, settings, |part, settings| Fill {
+            stages: vec![zigzag(&self.infill(part, settings), settings)],
+            fixed_order: false,
+        })
     }
 
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
@@ -39,5 +43,5 @@ pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: S
     let (Spacing::AtMost(distance) | Spacing::Exact(distance)) = spacing;
     let weave = Weave::new(&scan, distance);
     let passes = weave.paths(&weave.merged()).into_iter();
-    passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead_width)).collect()
+    passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead.width)).collect()
 }

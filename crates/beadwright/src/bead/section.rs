@@ -1,0 +1,68 @@
+//! The shape of a bead's cross-section.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_4;
+
+/// Part of a stadium's squared height by which its area is smaller than that of the box around it.
+const CORNERS: f64 = 1.0 - FRAC_PI_4;
+
+/// The shape of a bead's cross-section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Section {
+    /// A parabola: 2/3 of the box around it (Ding et al. 2015).
+    #[default]
+    Parabola,
+    /// Half an ellipse: π/4 of the box around it.
+    Ellipse,
+    /// Flat, with round sides, as a nozzle leaves it: the box less (1 − π/4) h².
+    Stadium,
+}
+
+impl Section {
+    /// Area of a bead of that width and height, mm².
+    pub fn area(self, width: f64, height: f64) -> f64 {
+        match self {
+            Self::Parabola => 2.0 / 3.0 * width * height,
+            Self::Ellipse => FRAC_PI_4 * width * height,
+            // One that is higher than wide is a circle flattened from the sides: never less than nothing.
+            Self::Stadium => height * (width - CORNERS * height.min(width)),
+        }
+    }
+
+    /// Height of a bead of that width and area, mm: the inverse of [`Self::area`].
+    pub fn height_of(self, width: f64, area: f64) -> f64 {
+        match self {
+            Self::Parabola => 1.5 * area / width,
+            Self::Ellipse => area / (FRAC_PI_4 * width),
+            Self::Stadium => {
+                // h w − c h² = A, up to h = w; higher ones are w (1 − c) wide on the mean.
+                let most = FRAC_PI_4 * width * width;
+                if area >= most {
+                    return area / (FRAC_PI_4 * width);
+                }
+                (width - (width * width - 4.0 * CORNERS * area).max(0.0).sqrt()) / (2.0 * CORNERS)
+            }
+        }
+    }
+
+    /// Width of a bead of that height and area, mm: the other inverse of [`Self::area`].
+    pub fn width_of(self, height: f64, area: f64) -> f64 {
+        match self {
+            Self::Parabola => 1.5 * area / height,
+            Self::Ellipse => area / (FRAC_PI_4 * height),
+            Self::Stadium if area >= FRAC_PI_4 * height * height => area / height + CORNERS * height,
+            Self::Stadium => area / (FRAC_PI_4 * height),
+        }
+    }
+
+    /// The width over which a bead's metal reaches for the deposit model, mm: a stadium counts as flat, and as wide as its
+    /// area over its height.
+    pub fn footprint(self, width: f64, height: f64) -> f64 {
+        match self {
+            Self::Parabola | Self::Ellipse => width,
+            Self::Stadium => width - CORNERS * height.min(width),
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Passes that are over before their arc is steady.
+
+use super::{Check, Finding, Subject};
+use crate::weld::speed_and_feed;
+
+pub(super) const CHECK: Check = Check {
+    name: "short-arc",
+    what: "passes that take less time than process.arc_start_delay",
+    why: "the torch has left before the arc is steady; what is left is a blob without fusion",
+    example: "layer 4, pass 9: the torch is over it in 0.8 s; its arc takes 1.2 s to start.",
+    remedy: "take a strategy with longer passes (loop), or raise fill.min_pass_length, so that planning leaves it out and reports it",
+    find,
+};
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let soonest = subject.profile.soonest_arc_end();
+    let process = &subject.profile.process;
+    let time = |pass: &crate::pass::Pass| {
+        pass.segments().map(|s| s.length() / speed_and_feed(s.speed, process).0).sum::<f64>()
+    };
+    let short = subject.passes().filter(|(_, _, pass)| pass.points.len() > 1 && time(pass) < 0.999 * soonest);
+    let text = |time: f64| format!("the torch is over it in {time:.2} s; its arc takes {soonest} s to start.");
+    short.map(|(layer, i, pass)| Finding::of_pass(&CHECK, layer, i, pass.start(), text(time(pass)))).collect()
+}

@@ -1,0 +1,82 @@
+//! Counts: how many rings lie on each side of a wall's middle.
+//!
+//! A whole number of rings means an even number of beads across: none ends anywhere. Along the middle the number changes as
+//! rarely as the window of bead widths allows: neighbours vote.
+
+use super::LoopSettings;
+use super::room::Room;
+use glam::{DVec2, I64Vec2};
+use std::cmp::Reverse;
+use std::collections::HashMap;
+
+/// Neighbours within so many stepovers have a vote.
+const SIGHT: f64 = 1.2;
+/// Rounds of the vote.
+const ROUNDS: usize = 2;
+/// Where there is room for less than this part of a ring there is none.
+const LEAST_ROOM: f64 = 0.2;
+/// How far the vote may leave the window of widths.
+const SLACK: f64 = 0.05;
+
+/// The number of rings on each side at each of the room's middles.
+pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
+    let wanted: Vec<f64> =
+        room.middles.iter().map(|middle| (middle.radius - settings.edge()) / settings.stepover).collect();
+    let rounded = |&q: &f64| if q < LEAST_ROOM { 0 } else { ((q + 0.5).floor() as u32).max(1) };
+    let mut counts: Vec<u32> = wanted.iter().map(rounded).collect();
+    let places: Vec<DVec2> = room.middles.iter().map(|middle| room.lattice.place_of(middle.point)).collect();
+    let neighbours = Neighbours::of(&places, SIGHT * settings.stepover);
+    let (low, high) = settings.width_ratios();
+    let fits = |wanted: f64, count: u32| {
+        let width = wanted / f64::from(count);
+        count > 0 && (low * (1.0 - SLACK)..=high * (1.0 + SLACK)).contains(&width)
+    };
+    for _ in 0..ROUNDS {
+        let before = counts.clone();
+        for (i, count) in counts.iter_mut().enumerate() {
+            let mut votes: Vec<(u32, usize)> = Vec::new();
+            neighbours.visit(places[i], |j| match votes.iter_mut().find(|(count, _)| *count == before[j]) {
+                Some((_, number)) => *number += 1,
+                None => votes.push((before[j], 1)),
+            });
+            // The smaller count where two have as many votes.
+            let winner = votes.iter().max_by_key(|(count, number)| (*number, Reverse(*count)));
+            if let Some(&(winner, _)) = winner.filter(|(winner, _)| fits(wanted[i], *winner)) {
+                *count = winner;
+            }
+        }
+    }
+    counts
+}
+
+/// Places in square cells as wide as one looks.
+struct Neighbours<'a> {
+    places: &'a [DVec2],
+    reach: f64,
+    cells: HashMap<I64Vec2, Vec<usize>>,
+}
+
+impl<'a> Neighbours<'a> {
+    fn of(places: &'a [DVec2], reach: f64) -> Self {
+        let mut cells: HashMap<I64Vec2, Vec<usize>> = HashMap::new();
+        for (i, &place) in places.iter().enumerate() {
+            cells.entry(cell(place, reach)).or_default().push(i);
+        }
+        Self { places, reach, cells }
+    }
+
+    fn visit(&self, place: DVec2, mut visit: impl FnMut(usize)) {
+        let home = cell(place, self.reach);
+        for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
+            for &j in self.cells.get(&(home + I64Vec2::new(dx, dy))).into_iter().flatten() {
+                if self.places[j].distance_squared(place) <= self.reach * self.reach {
+                    visit(j);
+                }
+            }
+        }
+    }
+}
+
+fn cell(place: DVec2, size: f64) -> I64Vec2 {
+    (place / size).floor().as_i64vec2()
+}

@@ -1,0 +1,205 @@
+//! The height field of lines on the room's lattice, in nominal bead heights, and what is wrong with it.
+
+use super::LoopSettings;
+use super::line::Line;
+use super::room::Room;
+use crate::bead::Section;
+use crate::deposit::{LOW, OVERFILL, RIM, VOID};
+use glam::DVec2;
+use planar::Region;
+use planar::lattice::Lattice;
+use std::f64::consts::FRAC_2_PI;
+use std::ops::Range;
+
+/// Higher metal counts as this high: a peak pushes no farther.
+const MOST: f32 = 1.6;
+/// Heights are blurred with a standard deviation of so many bead widths.
+const BLUR: f64 = 0.26;
+/// Where less of the blur lies inside than this the height is taken as wanted.
+const LEAST_AREA: f32 = 0.08;
+
+/// What is wrong with a height field, % of the area.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Faults {
+    /// Voids.
+    pub void: f64,
+    /// Low places.
+    pub low: f64,
+    /// Too much metal.
+    pub overfill: f64,
+}
+
+impl Faults {
+    /// One number for all.
+    pub fn cost(&self) -> f64 {
+        10.0 * self.void + self.overfill + 0.3 * self.low
+    }
+}
+
+/// Where metal is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Nowhere here.
+    Outside,
+    /// Metal may be here, but no disc for two beads fits.
+    Tight,
+    /// It is wanted here.
+    Wanted,
+}
+
+/// A field to lay lines in.
+pub struct Field<'a> {
+    lattice: &'a Lattice,
+    places: Vec<Place>,
+    wanted: usize,
+    /// For each row the points from the first to the last inside.
+    spans: Vec<Range<usize>>,
+    /// Half of the blur's weights, from its middle on.
+    weights: Vec<f32>,
+    /// How much of the blur about each point lies inside.
+    area: Vec<f32>,
+    /// The wanted mean height.
+    target: f32,
+}
+
+impl<'a> Field<'a> {
+    /// The field of a room; metal is wanted in `open`, less a rim.
+    pub fn of(room: &'a Room, open: &Region, settings: &LoopSettings) -> Self {
+        let (lattice, rim) = (&room.lattice, (RIM * settings.bead_width) as f32);
+        let open = room.inside_of(open);
+        let place = |i: usize| match room.distance[i] {
+            distance if !room.inside[i] || distance < rim => Place::Outside,
+            _ if open[i] => Place::Wanted,
+            _ => Place::Tight,
+        };
+        let places: Vec<Place> = (0..lattice.len()).map(place).collect();
+        let wanted = places.iter().filter(|&&place| place == Place::Wanted).count();
+        let spans = room.inside.chunks(lattice.columns).map(span).collect();
+        let weights = gauss(BLUR * settings.bead_width / lattice.step);
+        let mut field =
+            Self { lattice, places, wanted, spans, weights, area: Vec::new(), target: settings.target() as f32 };
+        field.area =
+            field.convolved(|place, _| f32::from(u8::from(place != Place::Outside)), &vec![0.0; lattice.len()]);
+        field
+    }
+
+    /// The heights of lines.
+    pub fn heights(&self, lines: &[Line], settings: &LoopSettings) -> Vec<f32> {
+        let mut heights = vec![0.0; self.lattice.len()];
+        for (a, b, width) in lines.iter().flat_map(Line::pieces) {
+            self.stamp(&mut heights, (a + b) / 2.0, a.distance(b), width, settings);
+        }
+        heights
+    }
+
+    /// A short piece, as a pool that stands in its middle.
+    fn stamp(&self, heights: &mut [f32], at: DVec2, length: f64, width: f64, settings: &LoopSettings) {
+        let Lattice { columns, rows, step, .. } = *self.lattice;
+        let (at, radius) = (self.lattice.in_steps(at), width / 2.0 / step);
+        let factor = settings.height_of(width) * length / (step * radius);
+        let low = (at.y - radius).ceil().max(0.0) as usize;
+        let high = ((at.y + radius).floor() as usize).min(rows - 1);
+        for row in low..=high {
+            let square = radius * radius - (row as f64 - at.y).powi(2);
+            let reach = square.max(0.0).sqrt();
+            let first = (at.x - reach).ceil().max(0.0) as usize;
+            let last = ((at.x + reach).floor() as usize).min(columns - 1);
+            if first <= last {
+                let line = &mut heights[row * columns + first..=row * columns + last];
+                pour(line, settings.bead.section, (first as f64 - at.x, square), (factor, radius));
+            }
+        }
+    }
+
+    /// What is wrong with heights.
+    pub fn faults(&self, heights: &[f32]) -> Faults {
+        let (mut void, mut low, mut overfill) = (0_usize, 0_usize, 0_usize);
+        for (&height, &place) in heights.iter().zip(&self.places) {
+            if place == Place::Wanted {
+                void += usize::from(height < VOID as f32);
+                low += usize::from(height < LOW as f32);
+            }
+            overfill += usize::from(place != Place::Outside && height > OVERFILL as f32);
+        }
+        let percent = |count: usize| 100.0 * count as f64 / self.wanted.max(1) as f64;
+        Faults { void: percent(void), low: percent(low - void), overfill: percent(overfill) }
+    }
+
+    /// The heights blurred over what lies inside. Where there is no room for two beads only too much counts.
+    pub fn blurred(&self, heights: &[f32]) -> Vec<f32> {
+        let height = |place: Place, height: f32| match place {
+            Place::Outside => 0.0,
+            Place::Tight => height.clamp(self.target, MOST),
+            Place::Wanted => height.min(MOST),
+        };
+        let mut sums = self.convolved(height, heights);
+        for (sum, &area) in sums.iter_mut().zip(&self.area) {
+            *sum = if area > LEAST_AREA { *sum / area } else { self.target };
+        }
+        sums
+    }
+
+    /// Values of the points inside, convolved with the blur, for the points inside.
+    fn convolved(&self, value: impl Fn(Place, f32) -> f32, heights: &[f32]) -> Vec<f32> {
+        let (columns, reach) = (self.lattice.columns, self.weights.len() - 1);
+        let mut across = vec![0.0_f32; heights.len()];
+        let mut line = vec![0.0_f32; columns + 2 * reach];
+        for (row, span) in self.spans.iter().enumerate().filter(|(_, span)| !span.is_empty()) {
+            let first = row * columns;
+            line.fill(0.0);
+            for i in span.clone() {
+                line[reach + i] = value(self.places[first + i], heights[first + i]);
+            }
+            let wide = span.start.saturating_sub(reach)..(span.end + reach).min(columns);
+            let out = &mut across[first + wide.start..first + wide.end];
+            for (k, &weight) in self.weights.iter().enumerate() {
+                let left = &line[wide.start + reach - k..];
+                let right = &line[wide.start + reach + k..];
+                let share = if k == 0 { weight / 2.0 } else { weight };
+                out.iter_mut().zip(left.iter().zip(right)).for_each(|(o, (l, r))| *o += share * (l + r));
+            }
+        }
+        let mut result = vec![0.0_f32; heights.len()];
+        for (row, span) in self.spans.iter().enumerate() {
+            let out = &mut result[row * columns + span.start..row * columns + span.end];
+            for (k, &weight) in self.weights.iter().enumerate() {
+                let above = Some(row + k).filter(|&r| r < self.lattice.rows && k > 0);
+                for other in row.checked_sub(k).into_iter().chain(above) {
+                    let values = &across[other * columns + span.start..other * columns + span.end];
+                    out.iter_mut().zip(values).for_each(|(o, v)| *o += weight * v);
+                }
+            }
+        }
+        result
+    }
+}
+
+/// Adds a row of a pool: the place of the row's first point before the middle and the squared half of the row within the
+/// pool, in steps; and the height of a line of such pools, with their radius in steps.
+fn pour(line: &mut [f32], section: Section, (start, square): (f64, f64), (height, radius): (f64, f64)) {
+    let (start, square) = (start as f32, square as f32);
+    let inside = |k: usize| {
+        let x = start + k as f32;
+        (square - x * x).max(0.0)
+    };
+    match section {
+        Section::Ellipse | Section::Stadium => line.iter_mut().for_each(|h| *h += (0.5 * height) as f32),
+        Section::Parabola => {
+            let factor = (height * FRAC_2_PI / radius) as f32;
+            line.iter_mut().enumerate().for_each(|(k, h)| *h += factor * inside(k).sqrt());
+        }
+    }
+}
+
+fn span(row: &[bool]) -> Range<usize> {
+    let first = row.iter().position(|&inside| inside);
+    let last = row.iter().rposition(|&inside| inside);
+    first.zip(last).map_or(0..0, |(first, last)| first..last + 1)
+}
+
+fn gauss(sigma: f64) -> Vec<f32> {
+    let reach = (3.0 * sigma).ceil() as i32;
+    let weights: Vec<f64> = (0..=reach).map(|k| (-0.5 * (f64::from(k) / sigma).powi(2)).exp()).collect();
+    let sum = weights.iter().sum::<f64>() * 2.0 - weights[0];
+    weights.into_iter().map(|weight| (weight / sum) as f32).collect()
+}

@@ -1,0 +1,98 @@
+//! What a controller can follow: few straight pieces and arcs, and widths that change in steps.
+//!
+//! The relaxed line is replaced by the longest pieces that leave it by no more than a tolerance and along which the smooth
+//! width stays within a step. A piece has one width.
+
+use super::LoopSettings;
+use super::line::Line;
+use super::room::Room;
+use glam::DVec2;
+use planar::arcs::{Arc, Fit};
+
+/// The line may leave the relaxed one by this, in bead widths.
+const TOLERANCE: f64 = 0.02;
+/// Arcs are drawn by chords that leave them by this, in bead widths.
+const CHORD: f64 = 0.0005;
+/// Middle points of arcs are multiples of this, in bead widths.
+const GRID: f64 = 1e-6;
+/// A bead may reach so many bead widths out of the outline: lower there than what the deposit model calls outside.
+const OUT: f64 = 0.005;
+
+/// The line of few pieces.
+pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
+    let w = settings.bead_width;
+    let fit = Fit { tolerance: TOLERANCE * w, arcs: true, grid: GRID * w };
+    let (points, widths, thin) = opened(line, line.smooth_widths(settings.smoothing_length));
+    let count = points.len().saturating_sub(1);
+    let mut result = Line { closed: line.closed, ..Line::default() };
+    let (mut start, mut width) = (0, 0.0);
+    while start < count {
+        let alike = alike(&widths, &thin, start, settings.width_step);
+        let piece = fit.next(&points[start..=alike]);
+        let end = start + piece.end;
+        let own = &points[start..=end];
+        let mean = mean_width(own, &widths[start..end]);
+        // A width that hardly differs from the one before is that.
+        if (mean - width).abs() > settings.width_step / 2.0 {
+            width = mean;
+        }
+        let drawn = piece.arc.map(|arc| chords(&arc, points[start], CHORD * w)).unwrap_or_default();
+        let nearest = own.iter().chain(&drawn).map(|p| room.at(*p)).fold(f64::INFINITY, f64::min);
+        let (low, high) = settings.limits(thin[start]);
+        width = width.min(2.0 * (nearest + OUT * w)).clamp(low, high);
+        for point in std::iter::once(points[start]).chain(drawn) {
+            result.points.push(point);
+            result.widths.push(width);
+            result.thin.push(thin[start]);
+        }
+        start = end;
+    }
+    if !line.closed {
+        result.points.extend(points.last());
+        result.widths.push(width);
+        result.thin.push(thin.last().copied().unwrap_or_default());
+    }
+    result
+}
+
+/// The points with the first one of a closed line again at its end; it begins where it is straightest.
+fn opened(line: &Line, mut widths: Vec<f64>) -> (Vec<DVec2>, Vec<f64>, Vec<bool>) {
+    let (mut points, mut thin) = (line.points.clone(), line.thin.clone());
+    if line.closed && !points.is_empty() {
+        let straight = |i: usize| (points[i] - points[line.before(i)]).dot(points[line.behind(i)] - points[i]);
+        let first = (0..points.len()).max_by(|&a, &b| straight(a).total_cmp(&straight(b)).then(b.cmp(&a))).unwrap_or(0);
+        points.rotate_left(first);
+        widths.rotate_left(first);
+        thin.rotate_left(first);
+        points.push(points[0]);
+    }
+    (points, widths, thin)
+}
+
+/// The last point to which the widths of pieces stay within a step of each other, from a point on.
+fn alike(widths: &[f64], thin: &[bool], start: usize, step: f64) -> usize {
+    let (mut low, mut high) = (widths[start], widths[start]);
+    let mut end = start + 1;
+    while end < widths.len() && thin[end] == thin[start] {
+        (low, high) = (low.min(widths[end]), high.max(widths[end]));
+        if high - low > step {
+            break;
+        }
+        end += 1;
+    }
+    end
+}
+
+fn mean_width(points: &[DVec2], widths: &[f64]) -> f64 {
+    let pieces = points.windows(2).map(|w| w[0].distance(w[1])).zip(widths);
+    let (length, area) = pieces.fold((0.0, 0.0), |(l, a), (length, width)| (l + length, a + length * width));
+    if length > 0.0 { area / length } else { widths.first().copied().unwrap_or_default() }
+}
+
+/// The points on an arc between its ends.
+fn chords(arc: &Arc, from: DVec2, error: f64) -> Vec<DVec2> {
+    let step = 2.0 * (1.0 - (error / arc.radius).min(0.5)).acos();
+    let count = (arc.sweep.abs() / step).ceil().clamp(4.0, 2000.0) as usize;
+    let spoke = from - arc.centre;
+    (1..count).map(|k| arc.centre + DVec2::from_angle(arc.sweep * k as f64 / count as f64).rotate(spoke)).collect()
+}

@@ -1,0 +1,262 @@
+//! Flat beads fitted edge to edge: an edge beside a gap moves out, one that lies over its neighbour moves back.
+//!
+//! From every point one looks to both sides, as far as the next bead or the outline. What is missing is shared by a move and
+//! a change of width, so that each edge does its part. In a corner of the outline a bead goes deeper and narrows.
+
+use super::LoopSettings;
+use super::line::Line;
+use super::room::Room;
+use glam::{DVec2, I64Vec2};
+
+/// Beads lie over each other by so many bead widths.
+const OVERLAP: f64 = 0.028;
+/// Part of a gap that an edge closes in a round, and of an overlap that it takes back.
+const CLOSE: f64 = 1.0;
+const BACK: f64 = 0.1;
+/// No overlap counts as more than this, and no gap is looked for farther away, in bead widths.
+const DEEPEST: f64 = 0.3;
+const REACH: f64 = 0.35;
+/// Each round a point is drawn this part of the way to the middle of its neighbours.
+const TENSION: f64 = 0.03;
+/// Each round widths go this part of the way back to what they were first.
+const RETURN: f64 = 0.02;
+/// Pieces of the same line nearer than so many bead widths along it are no neighbours.
+const APART: f64 = 0.9;
+/// A corner is where both legs touch the outline within this and their joint misses it by more, in bead widths.
+const TOUCH: f64 = 0.06;
+/// Part of that by which the joint moves in a round, and how much the bead narrows with it in a square corner: twice the
+/// move over √2.
+const INTO_CORNER: f64 = 0.3;
+const NARROWS: f64 = std::f64::consts::SQRT_2;
+/// Sides of a piece that lean more than this (cosine) to the line of sight are seen by its round ends.
+const LEAST_LEAN: f64 = 0.2;
+
+/// Fits lines edge to edge.
+pub fn fitted(mut lines: Vec<Line>, room: &Room, settings: &LoopSettings) -> Vec<Line> {
+    let first: Vec<Vec<f64>> = lines.iter().map(|line| line.widths.clone()).collect();
+    for _ in 0..settings.rounds {
+        let pieces = Pieces::of(&lines, settings);
+        for (number, line) in lines.iter_mut().enumerate() {
+            let moves = Moves::of(line, number, &pieces, room, settings);
+            moves.make(line, &first[number], room, settings);
+        }
+    }
+    lines
+}
+
+/// How the points of a line move, and how much wider the bead becomes there, mm.
+struct Moves {
+    shifts: Vec<DVec2>,
+    grows: Vec<f64>,
+}
+
+impl Moves {
+    fn of(line: &Line, number: usize, pieces: &Pieces, room: &Room, settings: &LoopSettings) -> Self {
+        let n = line.points.len();
+        let mut moves = Self { shifts: vec![DVec2::ZERO; n], grows: vec![0.0; n] };
+        let mut along = 0.0;
+        for i in 0..n {
+            let (p, half) = (line.points[i], line.half_width(i));
+            let ways = [(line.before(i), i), (i, line.behind(i))];
+            let ways = ways.map(|(a, b)| (line.points[b] - line.points[a]).normalize_or_zero());
+            let sight = Sight { from: p, normal: (ways[0] + ways[1]).normalize_or_zero().perp(), line: number, along };
+            let free = sight.free(pieces, room, half + REACH * settings.bead_width, settings);
+            let (shift, grow) = corner(&free, half, room.at(p), settings.limits(line.thin[i]).0, settings)
+                .unwrap_or_else(|| {
+                    let [left, right] = free.map(|free| free.wanted(half, settings));
+                    ((left - right) / 2.0, left + right)
+                });
+            (moves.shifts[i], moves.grows[i]) = (sight.normal * shift, grow);
+            if line.is_end(i) {
+                moves.shifts[i] = DVec2::ZERO;
+            }
+            along += p.distance(line.points[line.behind(i)]);
+        }
+        moves
+    }
+
+    fn make(&self, line: &mut Line, first: &[f64], room: &Room, settings: &LoopSettings) {
+        let shifts = line.smoothed(&self.shifts);
+        line.points.iter_mut().zip(shifts).for_each(|(point, shift)| *point += shift);
+        line.tighten(TENSION);
+        for i in 0..line.count() {
+            let (low, high) = settings.limits(line.thin[i]);
+            let grow = (self.grows[i] + self.grows[line.behind(i)]) / 2.0;
+            let width = line.widths[i] + (first[i] - line.widths[i]) * RETURN;
+            line.widths[i] = (width + grow).clamp(low, high);
+        }
+        line.keep_inside(room, settings);
+        line.meet_outline(room, settings);
+        line.fit_inside(room, settings);
+    }
+}
+
+/// How far one sees to a side, and what is there.
+#[derive(Debug, Clone, Copy)]
+struct Free {
+    distance: f64,
+    is_outline: bool,
+}
+
+impl Free {
+    /// How far an edge that lies `half` away ought to move out, mm.
+    fn wanted(self, half: f64, settings: &LoopSettings) -> f64 {
+        let w = settings.bead_width;
+        if self.is_outline {
+            return (self.distance - half).max(-DEEPEST * w);
+        }
+        let gap = self.distance - half + OVERLAP * w;
+        if gap > 0.0 { CLOSE * gap } else { BACK * gap.max(-DEEPEST * w) }
+    }
+}
+
+/// How the joint of two legs in a corner of the outline moves (to the left above 0), and how the bead narrows.
+fn corner(free: &[Free; 2], half: f64, room: f64, narrowest: f64, settings: &LoopSettings) -> Option<(f64, f64)> {
+    let touch = TOUCH * settings.bead_width;
+    let is_corner = |free: &&Free| free.is_outline && free.distance - half > touch && room - half < touch;
+    let side = free.iter().position(|free| is_corner(&free))?;
+    let most = (half - narrowest / 2.0) * NARROWS;
+    let by = (INTO_CORNER * (free[side].distance - half)).min(most).max(0.0);
+    Some((if side == 0 { by } else { -by }, -NARROWS * by))
+}
+
+/// A look to both sides of a line.
+struct Sight {
+    from: DVec2,
+    /// To the left.
+    normal: DVec2,
+    line: usize,
+    along: f64,
+}
+
+impl Sight {
+    /// How far the next bead or the outline lies to the left and to the right, `reach` (mm) at most.
+    fn free(&self, pieces: &Pieces, room: &Room, reach: f64, settings: &LoopSettings) -> [Free; 2] {
+        let mut free = [reach; 2];
+        pieces.near(self.from, |piece| {
+            if !self.is_own(piece, pieces, settings) {
+                for edge in self.edges(piece).into_iter().flatten() {
+                    let side = usize::from(edge.middle < 0.0);
+                    free[side] = free[side].min((edge.middle.abs() - edge.depth).max(0.0));
+                }
+            }
+        });
+        let margin = 5e-4 * settings.bead_width;
+        [(free[0], self.normal), (free[1], -self.normal)].map(|(free, way)| {
+            let outline = self.to_outline(way, free, room, settings);
+            if outline < free {
+                Free { distance: outline - margin, is_outline: true }
+            } else {
+                Free { distance: free, is_outline: false }
+            }
+        })
+    }
+
+    fn is_own(&self, piece: &Piece, pieces: &Pieces, settings: &LoopSettings) -> bool {
+        let apart = (piece.along - self.along).abs();
+        let around = apart.min(pieces.lengths[self.line] - apart);
+        piece.line == self.line && around < APART * settings.bead_width
+    }
+
+    /// Where the line of sight runs through a piece: through its round ends, and its sides.
+    fn edges(&self, piece: &Piece) -> [Option<Crossing>; 3] {
+        let (a, b, r) = (piece.from - self.from, piece.to - self.from, piece.radius);
+        let (ay, by) = (self.normal.perp_dot(a), self.normal.perp_dot(b));
+        let (ax, bx) = (self.normal.dot(a), self.normal.dot(b));
+        let round = |x: f64, y: f64| (y.abs() < r).then(|| Crossing { middle: x, depth: (r * r - y * y).sqrt() });
+        let side = || {
+            let lean = (by - ay).abs() / a.distance(b);
+            let middle = ax + ay / (ay - by) * (bx - ax);
+            (lean > LEAST_LEAN).then_some(Crossing { middle, depth: r / lean })
+        };
+        [round(ax, ay), round(bx, by), if ay * by < 0.0 { side() } else { None }]
+    }
+
+    /// Distance to the outline that way, no farther than `most`: as far as is safe, step by step.
+    fn to_outline(&self, way: DVec2, most: f64, room: &Room, settings: &LoopSettings) -> f64 {
+        let mut along = 0.0;
+        for _ in 0..6 {
+            let step = room.at(self.from + way * along);
+            along += step;
+            if along >= most || step < 1e-3 * settings.bead_width {
+                break;
+            }
+        }
+        along
+    }
+}
+
+/// Where a line of sight runs through a bead: the middle, above 0 to the left, and from there to its edges.
+struct Crossing {
+    middle: f64,
+    depth: f64,
+}
+
+struct Piece {
+    from: DVec2,
+    to: DVec2,
+    radius: f64,
+    line: usize,
+    /// Place of its middle along its line, mm.
+    along: f64,
+}
+
+/// All pieces, in square cells.
+struct Pieces {
+    pieces: Vec<Piece>,
+    lengths: Vec<f64>,
+    cell: f64,
+    low: I64Vec2,
+    size: I64Vec2,
+    /// First place of each cell in `order`, and one past the last.
+    starts: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Pieces {
+    fn of(lines: &[Line], settings: &LoopSettings) -> Self {
+        let (mut pieces, mut lengths) = (Vec::new(), Vec::new());
+        for (number, line) in lines.iter().enumerate() {
+            let mut along = 0.0;
+            for (from, to, width) in line.pieces() {
+                let length = from.distance(to);
+                pieces.push(Piece { from, to, radius: width / 2.0, line: number, along: along + length / 2.0 });
+                along += length;
+            }
+            lengths.push(along);
+        }
+        // Half of a bead, a gap and half of the widest bead lie within a cell.
+        let cell = settings.bead_width * (0.5 + REACH) + settings.width_limits.1;
+        let cell_of = |piece: &Piece| ((piece.from + piece.to) / (2.0 * cell)).floor().as_i64vec2();
+        let low = pieces.iter().map(cell_of).reduce(|a, b| a.min(b)).unwrap_or_default();
+        let high = pieces.iter().map(cell_of).reduce(|a, b| a.max(b)).unwrap_or_default();
+        let size = high - low + 1;
+        let index = |piece: &Piece| {
+            let cell = cell_of(piece) - low;
+            (cell.y * size.x + cell.x) as usize
+        };
+        let mut starts = vec![0_u32; (size.x * size.y) as usize + 1];
+        pieces.iter().for_each(|piece| starts[index(piece) + 1] += 1);
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let (mut next, mut order) = (starts.clone(), vec![0_u32; pieces.len()]);
+        for (number, piece) in (0..).zip(&pieces) {
+            let place = &mut next[index(piece)];
+            order[*place as usize] = number;
+            *place += 1;
+        }
+        Self { pieces, lengths, cell, low, size, starts, order }
+    }
+
+    /// The pieces about a place.
+    fn near(&self, p: DVec2, mut visit: impl FnMut(&Piece)) {
+        let home = (p / self.cell).floor().as_i64vec2() - self.low;
+        let (left, right) = ((home.x - 1).max(0), (home.x + 1).min(self.size.x - 1));
+        for y in (home.y - 1).max(0)..=(home.y + 1).min(self.size.y - 1) {
+            let row = y * self.size.x;
+            let range = self.starts[(row + left) as usize]..self.starts[(row + right) as usize + 1];
+            for &i in &self.order[range.start as usize..range.end as usize] {
+                visit(&self.pieces[i as usize]);
+            }
+        }
+    }
+}

@@ -1,0 +1,270 @@
+//! One loop an island: rings that fill it evenly, joined to one path; one arc start where others need many.
+//!
+//! | step | file |
+//! | --- | --- |
+//! | what has room for two beads, and walls for one | [`thin`](super::thin) |
+//! | the room: distances and the middle of walls | [`room`] |
+//! | how many rings lie on each side of the middle | [`counts`] |
+//! | a phase that is whole on rings and half in the middle | [`phase`] |
+//! | rings: lines of whole phase | [`rings`] |
+//! | rings joined by flips, or to a spiral | [`flips`], [`spiral`] |
+//! | walls for one bead tied in | [`tie`] |
+//! | widths by cell | [`cells`] |
+//! | relaxation: by heights ([`relax`] on a [`field`]), flat beads by their edges ([`fit`]) | |
+//! | few pieces, widths in steps | [`finish`] |
+//!
+//! Everything is our own. Rings are level sets: closed by construction, nested, crossing nothing. There are as many on one
+//! side of a wall as on the other, so no bead is odd and none ends; where the room is no whole number of beads all of them
+//! grow or shrink a little.
+
+pub mod cells;
+pub mod counts;
+pub mod field;
+pub mod finish;
+pub mod fit;
+pub mod flips;
+pub mod line;
+pub mod phase;
+pub mod relax;
+pub mod rings;
+pub mod room;
+pub mod spiral;
+
+use super::thin::tie::{TieSettings, tie};
+use super::thin::{Split, ThinLimits, split};
+use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use crate::bead::{Bead, Law, Section};
+use crate::pass::Along;
+use glam::DVec2;
+use line::Line;
+use planar::{Bounds, Join, Polygon, Region};
+use room::Room;
+
+/// One loop an island.
+pub struct OneLoop;
+
+/// What a profile says of loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopOptions {
+    /// The narrowest and the widest bead, mm.
+    pub width_limits: (f64, f64),
+    /// Widths change no faster than over this, mm.
+    pub smoothing_length: f64,
+    /// Widths change in steps of about this, mm.
+    pub width_step: f64,
+    /// Rounds of relaxation.
+    pub rounds: u32,
+    /// Length of the stretches that a flip takes out, in distances of the rings.
+    pub flip_length: f64,
+    /// Whether nested rings become a spiral.
+    pub spirals: bool,
+}
+
+/// All that the steps need to know; lengths in mm.
+#[derive(Debug, Clone, Copy)]
+pub struct LoopSettings<'a> {
+    /// Index of the layer.
+    pub layer: usize,
+    /// What places of flips are measured from: the same on all layers.
+    pub datum: DVec2,
+    /// The nominal bead.
+    pub bead: Bead,
+    /// How a bead's height follows its width.
+    pub law: &'a Law,
+    /// Its width.
+    pub bead_width: f64,
+    /// Distance of neighbouring lines.
+    pub stepover: f64,
+    /// The narrowest and the widest bead where two or more lie side by side.
+    pub width_limits: (f64, f64),
+    /// The narrowest and the widest bead in a wall of its own.
+    pub single: (f64, f64),
+    /// From this thickness on a wall has room for two beads.
+    pub double: f64,
+    /// How far an end stays away from a line that passes, in bead widths.
+    pub end_gap: f64,
+    /// Shorter passes are left out.
+    pub shortest: f64,
+    /// Widths change no faster than over this.
+    pub smoothing_length: f64,
+    /// Widths change in steps of about this.
+    pub width_step: f64,
+    /// Rounds of relaxation.
+    pub rounds: u32,
+    /// Length of the stretches that a flip takes out, in distances of the rings.
+    pub flip_length: f64,
+    /// Whether nested rings become a spiral.
+    pub spirals: bool,
+}
+
+/// Points of lines that are being relaxed lie so many to a stepover.
+const POINTS_PER_STEPOVER: f64 = 7.0;
+/// Coordinates are rounded to this, mm, so that an island is filled alike wherever it lies.
+const GRAIN_MM: f64 = 1e-6;
+
+impl Strategy for OneLoop {
+    fn name(&self) -> &'static str {
+        "loop"
+    }
+
+    fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
+        let parts = island.offset(settings.machining_allowance, Join::ROUND);
+        let passes = parts.polygons().iter().flat_map(|part| {
+            let (part, middle) = about_origin(part);
+            let settings = LoopSettings::of(settings, middle);
+            let lines = Steps::of(&part, &settings).lines;
+            lines.into_iter().map(|line| pass(line, middle)).collect::<Vec<_>>()
+        });
+        Fill { stages: vec![passes.collect()], fixed_order: false }
+    }
+}
+
+/// The polygon with the middle of its box in the origin, and where that was.
+fn about_origin(polygon: &Polygon) -> (Polygon, DVec2) {
+    let bounds = Bounds::of(polygon.outer.points().iter().copied()).unwrap_or(Bounds::EMPTY);
+    let middle = bounds.center();
+    let moved = |p: &DVec2| ((*p - middle) / GRAIN_MM).round() * GRAIN_MM;
+    let ring = |ring: &planar::Ring| planar::Ring::new(ring.points().iter().map(moved).collect());
+    (Polygon { outer: ring(&polygon.outer), holes: polygon.holes.iter().map(ring).collect() }, middle)
+}
+
+fn pass(line: Line, middle: DVec2) -> Pass {
+    let kind = if line.thin.iter().all(|thin| *thin) { PassKind::Wall } else { PassKind::Contour };
+    let points = line.points.iter().map(|p| *p + middle).collect();
+    Pass { kind, closed: line.closed, points, width: Along::Each(line.widths), reversible: true }
+}
+
+impl<'a> LoopSettings<'a> {
+    /// For an island moved by `middle`.
+    fn of(fill: &FillSettings<'a>, middle: DVec2) -> Self {
+        let LoopOptions { width_limits, smoothing_length, width_step, rounds, flip_length, spirals } = fill.one_loop;
+        Self {
+            layer: fill.layer,
+            datum: fill.datum - middle,
+            bead: fill.bead,
+            law: fill.law,
+            bead_width: fill.bead.width,
+            stepover: fill.stepover,
+            width_limits,
+            single: fill.wall.width_limits,
+            double: fill.double(),
+            end_gap: fill.wall.end_gap,
+            shortest: fill.min_pass_length,
+            smoothing_length,
+            width_step,
+            rounds,
+            flip_length,
+            spirals,
+        }
+    }
+
+    /// How far a bead's cell ends before its edge.
+    pub fn edge(&self) -> f64 {
+        (self.bead_width - self.stepover) / 2.0
+    }
+
+    /// The window of widths of a piece, mm.
+    pub fn limits(&self, thin: bool) -> (f64, f64) {
+        if thin { self.single } else { self.width_limits }
+    }
+
+    /// The window of widths of rings, in bead widths.
+    pub fn width_ratios(&self) -> (f64, f64) {
+        (self.width_limits.0 / self.bead_width, self.width_limits.1 / self.bead_width)
+    }
+
+    /// The mean height that a layer ought to have, in nominal bead heights.
+    pub fn target(&self) -> f64 {
+        self.bead.rise(self.stepover) / self.bead.height
+    }
+
+    /// Width of the bead whose metal fills a cell that wide, mm.
+    pub fn width_for(&self, cell: f64) -> f64 {
+        self.law.width_of_area(&self.bead, self.bead.rise(self.stepover) * cell)
+    }
+
+    /// Height of a bead of that width, in nominal bead heights.
+    pub fn height_of(&self, width: f64) -> f64 {
+        self.law.bead(&self.bead, width).height / self.bead.height
+    }
+
+    /// Which walls have room for one bead only.
+    pub fn thin_limits(&self) -> ThinLimits {
+        ThinLimits { bead_width: self.bead_width, single: self.single, double: self.double }
+    }
+}
+
+/// All steps of one island, to be tested and drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Steps {
+    /// Thick parts and walls for one bead.
+    pub split: Split,
+    /// The rings of all thick parts.
+    pub rings: Vec<rings::Ring>,
+    /// Where rings are joined by flips.
+    pub flips: Vec<DVec2>,
+    /// Rings joined, walls tied in, with the widths of their cells.
+    pub joined: Vec<Line>,
+    /// The relaxed lines.
+    pub relaxed: Vec<Line>,
+    /// What is laid.
+    pub lines: Vec<Line>,
+}
+
+impl Steps {
+    /// Goes all steps of an island that lies about the origin.
+    pub fn of(island: &Polygon, settings: &LoopSettings) -> Self {
+        let split = split(island, &settings.thin_limits());
+        let (mut rings, mut flips, mut paths) = (Vec::new(), Vec::new(), Vec::new());
+        for part in &split.thick {
+            let own = rings_of(part, settings);
+            match spiral::spiral(&own, settings).filter(|_| settings.spirals) {
+                Some(path) => paths.push(path_pass(path, false)),
+                None => {
+                    let joined = flips::join(&own, settings);
+                    flips.extend(joined.flips);
+                    paths.extend(joined.loops.into_iter().map(|line| path_pass(line, true)));
+                }
+            }
+            rings.extend(own);
+        }
+        let room = Room::of(island, settings);
+        let step = settings.stepover / POINTS_PER_STEPOVER;
+        let mut joined: Vec<Line> = tied(paths, &split, settings).iter().map(|line| line.resampled(step)).collect();
+        cells::set_widths(&mut joined, &room, settings);
+        let relaxed = relaxed(joined.clone(), &room, &split.open, settings);
+        let lines = relaxed.iter().map(|line| finish::finished(line, &room, settings)).collect();
+        Self { split, rings, flips, joined, relaxed, lines }
+    }
+}
+
+fn rings_of(part: &Polygon, settings: &LoopSettings) -> Vec<rings::Ring> {
+    let room = Room::of(part, settings);
+    let counts = counts::counts(&room, settings);
+    let phase = phase::phase(&room, &counts, settings);
+    rings::rings(&room, &phase, settings)
+}
+
+fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> Vec<Line> {
+    match settings.bead.section {
+        Section::Stadium => fit::fitted(lines, room, settings),
+        Section::Parabola | Section::Ellipse => relax::relaxed(lines, room, open, settings).0,
+    }
+}
+
+/// A width of 0 tells pieces whose width is not known yet.
+fn path_pass(points: Vec<DVec2>, closed: bool) -> Pass {
+    Pass { kind: PassKind::Contour, closed, points, width: Along::Same(0.0), reversible: true }
+}
+
+/// Paths and thin walls tied together.
+fn tied(paths: Vec<Pass>, split: &Split, settings: &LoopSettings) -> Vec<Line> {
+    let tie_settings =
+        TieSettings { limits: settings.thin_limits(), end_gap: settings.end_gap, shortest: settings.shortest };
+    let line = |pass: Pass| {
+        let widths: Vec<f64> = (0..pass.points.len()).map(|i| pass.width.after(i)).collect();
+        let thin = widths.iter().map(|width| *width > 0.0).collect();
+        Line { points: pass.points, widths, thin, closed: pass.closed }
+    };
+    tie(paths, &split.thin, &tie_settings).into_iter().map(line).collect()
+}

@@ -1,0 +1,87 @@
+//! Relaxation on the height field: lines move to where metal lacks, and their widths follow the height around them.
+//!
+//! Points go down the slope of the blurred heights, across their line; a little tension keeps lines smooth. Steps and gains
+//! fall from round to round, and the best round is kept.
+
+use super::LoopSettings;
+use super::field::{Faults, Field};
+use super::line::Line;
+use super::room::Room;
+use glam::DVec2;
+use planar::Region;
+
+/// A point moves by this, in bead widths, for a slope of one bead height a width.
+const STRIDE: f64 = 0.03;
+/// No point moves farther in a round, in bead widths.
+const FARTHEST: f64 = 0.05;
+/// Part of the slope along the line that does not count.
+const ACROSS: f64 = 0.8;
+/// Each round a point is drawn this part of the way to the middle of its neighbours.
+const TENSION: f64 = 0.08;
+/// How the stride falls from round to round.
+const STRIDE_FALL: f64 = 0.95;
+/// Widths change by this power of wanted over present height.
+const GAIN: f64 = 0.5;
+/// How the gain falls from round to round.
+const GAIN_FALL: f64 = 0.8;
+/// Heights are taken as no lower than this, and no width changes by more than this part in a round.
+const LOWEST: f64 = 0.3;
+const MOST_CHANGE: f64 = 0.1;
+
+/// Relaxes lines; the best round is kept.
+pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> (Vec<Line>, Faults) {
+    let field = Field::of(room, open, settings);
+    for line in &mut lines {
+        line.keep_inside(room, settings);
+        line.fit_inside(room, settings);
+    }
+    let mut heights = field.heights(&lines, settings);
+    let mut best = (lines.clone(), field.faults(&heights));
+    for round in 0..settings.rounds {
+        let blurred = field.blurred(&heights);
+        let (stride, gain) = (STRIDE * STRIDE_FALL.powi(round as i32), GAIN * GAIN_FALL.powi(round as i32));
+        for line in &mut lines {
+            shift(line, &blurred, room, settings, stride);
+            adapt(line, &blurred, room, settings, gain);
+        }
+        heights = field.heights(&lines, settings);
+        let faults = field.faults(&heights);
+        if faults.cost() < best.1.cost() {
+            best = (lines.clone(), faults);
+        }
+    }
+    best
+}
+
+/// Moves the points of a line down the slope.
+fn shift(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings, stride: f64) {
+    let w = settings.bead_width;
+    let step = |i: usize| {
+        let slope = room.lattice.slope_at(heights, line.points[i]) * w;
+        let way = line.way(i);
+        let down = way * (slope.dot(way) * ACROSS) - slope;
+        if line.is_end(i) { DVec2::ZERO } else { (down * stride * w).clamp_length_max(FARTHEST * w) }
+    };
+    let steps: Vec<DVec2> = (0..line.points.len()).map(step).collect();
+    let steps = line.smoothed(&line.smoothed(&steps));
+    line.points.iter_mut().zip(steps).for_each(|(point, step)| *point += step);
+    line.tighten(TENSION);
+    line.keep_inside(room, settings);
+}
+
+/// Changes the widths of a line by the heights about its pieces. In a wall of its own a bead stays as wide as the wall.
+fn adapt(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings, gain: f64) {
+    let target = settings.target();
+    let wanted = |(a, b, width): (DVec2, DVec2, f64)| {
+        let height = room.lattice.value_at(heights, (a + b) / 2.0).max(LOWEST);
+        width * (target / height).clamp(1.0 - MOST_CHANGE, 1.0 + MOST_CHANGE).powf(gain)
+    };
+    let widths: Vec<f64> = line.pieces().map(wanted).collect();
+    for (i, width) in widths.into_iter().enumerate() {
+        let (low, high) = settings.limits(line.thin[i]);
+        let middle = line.points[i].midpoint(line.points[line.behind(i)]);
+        let width = if line.thin[i] { 2.0 * room.at(middle) } else { width };
+        line.widths[i] = width.clamp(low, high);
+    }
+    line.fit_inside(room, settings);
+}

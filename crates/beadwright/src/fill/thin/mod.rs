@@ -1,0 +1,257 @@
+//! Thin walls: the parts of an island in which there is room for one bead only.
+//!
+//! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches is
+//! *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]). Where a thin
+//! wall meets a thick part its bead is tied to the passes there ([`tie`]). Corners, and walls no longer than they are wide,
+//! are none: they stay with the thick part that they belong to. [`around`] does all of it for a strategy.
+
+pub mod tie;
+
+use super::{Fill, FillSettings, Pass};
+use crate::pass::Along;
+use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
+use planar::{Join, Polygon, Region};
+use std::ops::Range;
+use tie::{TieSettings, tie};
+
+/// Which walls are thin; all in mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThinLimits {
+    /// Nominal bead width.
+    pub bead_width: f64,
+    /// The narrowest and the widest single bead.
+    pub single: (f64, f64),
+    /// From this thickness on there is room for two beads.
+    pub double: f64,
+}
+
+/// A wall for one bead.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThinWall {
+    /// Its middle, with half its thickness.
+    pub nodes: Vec<Node>,
+    /// How it ends.
+    pub ends: [End; 2],
+}
+
+/// How a thin wall ends.
+#[derive(Debug, Clone, PartialEq)]
+pub enum End {
+    /// Nowhere.
+    Free,
+    /// At other thin walls, or at its own other end: all that meet there have this number.
+    Junction(usize),
+    /// In a thick part, into which its middle goes on along these nodes.
+    Mouth(Vec<Node>),
+}
+
+/// An island taken apart.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Split {
+    /// What has room for two beads and more.
+    pub thick: Vec<Polygon>,
+    /// The walls for one bead.
+    pub thin: Vec<ThinWall>,
+    /// Where a disc for two beads fits.
+    pub open: Region,
+}
+
+/// A wall that hangs on a thick part by one end is as long as this at least, in bead widths.
+const SHORTEST: f64 = 2.0;
+/// A thin piece is no smaller than this, in squared bead widths.
+const SMALLEST: f64 = 0.15;
+/// A neck this near to the room of two beads gets them.
+const NEARLY_DOUBLE: f64 = 0.94;
+/// The middle of a wall is followed so far into the thick part, in bead widths.
+const TAIL: f64 = 1.5;
+/// The medial axis is sampled so often across a bead width.
+const SAMPLES: f64 = 10.0;
+
+/// From this thickness on, in bead widths, walls are left to strategies whose beads are all as wide.
+const DOUBLE: f64 = 1.4;
+
+/// Fills the thick parts of an island by `fill`, and ties a bead for each thin wall to the passes there.
+pub(super) fn around<'a>(
+    island: &Polygon,
+    settings: &FillSettings<'a>,
+    fill: impl Fn(&Polygon, &FillSettings<'a>) -> Fill,
+) -> Fill {
+    let (w, single) = (settings.bead.width, settings.wall.width_limits);
+    let limits = ThinLimits { bead_width: w, single: (single.0, single.1.min(DOUBLE * w)), double: DOUBLE * w };
+    let mut result = Fill::default();
+    for grown in island.offset(settings.machining_allowance, Join::ROUND).polygons() {
+        let split = split(grown, &limits);
+        if split.thin.is_empty() {
+            // Nothing was cut off.
+            return fill(island, settings);
+        }
+        let within = FillSettings { machining_allowance: 0.0, ..*settings };
+        let mut own = Fill::default();
+        for part in &split.thick {
+            own.add(fill(part, &within), settings.contour_order);
+        }
+        if own.stages.is_empty() {
+            own.stages.push(Vec::new());
+        }
+        let outermost = nearest_stage(&own.stages, &split.thin);
+        let ends = TieSettings { limits, end_gap: settings.wall.end_gap, shortest: settings.min_pass_length };
+        let stage = std::mem::take(&mut own.stages[outermost]);
+        own.stages[outermost] = tie(stage, &split.thin, &ends);
+        own.stages[outermost].iter_mut().for_each(|pass| step_widths(pass, settings.one_loop.width_step));
+        result.add(own, settings.contour_order);
+    }
+    result
+}
+
+/// Widths that stay until they are half a step off: few moves change the speed.
+fn step_widths(pass: &mut Pass, step: f64) {
+    let Along::Each(widths) = &mut pass.width else { return };
+    let mut held = f64::NEG_INFINITY;
+    for width in widths {
+        if (*width - held).abs() > step / 2.0 {
+            held = *width;
+        }
+        *width = held;
+    }
+}
+
+/// The stage with the pass that lies nearest to a mouth.
+fn nearest_stage(stages: &[Vec<Pass>], walls: &[ThinWall]) -> usize {
+    let mouths: Vec<_> = walls
+        .iter()
+        .flat_map(|wall| [(wall.nodes.first(), &wall.ends[0]), (wall.nodes.last(), &wall.ends[1])])
+        .filter(|(_, end)| matches!(end, End::Mouth(_)))
+        .filter_map(|(node, _)| node)
+        .collect();
+    let distance = |stage: &Vec<Pass>| {
+        let points = stage.iter().flat_map(|pass| &pass.points);
+        let squares = points.flat_map(|p| mouths.iter().map(move |node| node.at.distance_squared(*p)));
+        squares.fold(f64::INFINITY, f64::min)
+    };
+    let distances: Vec<f64> = stages.iter().map(distance).collect();
+    (0..stages.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0)
+}
+
+/// Takes an island apart.
+pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
+    let whole = Region::from(island.clone());
+    let open = opened(&whole, limits.double / 2.0);
+    let needs_two = |part: &&Polygon| !part.offset(-limits.single.1 / 2.0, Join::ROUND).is_empty();
+    let thick: Vec<Polygon> = open.polygons().iter().filter(needs_two).cloned().collect();
+    let rest = whole.difference(&Region::from_normalised(thick));
+    let smallest = SMALLEST * limits.bead_width * limits.bead_width;
+    let (mut thin, mut pieces) = (Vec::new(), Vec::new());
+    for piece in rest.polygons().iter().filter(|piece| piece.area() > smallest) {
+        let walls = walls(piece, &whole, limits, thin.len());
+        if !walls.is_empty() {
+            thin.extend(walls);
+            pieces.push(piece.clone());
+        }
+    }
+    if thin.is_empty() {
+        let thick = Some(island.clone()).filter(|island| needs_two(&island)).into_iter().collect();
+        return Split { thick, thin, open };
+    }
+    let rest = whole.difference(&Region::from_normalised(pieces));
+    Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
+}
+
+fn opened(region: &Region, radius: f64) -> Region {
+    region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).intersection(region)
+}
+
+/// The walls of a thin piece of `whole`; their junctions are numbered from `first` on.
+fn walls(piece: &Polygon, whole: &Region, limits: &ThinLimits, first: usize) -> Vec<ThinWall> {
+    // Beyond its mouths the piece is drawn out, so that the axis runs straight through them.
+    let around = whole.intersection(&piece.offset(2.0 * limits.double, Join::ROUND));
+    let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
+    let axis = MedialAxis::of_region(&around, &options).pruned(CORNER);
+    let mut walls: Vec<ThinWall> =
+        axis.branches.iter().flat_map(|branch| walls_along(branch, piece, limits, first)).collect();
+    drop_stubs(&mut walls, limits);
+    let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= NEARLY_DOUBLE * limits.double);
+    let hangs = |wall: &ThinWall| wall.ends.iter().any(|end| matches!(end, End::Mouth(_)));
+    if walls.iter().all(|wall| neck(wall) && hangs(wall)) { Vec::new() } else { walls }
+}
+
+/// The stretches of a branch within the thin piece and wide enough for a bead.
+fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits, first: usize) -> Vec<ThinWall> {
+    let nodes = &branch.nodes;
+    let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
+    let wide = |node: &Node| 2.0 * node.radius >= limits.single.0;
+    let fits: Vec<bool> = nodes.iter().zip(&inside).map(|(node, inside)| *inside && wide(node)).collect();
+    stretches(&fits)
+        .into_iter()
+        .filter(|stretch| stretch.len() >= 2)
+        .map(|stretch| {
+            let end = |beyond: Option<usize>, junction: usize, outwards: bool| match beyond {
+                None => End::Junction(first + junction),
+                Some(k) if inside[k] => End::Free,
+                Some(k) => End::Mouth(tail(nodes, k, outwards, TAIL * limits.bead_width)),
+            };
+            let before = end(stretch.start.checked_sub(1), branch.from, false);
+            let behind = end(Some(stretch.end).filter(|k| *k < nodes.len()), branch.to, true);
+            ThinWall { nodes: nodes[stretch].to_vec(), ends: [before, behind] }
+        })
+        .collect()
+}
+
+fn stretches(fits: &[bool]) -> Vec<Range<usize>> {
+    let mut stretches = Vec::new();
+    let mut start = None;
+    for (i, fits) in fits.iter().copied().chain([false]).enumerate() {
+        match (fits, start) {
+            (true, None) => start = Some(i),
+            (false, Some(from)) => {
+                stretches.push(from..i);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    stretches
+}
+
+/// The nodes from the one of that number on, for so many mm.
+fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
+    let on: Vec<Node> = if outwards { nodes[from..].to_vec() } else { nodes[..=from].iter().rev().copied().collect() };
+    let mut along = 0.0;
+    let within = on.windows(2).take_while(|w| {
+        along += w[0].at.distance(w[1].at);
+        along <= reach
+    });
+    let count = within.count() + 1;
+    on[..count].to_vec()
+}
+
+/// Walls that end freely and are hardly longer than wide are corners; junctions where they ended may be none any more.
+fn drop_stubs(walls: &mut Vec<ThinWall>, limits: &ThinLimits) {
+    loop {
+        let mut degrees = std::collections::BTreeMap::new();
+        for end in walls.iter().flat_map(|wall| &wall.ends) {
+            if let End::Junction(number) = end {
+                *degrees.entry(*number).or_insert(0) += 1;
+            }
+        }
+        for end in walls.iter_mut().flat_map(|wall| &mut wall.ends) {
+            if matches!(end, End::Junction(number) if degrees.get(number) == Some(&1)) {
+                *end = End::Free;
+            }
+        }
+        let before = walls.len();
+        walls.retain(|wall| {
+            let free = wall.ends.iter().filter(|end| **end == End::Free).count();
+            free != 1 || wall.length() >= SHORTEST * limits.bead_width
+        });
+        if walls.len() == before {
+            return;
+        }
+    }
+}
+
+impl ThinWall {
+    /// Length, mm.
+    pub fn length(&self) -> f64 {
+        self.nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
+    }
+}

@@ -1,0 +1,59 @@
+//! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
+
+use crate::model::{Mesh, Part};
+use crate::profile::Profile;
+use crate::slice::{Slab, Slicer};
+use crate::task::{Cancelled, Task};
+use planar::{Join, Region};
+
+/// The profile that a part is planned with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// With the chosen strategy.
+    pub profile: Profile,
+    /// Why it is another than the profile's, as a sentence.
+    pub note: Option<String>,
+}
+
+/// A part is looked at in so many heights.
+const HEIGHTS: usize = 15;
+/// Up to this part of the area there may be room for two beads: where thin walls meet they are thicker.
+const JUNCTIONS: f64 = 0.05;
+
+/// Chooses. Curves are always welded by the strategy for walls; a part is where the profile says `loop` and all of the
+/// part is thin wall, unless the strategy is to be `kept`.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result<Choice, Cancelled> {
+    let mut profile = profile.clone();
+    let mut note = None;
+    match part {
+        Part::Curves { .. } => "wall".clone_into(&mut profile.fill.strategy),
+        Part::Mesh(import) if !kept && profile.fill.strategy == "loop" && all_thin(&import.mesh, &profile, task)? => {
+            "wall".clone_into(&mut profile.fill.strategy);
+            note = Some(
+                "Strategy wall instead of loop: the part is all walls for one bead. --strategy loop keeps the other."
+                    .to_owned(),
+            );
+        }
+        Part::Mesh(_) => {}
+    }
+    Ok(Choice { profile, note })
+}
+
+/// Whether a part has room for one bead everywhere and for two hardly anywhere.
+fn all_thin(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<bool, Cancelled> {
+    let (low, high) = mesh.bounds();
+    let height = (high.z - low.z) / HEIGHTS as f64;
+    let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let radius = profile.fill_settings(0).double() / 2.0;
+    let (mut all, mut thick) = (0.0, 0.0);
+    for slice in slicer.all(task)? {
+        let region = Region::from_normalised(slice.islands);
+        all += region.area();
+        thick += region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).area();
+    }
+    Ok(all > 0.0 && thick <= JUNCTIONS * all)
+}
