@@ -10,6 +10,7 @@ use beadwright::bead::Section;
 use beadwright::fill::{self, FillSettings, Pass};
 use beadwright::planar::{DVec2, FillRule, Lattice, Region, Ring};
 use beadwright::profile::Profile;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -42,7 +43,7 @@ fn main() {
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "txt"));
     files.sort();
-    let mut rows: Vec<Row> = files.iter().map(|file| row(file, rounds)).collect();
+    let mut rows: Vec<Row> = files.par_iter().map(|file| row(file, rounds)).collect();
     rows.sort_by(|a, b| b.unfilled.total_cmp(&a.unfilled));
     println!("{} outlines, {rounds} rounds of relaxation; the ten that are filled worst:", rows.len());
     for row in rows.iter().take(10) {
@@ -87,6 +88,8 @@ fn row(file: &Path, rounds: u32) -> Row {
     profile.bead.width = WIDTH;
     profile.bead.section = Section::Stadium;
     let mut settings: FillSettings = profile.fill_settings(0);
+    // A printer changes its flow at once and in the finest steps.
+    (settings.one_loop.smoothing_length, settings.one_loop.width_step) = (0.0, 0.01 * WIDTH);
     // Flat beads side by side, thin enough that their round sides do not count.
     (settings.stepover, settings.bead.height, settings.min_pass_length) = (WIDTH, 1e-3, 0.0);
     (settings.one_loop.width_limits, settings.wall.width_limits, settings.one_loop.rounds) = (limits, limits, rounds);

@@ -1,6 +1,6 @@
 //! What is drawn, by numbers; skipped where there is nothing to draw with.
 
-use super::window::{click, click_at, example, has_adapter};
+use super::window::{click, click_at, example, has_adapter, wait};
 use beadwright_studio::view2d::heat;
 use eframe::egui::{Key, Rect};
 use egui_kittest::kittest::Queryable;
@@ -19,6 +19,9 @@ fn the_heights_of_a_layer_have_the_colours_of_the_report() {
     }
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
+    // A strategy that leaves voids.
+    harness.state_mut().set_value("fill.strategy", "compound");
+    wait(&mut harness);
     harness.key_press(Key::F3);
     harness.run_steps(3);
     for hidden in ["Path", "Travels", "Starts and ends"] {

@@ -44,6 +44,11 @@ impl Law {
 
     /// Width, mm, of the bead with that area, mm²: the inverse of [`Self::bead`].
     pub fn width_of_area(&self, nominal: &Bead, area: f64) -> f64 {
+        match self {
+            Self::ConstantHeight => return nominal.section.width_of(nominal.height, area),
+            Self::ConstantRatio => return nominal.width * (area / nominal.area()).sqrt(),
+            Self::Library(_) => {}
+        }
         // Areas grow with the width.
         let (mut low, mut high) = (0.0, nominal.width);
         while self.bead(nominal, high).area() < area && high < 1e3 * nominal.width {

@@ -9,8 +9,8 @@ use super::room::Room;
 use glam::DVec2;
 use planar::arcs::{Arc, Fit};
 
-/// The line may leave the relaxed one by this, in bead widths.
-const TOLERANCE: f64 = 0.02;
+/// The line may leave the relaxed one by this part of a step of the width.
+const TOLERANCE: f64 = 0.2;
 /// Arcs are drawn by chords that leave them by this, in bead widths.
 const CHORD: f64 = 0.0005;
 /// Middle points of arcs are multiples of this, in bead widths.
@@ -21,7 +21,7 @@ const OUT: f64 = 0.005;
 /// The line of few pieces.
 pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
     let w = settings.bead_width;
-    let fit = Fit { tolerance: TOLERANCE * w, arcs: true, grid: GRID * w };
+    let fit = Fit { tolerance: TOLERANCE * settings.width_step, arcs: true, grid: GRID * w };
     let (points, widths, thin) = opened(line, line.smooth_widths(settings.smoothing_length));
     let count = points.len().saturating_sub(1);
     let mut result = Line { closed: line.closed, ..Line::default() };

@@ -216,9 +216,14 @@ impl Steps {
     pub fn of(island: &Polygon, settings: &LoopSettings) -> Self {
         let split = split(island, &settings.thin_limits());
         let (mut rings, mut flips, mut paths) = (Vec::new(), Vec::new(), Vec::new());
+        let room = Room::of(island, settings);
         for part in &split.thick {
-            let own = rings_of(part, settings);
-            match spiral::spiral(&own, settings).filter(|_| settings.spirals) {
+            // Mostly all of an island is thick.
+            let own =
+                if part == island { rings_of(&room, settings) } else { rings_of(&Room::of(part, settings), settings) };
+            // A wall that hangs on an open path would cost an arc start.
+            let open = settings.spirals && split.thin.is_empty();
+            match Some(&own).filter(|_| open).and_then(|own| spiral::spiral(own, settings)) {
                 Some(path) => paths.push(path_pass(path, false)),
                 None => {
                     let joined = flips::join(&own, settings);
@@ -228,7 +233,6 @@ impl Steps {
             }
             rings.extend(own);
         }
-        let room = Room::of(island, settings);
         let step = settings.stepover / POINTS_PER_STEPOVER;
         let mut joined: Vec<Line> = tied(paths, &split, settings).iter().map(|line| line.resampled(step)).collect();
         cells::set_widths(&mut joined, &room, settings);
@@ -238,11 +242,10 @@ impl Steps {
     }
 }
 
-fn rings_of(part: &Polygon, settings: &LoopSettings) -> Vec<rings::Ring> {
-    let room = Room::of(part, settings);
-    let counts = counts::counts(&room, settings);
-    let phase = phase::phase(&room, &counts, settings);
-    rings::rings(&room, &phase, settings)
+fn rings_of(room: &Room, settings: &LoopSettings) -> Vec<rings::Ring> {
+    let counts = counts::counts(room, settings);
+    let phase = phase::phase(room, &counts, settings);
+    rings::rings(room, &phase, settings)
 }
 
 fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> Vec<Line> {

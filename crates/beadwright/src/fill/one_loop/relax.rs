@@ -53,7 +53,7 @@ pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &Loop
     best
 }
 
-/// Moves the points of a line down the slope.
+/// Moves the points of a line down the slope; those in walls of their own stay in the middle.
 fn shift(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings, stride: f64) {
     let w = settings.bead_width;
     let step = |i: usize| {
@@ -64,8 +64,13 @@ fn shift(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings,
     };
     let steps: Vec<DVec2> = (0..line.points.len()).map(step).collect();
     let steps = line.smoothed(&line.smoothed(&steps));
+    let held: Vec<(usize, DVec2)> = (0..line.points.len())
+        .filter(|&i| line.thin[i] && line.thin[line.before(i)])
+        .map(|i| (i, line.points[i]))
+        .collect();
     line.points.iter_mut().zip(steps).for_each(|(point, step)| *point += step);
     line.tighten(TENSION);
+    held.into_iter().for_each(|(i, point)| line.points[i] = point);
     line.keep_inside(room, settings);
 }
 

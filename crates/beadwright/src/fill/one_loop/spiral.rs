@@ -18,31 +18,31 @@ const FARTHEST: f64 = 1.3;
 const END: f64 = 0.45;
 /// Places for the ramps are tried so many stepovers apart.
 const TRIES: f64 = 1.0;
+/// More than so many places are not looked at.
+const MOST_TRIES: usize = 64;
 
 /// The open path through nested rings, from the outermost to the innermost; none where they are not nested, or two only.
 pub fn spiral(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<DVec2>> {
     let chain = chain(rings, settings)?;
     let d = settings.stepover;
-    let tries = (perimeter(&chain[0]) / (TRIES * d)).ceil() as usize;
-    let starts = (0..tries.max(1)).map(|k| k * chain[0].len() / tries.max(1));
+    let tries = ((perimeter(&chain[0]) / (TRIES * d)).ceil() as usize).clamp(1, MOST_TRIES);
+    let starts = (0..tries).map(|k| k * chain[0].len() / tries);
     let best = starts.map(|start| Aligned::of(&chain, start, d)).min_by(|a, b| a.score.total_cmp(&b.score))?;
     Some(best.path())
 }
 
 /// The rings from outside in, if each lies in the one before and nowhere far from it.
 fn chain(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<Vec<DVec2>>> {
-    if rings.len() < 3 {
+    let mut sorted: Vec<&Ring> = rings.iter().collect();
+    sorted.sort_by_key(|ring| ring.level);
+    if rings.len() < 3 || sorted.windows(2).any(|pair| pair[0].level == pair[1].level) {
         return None;
     }
-    let mut sorted: Vec<&Ring> = rings.iter().collect();
-    let area = |ring: &Ring| planar::Ring::new(ring.points.clone()).area().abs();
-    sorted.sort_by(|a, b| area(b).total_cmp(&area(a)));
     let nested = sorted.windows(2).all(|pair| {
         let outer = planar::Ring::new(pair[0].points.clone());
         let inner = &pair[1].points;
-        let far = inner.iter().map(|p| distance_to(&pair[0].points, *p)).sum::<f64>() / inner.len() as f64;
-        let back = pair[0].points.iter().map(|p| distance_to(inner, *p)).sum::<f64>() / pair[0].points.len() as f64;
-        inner.first().is_some_and(|p| outer.contains(*p)) && far.max(back) < FARTHEST * settings.stepover
+        let apart = || mean_distance(inner, &pair[0].points).max(mean_distance(&pair[0].points, inner));
+        inner.first().is_some_and(|p| outer.contains(*p)) && apart() < FARTHEST * settings.stepover
     });
     // All run the same way.
     let turned = |ring: &Ring| {
@@ -55,8 +55,11 @@ fn chain(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<Vec<DVec2>>> {
     nested.then(|| sorted.into_iter().map(turned).collect())
 }
 
-fn distance_to(points: &[DVec2], p: DVec2) -> f64 {
-    points.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min).sqrt()
+/// How far some of the points lie from the others, on the mean.
+fn mean_distance(points: &[DVec2], others: &[DVec2]) -> f64 {
+    let some = points.iter().step_by(points.len().div_ceil(MOST_TRIES));
+    let distance = |p: &DVec2| others.iter().map(|q| q.distance_squared(*p)).fold(f64::INFINITY, f64::min).sqrt();
+    some.clone().map(distance).sum::<f64>() / some.count() as f64
 }
 
 /// The rings turned so that they begin beside each other.

@@ -57,7 +57,7 @@ pub struct Split {
 }
 
 /// A wall that hangs on a thick part by one end is as long as this at least, in bead widths.
-const SHORTEST: f64 = 2.0;
+const SHORTEST: f64 = 1.5;
 /// A thin piece is no smaller than this, in squared bead widths.
 const SMALLEST: f64 = 0.15;
 /// A neck this near to the room of two beads gets them.
