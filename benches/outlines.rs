@@ -52,7 +52,8 @@ fn main() {
             "  {unfilled:6.3} % unfilled {overlap:6.2} % twice {paths:4} paths {islands:3} islands {seconds:6.3} s  {name}"
         );
     }
-    let figures: [(&str, fn(&Row) -> f64); 6] = [
+    type Figure = (&'static str, fn(&Row) -> f64);
+    let figures: [Figure; 6] = [
         ("unfilled %", |row| row.unfilled),
         ("twice %", |row| row.overlap),
         ("outside %", |row| row.outside),

@@ -76,8 +76,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let lead = format!("Profile {}, beads of {} mm. {}", profile.name, profile.bead.width, compare::SCORE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
-    if let (Some(layer), true) = (middle, names.iter().any(|name| name == "hybrid")) {
-        compare::add_steps(&mut page, &import.mesh, &profile, layer.index, &task)?;
+    for (name, layer) in names.iter().flat_map(|name| middle.map(|layer| (name, layer))) {
+        compare::add_steps(&mut page, &import.mesh, &profile, name, layer.index, &task)?;
     }
     write_file(&arguments.output, page.html().as_bytes())?;
     let mut out = std::io::stdout().lock();

@@ -307,17 +307,30 @@ pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
     page
 }
 
-/// Adds the steps of the hybrid on one layer, by index from 0, to a page.
+/// Adds the steps of a strategy (`loop` or `hybrid`; others have none) on one layer, by index from 0, to a page.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn add_steps(page: &mut Sheet, mesh: &Mesh, profile: &Profile, layer: usize, task: &Task) -> Result<(), Cancelled> {
+pub fn add_steps(
+    page: &mut Sheet,
+    mesh: &Mesh,
+    profile: &Profile,
+    strategy: &str,
+    layer: usize,
+    task: &Task,
+) -> Result<(), Cancelled> {
     let slicer = Slicer::new(mesh, profile.slice_options(), task)?;
     let layer = layer.min(slicer.layer_count() - 1);
     let slices = slicer.batch(layer / BATCH, task)?;
     let Some(slice) = slices.get(layer % BATCH) else { return Ok(()) };
-    page.heading(&format!("The steps of the hybrid on layer {}", layer + 1));
-    for sketch in steps::sketches(&slice.islands, &profile.fill_settings(layer)) {
+    let settings = profile.fill_settings(layer);
+    let sketches = match strategy {
+        "loop" => steps::loop_sketches(&slice.islands, &settings),
+        "hybrid" => steps::sketches(&slice.islands, &settings),
+        _ => return Ok(()),
+    };
+    page.heading(&format!("The steps of the {strategy} on layer {}", layer + 1));
+    for sketch in &sketches {
         page.svg(&sketch.svg());
     }
     Ok(())

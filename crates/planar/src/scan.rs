@@ -99,9 +99,55 @@ impl Spacing {
     }
 }
 
+/// Edges parallel to the lines and so many distances long have a line along them.
+const LONG: f64 = 1.5;
+/// But none nearer to another than this, in distances.
+const NEAREST: f64 = 0.6;
+/// Lines may be this much farther apart than asked for where one more would lie much too near, in distances.
+const FARTHER: f64 = 0.25;
+
+/// Lines along all long edges that run along x, and evenly between, about `distance` apart; none where there are no such
+/// edges but the lowest and the highest.
+fn fitted(rings: &[Ring], low: f64, high: f64, distance: f64) -> Option<Vec<f64>> {
+    let edges = rings.iter().flat_map(Ring::edges);
+    let long = edges.filter(|(a, b)| (b.y - a.y).abs() < NUDGE_MM && (b.x - a.x).abs() > LONG * distance);
+    // The inside lies to the left of an edge: a line just inside it.
+    let mut ledges: Vec<f64> = long.map(|(a, b)| a.y + NUDGE_MM * (b.x - a.x).signum()).collect();
+    ledges.sort_unstable_by(f64::total_cmp);
+    let mut held = vec![low + NUDGE_MM];
+    for ledge in ledges {
+        let near = |other: f64| (ledge - other).abs() < NEAREST * distance;
+        if !held.last().copied().is_some_and(near) && !near(high) {
+            held.push(ledge);
+        }
+    }
+    if held.len() == 1 {
+        return None;
+    }
+    held.push(high - NUDGE_MM);
+    let mut lines = vec![held[0]];
+    for pair in held.windows(2) {
+        let gaps = ((pair[1] - pair[0]) / distance - FARTHER).ceil().max(1.0);
+        lines.extend((1..=gaps as usize).map(|k| pair[0] + (pair[1] - pair[0]) * k as f64 / gaps));
+    }
+    Some(lines)
+}
+
 impl Scan {
     /// Lays scan lines at `angle` (radians from x) through `region`.
     pub fn new(region: &Region, angle: f64, spacing: Spacing) -> Self {
+        Self::with_lines(region, angle, |_, low, high| spacing.lines(low, high))
+    }
+
+    /// Lays scan lines at `angle` (radians from x) through `region`, about `distance` (mm) apart, so that one runs along every
+    /// long edge that is parallel to them: no strip of less than a distance is left beside it.
+    pub fn fitted(region: &Region, angle: f64, distance: f64) -> Self {
+        Self::with_lines(region, angle, |rings, low, high| {
+            fitted(rings, low, high, distance).unwrap_or_else(|| Spacing::AtMost(distance).lines(low, high))
+        })
+    }
+
+    fn with_lines(region: &Region, angle: f64, lines: impl Fn(&[Ring], f64, f64) -> Vec<f64>) -> Self {
         let axis = snapped_axis(angle);
         // Turning back by the conjugate: x' = p·axis, y' = axis × p.
         let turn =
@@ -109,7 +155,7 @@ impl Scan {
         let rings: Vec<Ring> = region.rings().map(turn).collect();
         let ys = rings.iter().flat_map(|r| r.points()).map(|p| p.y);
         let (low, high) = ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), y| (lo.min(y), hi.max(y)));
-        let lines = if low < high { spacing.lines(low, high) } else { Vec::new() };
+        let lines = if low < high { lines(&rings, low, high) } else { Vec::new() };
 
         let mut scan = Self { rings, ring_starts: vec![0], crossings: Vec::new(), spans: Vec::new(), axis };
         scan.find_crossings(&lines);

@@ -1,4 +1,5 @@
 //! Scan lines: spans in closed form, area by summation, chains that never leave the boundary.
+#![allow(clippy::unwrap_used)]
 
 mod shapes;
 
@@ -226,4 +227,28 @@ fn a_chain_names_the_vertices_it_turns_at() {
 #[test]
 fn an_empty_region_has_no_spans() {
     assert!(Scan::new(&Region::EMPTY, 0.3, Spacing::AtMost(1.0)).spans().is_empty());
+}
+
+/// A block with a step: lines run along the step, whatever its height, and along the outer edges.
+#[test]
+fn fitted_lines_run_along_long_edges() {
+    let spacing = 3.0;
+    for step in [7.3, 11.0, 16.45] {
+        for angle in [0.0, 0.7, FRAC_PI_2] {
+            let corners = [(0.0, 0.0), (60.0, 0.0), (60.0, step), (30.0, step), (30.0, 25.0), (0.0, 25.0)];
+            let way = DVec2::from_angle(angle);
+            let points = corners.map(|p| way.rotate(DVec2::from(p))).to_vec();
+            let region = Region::from_rings(&[planar::Ring::new(points)], planar::FillRule::NonZero);
+            let scan = Scan::fitted(&region, angle, spacing);
+            let lines: Vec<f64> = (0..scan.spans().len()).map(|i| scan.end(i, End::Left).y).collect();
+            for edge in [0.0, step, 25.0] {
+                assert!(lines.iter().any(|y| (y - edge).abs() < 1e-2), "step {step}, angle {angle}: no line at {edge}");
+            }
+            let gaps: Vec<f64> = lines.windows(2).map(|w| w[1] - w[0]).collect();
+            assert!(gaps.iter().all(|gap| (0.5 * spacing..=1.25 * spacing + 1e-2).contains(gap)), "{gaps:?}");
+            // The step's own line is as long as the whole block.
+            let on_step = (0..lines.len()).find(|&i| (lines[i] - step).abs() < 1e-2).unwrap();
+            assert!((scan.length(on_step) - 60.0).abs() < 0.1);
+        }
+    }
 }

@@ -1,8 +1,9 @@
-//! The steps of the hybrid on one layer as pictures (figure 4 of Zhao et al. 2023).
+//! The steps of strategies on one layer as pictures: of the hybrid (figure 4 of Zhao et al. 2023) and of the loop.
 
 use super::sketch::Sketch;
 use crate::fill::FillSettings;
 use crate::fill::hybrid::Steps;
+use crate::fill::one_loop::{self, line::Line};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Region};
 
@@ -10,6 +11,7 @@ const CONTOUR: &str = "#1f6fd6";
 const CUT: &str = "#e8862a";
 const KEPT: &str = "#7e57c2";
 const DROPPED: &str = "#c4c9d1";
+const BEAD: &str = "#b9d2f3";
 const SLICE: &str = "#eef0f3";
 
 /// Contours with their pockets (those that are kept in violet), skeleton regions, the contours left (those cut in
@@ -52,4 +54,47 @@ fn draw(steps: &Steps, sketches: &mut [Sketch; 4], thin: f64) {
             passes.line(&pass.points, pass.closed, colour, thin);
         }
     }
+}
+
+/// Rings and walls for one bead, rings joined (with the places of their flips), the relaxed lines, and what is laid, as wide
+/// as it is.
+pub fn loop_sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+    let slice = Region::from_normalised(islands.to_vec());
+    let bounds = slice.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
+    let titles = ["1. Rings, and walls for one bead", "2. Rings joined by flips", "3. Relaxed", "4. Passes"];
+    let mut sketches = titles.map(|title| Sketch::new(bounds, title));
+    for sketch in &mut sketches {
+        sketch.region(&slice, SLICE);
+    }
+    let thin = 0.004 * bounds.size().max_element();
+    for (steps, middle) in islands.iter().flat_map(|island| one_loop::steps(island, settings)) {
+        draw_loop(&steps, middle, &mut sketches, thin);
+    }
+    sketches
+}
+
+fn draw_loop(steps: &one_loop::Steps, middle: DVec2, sketches: &mut [Sketch; 4], thin: f64) {
+    let placed = |points: &[DVec2]| points.iter().map(|p| *p + middle).collect::<Vec<_>>();
+    let [rings, joined, relaxed, laid] = sketches;
+    for ring in &steps.rings {
+        rings.line(&placed(&ring.points), true, CONTOUR, thin);
+    }
+    for wall in &steps.split.thin {
+        let points: Vec<DVec2> = wall.nodes.iter().map(|node| node.at).collect();
+        rings.line(&placed(&points), false, KEPT, thin);
+    }
+    let all = |sketch: &mut Sketch, lines: &[Line]| {
+        for line in lines {
+            sketch.line(&placed(&line.points), line.closed, CONTOUR, thin);
+        }
+    };
+    all(joined, &steps.joined);
+    for flip in &steps.flips {
+        joined.line(&placed(&[*flip - DVec2::X * thin, *flip + DVec2::X * thin]), false, CUT, 4.0 * thin);
+    }
+    all(relaxed, &steps.relaxed);
+    for (a, b, width) in steps.lines.iter().flat_map(Line::pieces) {
+        laid.line(&placed(&[a, b]), false, BEAD, width);
+    }
+    all(laid, &steps.lines);
 }

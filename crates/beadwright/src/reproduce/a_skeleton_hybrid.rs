@@ -34,7 +34,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          1.2 mm at 6 m/min.",
     );
     page.heading("The steps on layer 5");
-    compare::add_steps(&mut page, &mesh, &profile, LAYER, task).map_err(|e| wrong(&e))?;
+    compare::add_steps(&mut page, &mesh, &profile, "hybrid", LAYER, task).map_err(|e| wrong(&e))?;
     let entries = entries(&mesh, &profile, task)?;
     page.heading("What the deposit model says of layer 5");
     compare::tabulate(&mut page, &entries);

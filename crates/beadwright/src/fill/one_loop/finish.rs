@@ -12,7 +12,7 @@ use planar::arcs::{Arc, Fit};
 /// The line may leave the relaxed one by this part of a step of the width.
 const TOLERANCE: f64 = 0.2;
 /// Arcs are drawn by chords that leave them by this, in bead widths.
-const CHORD: f64 = 0.0005;
+const CHORD: f64 = 0.002;
 /// Middle points of arcs are multiples of this, in bead widths.
 const GRID: f64 = 1e-6;
 /// A bead may reach so many bead widths out of the outline: lower there than what the deposit model calls outside.
@@ -22,7 +22,7 @@ const OUT: f64 = 0.005;
 pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
     let w = settings.bead_width;
     let fit = Fit { tolerance: TOLERANCE * settings.width_step, arcs: true, grid: GRID * w };
-    let (points, widths, thin) = opened(line, line.smooth_widths(settings.smoothing_length));
+    let (points, widths, thin) = opened(line, line.smooth_widths(settings.smoothing_length), settings);
     let count = points.len().saturating_sub(1);
     let mut result = Line { closed: line.closed, ..Line::default() };
     let (mut start, mut width) = (0, 0.0);
@@ -55,12 +55,22 @@ pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
     result
 }
 
-/// The points with the first one of a closed line again at its end; it begins where it is straightest.
-fn opened(line: &Line, mut widths: Vec<f64>) -> (Vec<DVec2>, Vec<f64>, Vec<bool>) {
+/// What remains of 1 after the golden section: multiples of it spread evenly over a loop.
+const GOLDEN: f64 = 0.381_966_011_250_105;
+/// The seam lies where the line is straightest within so many bead widths of its place.
+const SEAM: f64 = 3.0;
+
+/// The points with the first one of a closed line again at its end. It begins far from where the layers below begin.
+fn opened(line: &Line, mut widths: Vec<f64>, settings: &LoopSettings) -> (Vec<DVec2>, Vec<f64>, Vec<bool>) {
     let (mut points, mut thin) = (line.points.clone(), line.thin.clone());
     if line.closed && !points.is_empty() {
+        let n = points.len();
+        let rear = (0..n).max_by(|&a, &b| points[a].y.total_cmp(&points[b].y)).unwrap_or(0);
+        let place = rear + ((GOLDEN * settings.layer as f64).fract() * n as f64) as usize;
+        let reach = (SEAM * settings.bead_width * n as f64 / line.length()) as usize;
         let straight = |i: usize| (points[i] - points[line.before(i)]).dot(points[line.behind(i)] - points[i]);
-        let first = (0..points.len()).max_by(|&a, &b| straight(a).total_cmp(&straight(b)).then(b.cmp(&a))).unwrap_or(0);
+        let around = (0..=(2 * reach).min(n)).map(|k| (place + n + k - reach.min(n)) % n);
+        let first = around.max_by(|&a, &b| straight(a).total_cmp(&straight(b)).then(b.cmp(&a))).unwrap_or(0);
         points.rotate_left(first);
         widths.rotate_left(first);
         thin.rotate_left(first);

@@ -79,10 +79,10 @@ impl Moves {
         let shifts = line.smoothed(&self.shifts);
         line.points.iter_mut().zip(shifts).for_each(|(point, shift)| *point += shift);
         line.tighten(TENSION);
-        for i in 0..line.count() {
+        for (i, first) in first.iter().enumerate().take(line.count()) {
             let (low, high) = settings.limits(line.thin[i]);
             let grow = (self.grows[i] + self.grows[line.behind(i)]) / 2.0;
-            let width = line.widths[i] + (first[i] - line.widths[i]) * RETURN;
+            let width = line.widths[i] + (first - line.widths[i]) * RETURN;
             line.widths[i] = (width + grow).clamp(low, high);
         }
         line.keep_inside(room, settings);

@@ -149,11 +149,8 @@ impl Line {
             .map(|i| self.half_width(i) + MARGIN * w - room.at(self.points[i]))
             .map(|excess| if excess < -SNAP * w { 0.0 } else { excess.min(MOST * w) })
             .collect();
-        for i in 0..self.points.len() {
-            if excess[i] != 0.0 {
-                let inwards = room.inwards(self.points[i]);
-                self.points[i] += inwards * excess[i] / 2.0;
-            }
+        for (point, excess) in self.points.iter_mut().zip(&excess).filter(|(_, excess)| **excess != 0.0) {
+            *point += room.inwards(*point) * *excess / 2.0;
         }
         for i in 0..self.count() {
             let (low, high) = settings.limits(self.thin[i]);

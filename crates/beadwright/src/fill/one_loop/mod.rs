@@ -108,15 +108,24 @@ impl Strategy for OneLoop {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let parts = island.offset(settings.machining_allowance, Join::ROUND);
-        let passes = parts.polygons().iter().flat_map(|part| {
-            let (part, middle) = about_origin(part);
-            let settings = LoopSettings::of(settings, middle);
-            let lines = Steps::of(&part, &settings).lines;
-            lines.into_iter().map(|line| pass(line, middle)).collect::<Vec<_>>()
-        });
-        Fill { stages: vec![passes.collect()], fixed_order: false }
+        let placed = steps(island, settings).into_iter();
+        let passes = placed.flat_map(|(steps, middle)| steps.lines.into_iter().map(move |line| pass(line, middle)));
+        let passes: Vec<Pass> = passes.collect();
+        // A single loop begins where its seam was put; others in whatever way is short.
+        let alone = matches!(&passes[..], [pass] if pass.closed);
+        Fill { stages: vec![passes], fixed_order: alone }
     }
+}
+
+/// The steps of an island, about the middle of its box, and where that lies. A machining allowance may join an island to
+/// itself or, where it is negative, take it apart: then there are several.
+pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
+    let parts = island.offset(settings.machining_allowance, Join::ROUND);
+    let placed = parts.polygons().iter().map(|part| {
+        let (part, middle) = about_origin(part);
+        (Steps::of(&part, &LoopSettings::of(settings, middle)), middle)
+    });
+    placed.collect()
 }
 
 /// The polygon with the middle of its box in the origin, and where that was.

@@ -60,6 +60,8 @@ pub struct Split {
 const SHORTEST: f64 = 1.5;
 /// A thin piece is no smaller than this, in squared bead widths.
 const SMALLEST: f64 = 0.15;
+/// A disc of this part of the narrowest bead fits into a thin piece.
+const ROOMY: f64 = 0.8;
 /// A neck this near to the room of two beads gets them.
 const NEARLY_DOUBLE: f64 = 0.94;
 /// The middle of a wall is followed so far into the thick part, in bead widths.
@@ -141,7 +143,9 @@ pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
     let (mut thin, mut pieces) = (Vec::new(), Vec::new());
-    for piece in rest.polygons().iter().filter(|piece| piece.area() > smallest) {
+    // Most pieces are corners, in which no bead could lie.
+    let roomy = |piece: &Polygon| !piece.offset(-ROOMY * limits.single.0 / 2.0, Join::ROUND).is_empty();
+    for piece in rest.polygons().iter().filter(|piece| piece.area() > smallest && roomy(piece)) {
         let walls = walls(piece, &whole, limits, thin.len());
         if !walls.is_empty() {
             thin.extend(walls);

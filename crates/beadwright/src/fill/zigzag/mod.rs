@@ -34,14 +34,21 @@ impl Strategy for Zigzag {
 
 /// Zigzag paths that fill a region.
 pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
-    zigzag_spaced(region, settings, settings.spacing())
+    match settings.spacing() {
+        Spacing::AtMost(stepover) => woven(&Scan::fitted(region, settings.raster_angle, stepover), stepover, settings),
+        exact @ Spacing::Exact(_) => zigzag_spaced(region, settings, exact),
+    }
 }
 
 /// Zigzag paths through a region, their lines that far apart.
 pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: Spacing) -> Vec<Pass> {
     let scan = Scan::new(region, settings.raster_angle, spacing);
     let (Spacing::AtMost(distance) | Spacing::Exact(distance)) = spacing;
-    let weave = Weave::new(&scan, distance);
+    woven(&scan, distance, settings)
+}
+
+fn woven(scan: &Scan, distance: f64, settings: &FillSettings) -> Vec<Pass> {
+    let weave = Weave::new(scan, distance);
     let passes = weave.paths(&weave.merged()).into_iter();
     passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead.width)).collect()
 }
