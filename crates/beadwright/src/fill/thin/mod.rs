@@ -10,7 +10,7 @@ pub mod tie;
 use super::{Fill, FillSettings, Pass};
 use crate::pass::Along;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
-use planar::{Join, Polygon, Region};
+use planar::{Bounds, Join, Polygon, Region};
 use std::ops::Range;
 use tie::{TieSettings, tie};
 
@@ -52,7 +52,7 @@ pub struct Split {
     pub thick: Vec<Polygon>,
     /// The walls for one bead.
     pub thin: Vec<ThinWall>,
-    /// Where a disc for two beads fits.
+    /// Where a disc for two beads fits, and a little more.
     pub open: Region,
 }
 
@@ -60,6 +60,11 @@ pub struct Split {
 const SHORTEST: f64 = 1.5;
 /// A thin piece is no smaller than this, in squared bead widths.
 const SMALLEST: f64 = 0.15;
+/// What is open is taken so many bead widths larger: its edges then lie apart from those of the island, and what is cut from
+/// the island has no slivers.
+const GROWN: f64 = 0.02;
+/// Round corners of what is cut out are this exact, in bead widths.
+const ACCURACY: f64 = 0.005;
 /// A disc of this part of the narrowest bead fits into a thin piece.
 const ROOMY: f64 = 0.8;
 /// A neck this near to the room of two beads gets them.
@@ -137,19 +142,23 @@ fn nearest_stage(stages: &[Vec<Pass>], walls: &[ThinWall]) -> usize {
 /// Takes an island apart.
 pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     let whole = Region::from(island.clone());
-    let open = opened(&whole, limits.double / 2.0);
-    let needs_two = |part: &&Polygon| !part.offset(-limits.single.1 / 2.0, Join::ROUND).is_empty();
+    let round = Join::Round(ACCURACY * limits.bead_width);
+    let open = opened(&whole, limits.double / 2.0, GROWN * limits.bead_width, round);
+    let needs_two = |part: &&Polygon| !part.offset(-limits.single.1 / 2.0, round).is_empty();
     let thick: Vec<Polygon> = open.polygons().iter().filter(needs_two).cloned().collect();
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
     let (mut thin, mut pieces) = (Vec::new(), Vec::new());
     // Most pieces are corners, in which no bead could lie.
-    let roomy = |piece: &Polygon| !piece.offset(-ROOMY * limits.single.0 / 2.0, Join::ROUND).is_empty();
-    for piece in rest.polygons().iter().filter(|piece| piece.area() > smallest && roomy(piece)) {
-        let walls = walls(piece, &whole, limits, thin.len());
+    let roomy = |piece: &Polygon| !piece.offset(-ROOMY * limits.single.0 / 2.0, round).is_empty();
+    let candidates = rest.into_polygons().into_iter().filter(|piece| piece.area() > smallest && roomy(piece));
+    let candidates: Vec<Polygon> = candidates.collect();
+    let axis = axis(&candidates, &whole, round, limits);
+    for piece in candidates {
+        let walls = walls(&piece, &axis, limits);
         if !walls.is_empty() {
             thin.extend(walls);
-            pieces.push(piece.clone());
+            pieces.push(piece);
         }
     }
     if thin.is_empty() {
@@ -160,18 +169,24 @@ pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
 }
 
-fn opened(region: &Region, radius: f64) -> Region {
-    region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).intersection(region)
+fn opened(region: &Region, radius: f64, grown: f64, round: Join) -> Region {
+    region.offset(-radius, round).offset(radius + grown, round)
 }
 
-/// The walls of a thin piece of `whole`; their junctions are numbered from `first` on.
-fn walls(piece: &Polygon, whole: &Region, limits: &ThinLimits, first: usize) -> Vec<ThinWall> {
-    // Beyond its mouths the piece is drawn out, so that the axis runs straight through them.
-    let around = whole.intersection(&piece.offset(2.0 * limits.double, Join::ROUND));
+/// The medial axis about thin pieces of `whole`.
+fn axis(pieces: &[Polygon], whole: &Region, round: Join, limits: &ThinLimits) -> MedialAxis {
+    // Beyond its mouths a piece is drawn out, so that the axis runs straight through them.
+    let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round);
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
-    let axis = MedialAxis::of_region(&around, &options).pruned(CORNER);
-    let mut walls: Vec<ThinWall> =
-        axis.branches.iter().flat_map(|branch| walls_along(branch, piece, limits, first)).collect();
+    MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
+}
+
+/// The walls of a thin piece.
+fn walls(piece: &Polygon, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
+    let Some(bounds) = Bounds::of(piece.outer.points().iter().copied()) else { return Vec::new() };
+    let near = |node: &Node| node.at.cmpge(bounds.min).all() && node.at.cmple(bounds.max).all();
+    let branches = axis.branches.iter().filter(|branch| branch.nodes.iter().any(near));
+    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, limits)).collect();
     drop_stubs(&mut walls, limits);
     let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= NEARLY_DOUBLE * limits.double);
     let hangs = |wall: &ThinWall| wall.ends.iter().any(|end| matches!(end, End::Mouth(_)));
@@ -179,7 +194,7 @@ fn walls(piece: &Polygon, whole: &Region, limits: &ThinLimits, first: usize) -> 
 }
 
 /// The stretches of a branch within the thin piece and wide enough for a bead.
-fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits, first: usize) -> Vec<ThinWall> {
+fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
     let wide = |node: &Node| 2.0 * node.radius >= limits.single.0;
@@ -189,7 +204,7 @@ fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits, first: usi
         .filter(|stretch| stretch.len() >= 2)
         .map(|stretch| {
             let end = |beyond: Option<usize>, junction: usize, outwards: bool| match beyond {
-                None => End::Junction(first + junction),
+                None => End::Junction(junction),
                 Some(k) if inside[k] => End::Free,
                 Some(k) => End::Mouth(tail(nodes, k, outwards, TAIL * limits.bead_width)),
             };
