@@ -9,6 +9,7 @@ use beadwright::model::{self, Mesh};
 use beadwright::order::Method;
 use beadwright::order::tour::{Ends, Stop};
 use beadwright::plan;
+use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track};
 use beadwright::slice::{SliceOptions, Slicer};
@@ -124,20 +125,39 @@ fn propeller() -> (Mesh, Profile) {
     (example::find("propeller").unwrap().mesh(), Profile::built_in("cmt-al2319-kuka").unwrap())
 }
 
-/// One layer of the hybrid over the number of outline vertices: a wavy disc of 250 mm, every vertex of it off the line
+/// One layer by a strategy over the number of outline vertices: a wavy disc of 250 mm, every vertex of it off the line
 /// between its neighbours.
-#[divan::bench(args = [1250, 2500, 5000, 10_000, 20_000], sample_count = 10)]
-fn hybrid_layer(bencher: Bencher, vertices: usize) {
+#[divan::bench(args = [("loop", 1250), ("loop", 5000), ("loop", 20_000), ("contour", 20_000), ("hybrid", 1250), ("hybrid", 5000), ("hybrid", 20_000)], sample_count = 10)]
+fn layer_of_vertices(bencher: Bencher, (strategy, vertices): (&str, usize)) {
     let place = |k: usize| {
         let turn = k as f64 / vertices as f64 * TAU;
         let noise = 0.005 * ((k * 7919) % 101) as f64 / 100.0;
         DVec2::from_angle(turn) * (115.0 + 10.0 * (9.0 * turn).sin() + noise)
     };
-    let island = beadwright::planar::Polygon::simple(beadwright::planar::Ring::new((0..vertices).map(place).collect()));
+    fill_layer(bencher, strategy, &Polygon::simple(Ring::new((0..vertices).map(place).collect())));
+}
+
+/// One layer by the loop over the number of holes of 16 mm, each in 40 × 40 mm of plate: four times the holes are four times
+/// the area.
+#[divan::bench(args = [12, 50, 200], sample_count = 5)]
+fn loop_of_holes(bencher: Bencher, holes: usize) {
+    let columns = (holes as f64).sqrt().round() as usize;
+    let rows = holes / columns;
+    let size = DVec2::new(columns as f64, rows as f64) * 40.0;
+    let outer = [DVec2::ZERO, DVec2::new(size.x, 0.0), size, DVec2::new(0.0, size.y)].to_vec();
+    let hole = |k: usize| {
+        let middle = DVec2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5) * 40.0;
+        Ring::new((0..48).map(|i| middle + DVec2::from_angle(-TAU * f64::from(i) / 48.0) * 8.0).collect())
+    };
+    let island = Polygon { outer: Ring::new(outer), holes: (0..columns * rows).map(hole).collect() };
+    fill_layer(bencher, "loop", &island);
+}
+
+fn fill_layer(bencher: Bencher, strategy: &str, island: &Polygon) {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let settings = profile.fill_settings(0);
-    let hybrid = beadwright::fill::strategy("hybrid").unwrap();
-    bencher.bench(|| hybrid.fill(black_box(&island), &settings));
+    let strategy = beadwright::fill::strategy(strategy).unwrap();
+    bencher.bench(|| strategy.fill(black_box(island), &settings));
 }
 
 /// Rings in a square of 100 mm, as contours of a layer.

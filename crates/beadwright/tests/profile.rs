@@ -135,7 +135,7 @@ fn unknown_words_get_the_nearest() {
     );
     check(KUKA, "\"outside-in\"", "\"outside_in\"", &["Did you mean \"outside-in\"?"]);
     check(KUKA, "\"alternate\"", "\"alternating\"", &["Did you mean \"alternate\"?"]);
-    check(KUKA, "\"even\"", "\"zzz\"", &["unknown value \"zzz\"", "even, exact"]);
+    check(KUKA, "\"fitted\"", "\"zzz\"", &["unknown value \"zzz\"", "even, exact"]);
 }
 
 #[test]

@@ -506,12 +506,13 @@ fn our_own_programs_read_back_as_planned() {
                     .all(|(a, b)| (a.z - b.z).abs() < 1e-3 && a.passes.len() == b.passes.len())
             );
             let (bead, law, nominal) = (profile.bead(), &profile.bead.law, profile.process.deposition_speed);
+            // RAPID has speeds in steps of 0.2 mm/s.
             let paces = |pass: &beadwright::pass::Pass| pass.segments().map(|s| s.speed).collect::<Vec<_>>();
             for (read, planned) in layers.iter().zip(&plan.layers) {
                 for (read, planned) in read.passes.iter().zip(&planned.passes) {
                     let paces = paces(planned);
                     assert!(
-                        read.speed.iter().all(|s| paces.iter().any(|pace| (s - pace).abs() < 0.01)),
+                        read.speed.iter().all(|s| paces.iter().any(|pace| (s - pace).abs() < 0.11)),
                         "{part} {post}"
                     );
                     let law_says = |s: beadwright::pass::Segment| nominal * law.pace(&bead, s.width);

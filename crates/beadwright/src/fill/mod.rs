@@ -178,6 +178,9 @@ pub enum RasterSpacing {
     Even,
     /// Exactly one stepover apart (Liu et al. 2022, eq 11).
     Exact,
+    /// Evenly between the long edges that are parallel to them, one line along each, so that no strip is left beside
+    /// an edge; `raster` takes them as even.
+    Fitted,
 }
 
 /// What a strategy needs to know; lengths in mm.
@@ -234,7 +237,7 @@ impl FillSettings<'_> {
 
     fn spacing(&self) -> Spacing {
         match self.raster_spacing {
-            RasterSpacing::Even => Spacing::AtMost(self.stepover),
+            RasterSpacing::Even | RasterSpacing::Fitted => Spacing::AtMost(self.stepover),
             RasterSpacing::Exact => Spacing::Exact(self.stepover),
         }
     }

@@ -104,6 +104,7 @@ fn strategy(name: &str, profile: &Profile) -> String {
     };
     let spacing = match fill.raster_spacing {
         RasterSpacing::Even => "evenly spread",
+        RasterSpacing::Fitted => "evenly spread between long edges",
         RasterSpacing::Exact => "one stepover apart",
     };
     let turn = match fill.raster_turn {

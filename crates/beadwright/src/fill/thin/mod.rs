@@ -10,7 +10,8 @@ pub mod tie;
 use super::{Fill, FillSettings, Pass};
 use crate::pass::Along;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
-use planar::{Bounds, Join, Polygon, Region};
+use planar::polyline::simplify_ring;
+use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
 use std::ops::Range;
 use tie::{TieSettings, tie};
 
@@ -63,7 +64,9 @@ const SMALLEST: f64 = 0.15;
 /// What is open is taken so many bead widths larger: its edges then lie apart from those of the island, and what is cut from
 /// the island has no slivers.
 const GROWN: f64 = 0.02;
-/// Round corners of what is cut out are this exact, in bead widths.
+/// Points of an outline nearer than this to their neighbours' line are left out, in bead widths.
+const SIMPLER: f64 = 0.001;
+/// What is cut out is this exact, in bead widths.
 const ACCURACY: f64 = 0.005;
 /// A disc of this part of the narrowest bead fits into a thin piece.
 const ROOMY: f64 = 0.8;
@@ -141,7 +144,10 @@ fn nearest_stage(stages: &[Vec<Pass>], walls: &[ThinWall]) -> usize {
 
 /// Takes an island apart.
 pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
-    let whole = Region::from(island.clone());
+    // Scanned outlines have more points than matter here.
+    let rings: Vec<Ring> =
+        island.rings().filter_map(|ring| simplify_ring(ring.clone(), SIMPLER * limits.bead_width)).collect();
+    let whole = Region::from_rings(&rings, FillRule::NonZero);
     let round = Join::Round(ACCURACY * limits.bead_width);
     let open = opened(&whole, limits.double / 2.0, GROWN * limits.bead_width, round);
     let needs_two = |part: &&Polygon| !part.offset(-limits.single.1 / 2.0, round).is_empty();

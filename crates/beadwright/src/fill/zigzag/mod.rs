@@ -7,7 +7,7 @@
 pub mod regions;
 
 use super::thin;
-use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use super::{Fill, FillSettings, Pass, PassKind, RasterSpacing, Strategy};
 use planar::scan::{Scan, Spacing};
 use planar::{Polygon, Region};
 use regions::Weave;
@@ -34,9 +34,11 @@ impl Strategy for Zigzag {
 
 /// Zigzag paths that fill a region.
 pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
-    match settings.spacing() {
-        Spacing::AtMost(stepover) => woven(&Scan::fitted(region, settings.raster_angle, stepover), stepover, settings),
-        exact @ Spacing::Exact(_) => zigzag_spaced(region, settings, exact),
+    match settings.raster_spacing {
+        RasterSpacing::Fitted => {
+            woven(&Scan::fitted(region, settings.raster_angle, settings.stepover), settings.stepover, settings)
+        }
+        RasterSpacing::Even | RasterSpacing::Exact => zigzag_spaced(region, settings, settings.spacing()),
     }
 }
 
