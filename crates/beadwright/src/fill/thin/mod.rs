@@ -2,8 +2,8 @@
 //!
 //! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches is
 //! *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]). Where a thin
-//! wall meets a thick part its bead is tied to the passes there ([`tie`]). Corners, and walls no longer than they are wide,
-//! are none: they stay with the thick part that they belong to. [`around`] does all of it for a strategy.
+//! wall meets a thick part its bead is tied to the passes there ([`tie`](mod@tie)). Corners, and walls no longer than they are wide,
+//! are none: they stay with the thick part that they belong to. `around` does all of it for a strategy.
 
 pub mod tie;
 

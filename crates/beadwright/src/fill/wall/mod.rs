@@ -6,7 +6,7 @@
 //! | a graph of nodes and edges | [`graph`] |
 //! | edges straight into their nodes, and fitted smooth | [`smooth`] |
 //! | one bead or more along every edge, by its thickness | [`strand`] |
-//! | the fewest trails that lay all strands and never cross | [`trails`](super::trails) |
+//! | the fewest trails that lay all strands and never cross | [`trails`] |
 //! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
 //!
 //! Every second layer runs all paths backwards, the last one first: it starts where the layer below ended.
