@@ -14,17 +14,22 @@ const DROPPED: &str = "#c4c9d1";
 const BEAD: &str = "#b9d2f3";
 const SLICE: &str = "#eef0f3";
 
-/// Contours with their pockets (those that are kept in violet), skeleton regions, the contours left (those cut in
-/// orange), and the passes.
-pub fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+/// Sketches with nothing but the slice, and the width of a thin line in them, mm.
+fn begun(islands: &[Polygon], titles: [&'static str; 4]) -> ([Sketch; 4], f64) {
     let slice = Region::from_normalised(islands.to_vec());
     let bounds = slice.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
-    let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
     let mut sketches = titles.map(|title| Sketch::new(bounds, title));
     for sketch in &mut sketches {
         sketch.region(&slice, SLICE);
     }
-    let thin = 0.004 * bounds.size().max_element();
+    (sketches, 0.004 * bounds.size().max_element())
+}
+
+/// Contours with their pockets (those that are kept in violet), skeleton regions, the contours left (those cut in
+/// orange), and the passes.
+pub fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+    let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
+    let (mut sketches, thin) = begun(islands, titles);
     for island in islands {
         draw(&Steps::of(island, settings), &mut sketches, thin);
     }
@@ -59,14 +64,8 @@ fn draw(steps: &Steps, sketches: &mut [Sketch; 4], thin: f64) {
 /// Rings and walls for one bead, rings joined (with the places of their flips), the relaxed lines, and what is laid, as wide
 /// as it is.
 pub fn loop_sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
-    let slice = Region::from_normalised(islands.to_vec());
-    let bounds = slice.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
     let titles = ["1. Rings, and walls for one bead", "2. Rings joined by flips", "3. Relaxed", "4. Passes"];
-    let mut sketches = titles.map(|title| Sketch::new(bounds, title));
-    for sketch in &mut sketches {
-        sketch.region(&slice, SLICE);
-    }
-    let thin = 0.004 * bounds.size().max_element();
+    let (mut sketches, thin) = begun(islands, titles);
     for (steps, middle) in islands.iter().flat_map(|island| one_loop::steps(island, settings)) {
         draw_loop(&steps, middle, &mut sketches, thin);
     }
