@@ -5,15 +5,17 @@
 //! models are read from `BEADWRIGHT_MODELS` (default ../shared/models), and left out with a word where there are none.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
-use beadwright::deposit::{Figures, Judge, Subject};
+use beadwright::deposit::{Figures, Judge};
 use beadwright::fill::{self, Strategy};
+use beadwright::layer::Layer;
 use beadwright::model::{self, Mesh};
 use beadwright::pass::Pass;
 use beadwright::planar::{DVec2, Join, Polygon, Region};
 use beadwright::profile::{Profile, edit};
-use beadwright::slice::{Layer, Slicer};
+use beadwright::program::Instruction;
+use beadwright::slice::{Slice, Slicer};
 use beadwright::task::Task;
-use beadwright::{example, plan, program};
+use beadwright::{example, plan};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -115,7 +117,7 @@ impl Total {
 }
 
 impl Row {
-    fn of(layers: &[Layer], strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Self {
+    fn of(layers: &[Slice], strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Self {
         let mut row = Self { layers: layers.len(), ..Self::default() };
         let w = profile.bead.width;
         for slice in layers {
@@ -130,8 +132,9 @@ impl Row {
                 .map(|path| lifted(path, slice.z, profile))
                 .collect();
             let judged = |islands: &[Polygon]| {
-                let subject = Subject { layer: slice.index, islands, passes: &passes };
-                Judge::new(plan::deposit_settings(profile)).layer(subject).figures
+                let layer =
+                    Layer { index: slice.index, islands: islands.to_vec(), passes: passes.clone(), ..Layer::default() };
+                Judge::new(plan::deposit_settings(profile)).layer(&layer).figures
             };
             let open = Region::from_normalised(slice.islands.clone());
             let open = open.offset(-DISC / 2.0 * w, Join::ROUND).offset(DISC / 2.0 * w, Join::ROUND).into_polygons();
@@ -147,7 +150,7 @@ impl Row {
     }
 }
 
-fn lifted(path: fill::Pass, z: f64, profile: &Profile) -> Pass {
+fn lifted(path: fill::Path, z: f64, profile: &Profile) -> Pass {
     let (bead, law, speed) = (profile.bead(), &profile.bead.law, profile.process.deposition_speed);
     Pass {
         kind: path.kind,
@@ -158,12 +161,12 @@ fn lifted(path: fill::Pass, z: f64, profile: &Profile) -> Pass {
     }
 }
 
-fn moves(slice: &Layer, passes: &[Pass], profile: &Profile) -> usize {
+fn moves(slice: &Slice, passes: &[Pass], profile: &Profile) -> usize {
     let mut profile = profile.clone();
     (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
-    let layer = plan::Layer { index: slice.index, z: slice.z, passes: passes.to_vec(), ..plan::Layer::default() };
-    let program = program::Programmer::of(&profile).layer(&layer);
-    program.instructions.iter().filter(|i| matches!(i, program::Instruction::Weld { .. })).count()
+    let layer = Layer { index: slice.index, z: slice.z, passes: passes.to_vec(), ..Layer::default() };
+    let program = profile.programmer().layer(&layer);
+    program.instructions.iter().filter(|i| matches!(i, Instruction::Weld { .. })).count()
 }
 
 impl std::fmt::Display for Row {

@@ -7,11 +7,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use beadwright::bead::Section;
-use beadwright::fill::{self, FillSettings, Pass};
+use beadwright::fill::{self, FillSettings, Path};
 use beadwright::planar::{DVec2, FillRule, Lattice, Region, Ring};
 use beadwright::profile::Profile;
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::{self, PathBuf};
 use std::time::Instant;
 
 /// Nominal width of a bead, mm.
@@ -34,7 +34,7 @@ struct Row {
 
 fn main() {
     let folder = std::env::var_os("BEADWRIGHT_OUTLINES")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/outlines"), PathBuf::from);
+        .map_or_else(|| path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/outlines"), PathBuf::from);
     let mut words = std::env::args().skip_while(|word| word != "--rounds").skip(1);
     let rounds: u32 = words.next().map_or(25, |word| word.parse().unwrap());
     let Ok(entries) = std::fs::read_dir(&folder) else {
@@ -71,7 +71,7 @@ fn main() {
     }
 }
 
-fn read(file: &Path) -> Outline {
+fn read(file: &path::Path) -> Outline {
     let text = std::fs::read_to_string(file).unwrap();
     let mut numbers = text.split_whitespace().map(|word| word.parse::<f64>().unwrap());
     let limits = (numbers.next().unwrap(), numbers.next().unwrap());
@@ -83,7 +83,7 @@ fn read(file: &Path) -> Outline {
     Outline { limits, region: Region::from_rings(&rings, FillRule::EvenOdd) }
 }
 
-fn row(file: &Path, rounds: u32) -> Row {
+fn row(file: &path::Path, rounds: u32) -> Row {
     let Outline { limits, region } = read(file);
     let mut profile = Profile::built_in("fdm-abs-0.4").unwrap();
     profile.bead.width = WIDTH;
@@ -97,7 +97,7 @@ fn row(file: &Path, rounds: u32) -> Row {
     let strategy = fill::strategy("loop").unwrap();
     let clock = Instant::now();
     let fills = region.polygons().iter().flat_map(|island| strategy.fill(island, &settings).stages);
-    let passes: Vec<Pass> = fills.flatten().collect();
+    let passes: Vec<Path> = fills.flatten().collect();
     let seconds = clock.elapsed().as_secs_f64();
     let cover = Cover::of(&region, &passes);
     Row {
@@ -120,7 +120,7 @@ struct Cover {
 }
 
 impl Cover {
-    fn of(region: &Region, passes: &[Pass]) -> Self {
+    fn of(region: &Region, passes: &[Path]) -> Self {
         let grid = (region.area() / 4e6).sqrt().clamp(0.008, 0.03);
         let lattice = Lattice::covering(&region.bounds().unwrap(), 1.0, grid, 1);
         let inside = lattice.inside(region.rings());

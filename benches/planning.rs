@@ -105,7 +105,7 @@ fn judge_propeller(bencher: Bencher) {
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
     let judge = || {
         let mut judge = Judge::new(plan::deposit_settings(&profile));
-        plan.layers.iter().map(|layer| judge.layer(layer.subject()).work).sum::<usize>()
+        plan.layers.iter().map(|layer| judge.layer(layer).work).sum::<usize>()
     };
     let work = judge();
     bencher.counter(divan::counter::ItemsCount::new(work)).bench(judge);

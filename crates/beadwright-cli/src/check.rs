@@ -3,7 +3,7 @@
 use crate::output::write_file;
 use crate::{profile, program, progress, reach};
 use beadwright::check::{self, CHECKS, Finding};
-use beadwright::plan::Layer;
+use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track};
 use std::io::Write;

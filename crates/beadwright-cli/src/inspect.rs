@@ -2,8 +2,8 @@
 
 use crate::{model, profile, program, progress};
 use anyhow::Context;
+use beadwright::dialect::reading;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::readback;
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -63,7 +63,7 @@ fn is_program(path: &Path) -> anyhow::Result<bool> {
     let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
     let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(false) };
     let solid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("solid"));
-    Ok(!solid && (text.trim_start().starts_with('{') || readback::dialect(text).is_some()))
+    Ok(!solid && (text.trim_start().starts_with('{') || reading::recognise(text).is_some()))
 }
 
 /// What a plan or a program holds.

@@ -4,11 +4,12 @@ use crate::output::Output;
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
+use beadwright::dialect::{Chunk, Writer};
+use beadwright::layer::Layer;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
-use beadwright::plan::{self, Header, Layer, PlanError, Sink, Summary};
+use beadwright::plan::{self, Header, PlanError, Sink, Summary};
 use beadwright::plan_file;
-use beadwright::post::{self, Chunk, Post};
 use beadwright::profile::Profile;
 use beadwright::program::Programmer;
 use beadwright::report::{self, Report, rows};
@@ -92,13 +93,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let part = arguments.model.part();
     let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };
     let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let posts = names.iter().map(|name| post::post(name, &part, &programs)).collect::<Result<Vec<_>, _>>()?;
+    let posts = names.iter().map(|name| profile::writer(name, &programs.job(&part))).collect::<Result<Vec<_>, _>>()?;
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let output = Output::new(&arguments.output)?;
-    let programmer = Programmer::of(&programs);
+    let programmer = programs.programmer();
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
     let pictures = arguments.picture.clone();
@@ -144,7 +145,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 /// Where the layers go.
 struct Files {
     output: Output,
-    posts: Vec<Box<dyn Post>>,
+    posts: Vec<Box<dyn Writer>>,
     programmer: Programmer,
     pictures: Vec<usize>,
     settings: DepositSettings,
@@ -161,7 +162,7 @@ impl Files {
         chunks.iter().try_for_each(|c| self.output.append(&c.file, &c.text))
     }
 
-    fn each_post(&mut self, mut write: impl FnMut(&mut dyn Post) -> Vec<Chunk>) -> anyhow::Result<()> {
+    fn each_post(&mut self, mut write: impl FnMut(&mut dyn Writer) -> Vec<Chunk>) -> anyhow::Result<()> {
         let chunks = self.posts.iter_mut().flat_map(|post| write(post.as_mut())).collect();
         self.chunks(chunks)
     }
@@ -203,7 +204,7 @@ impl Sink for Files {
             self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
         let welded = plan::welded(&layer, &self.profile);
-        let judgement = self.judge.as_mut().map(|judge| judge.layer(welded.subject()));
+        let judgement = self.judge.as_mut().map(|judge| judge.layer(&welded));
         if let Some(report) = &mut self.report {
             report.layer(&layer, judgement.as_ref());
         }

@@ -1,6 +1,7 @@
 //! `beadwright profile`, and how `--profile` and `--set` are read.
 
 use anyhow::Context;
+use beadwright::dialect::{self, DialectError, Job, Writer};
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
 use std::io::Write;
 use std::path::Path;
@@ -72,5 +73,18 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
         ProfileError::Text { reason, .. } => anyhow::anyhow!("--set {}: {reason}", settings.join(" --set ")),
         ProfileError::Value { key, value, reason, .. } => anyhow::anyhow!("{key} = {value} is impossible: {reason}"),
         other => other.into(),
+    })
+}
+
+/// Begins a program in a dialect; where the profile lacks its section, tells which one to copy.
+pub(crate) fn writer(name: &str, job: &Job<'_>) -> anyhow::Result<Box<dyn Writer>> {
+    dialect::writer(name, job).map_err(|error| {
+        let section = format!("\n[{name}]");
+        match BUILT_IN.iter().find(|(_, text)| text.contains(&section)) {
+            Some((with, _)) if matches!(error, DialectError::NoSection { .. }) => {
+                anyhow::anyhow!("{error} `beadwright profile show {with}` prints one to copy.")
+            }
+            _ => error.into(),
+        }
     })
 }

@@ -4,14 +4,16 @@ use crate::model;
 use anyhow::Context;
 use beadwright::compare::Totals;
 use beadwright::deposit::DepositSettings;
+use beadwright::dialect::inform::InformSpeed;
+use beadwright::dialect::reading::{self, ArcCodes};
+use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
-use beadwright::plan::{self, Layer};
-use beadwright::profile::{InformSpeed, Profile};
-use beadwright::readback::{self, ArcCodes};
+use beadwright::plan;
+use beadwright::plan_file;
+use beadwright::profile::Profile;
 use beadwright::simulate;
 use beadwright::task::Task;
-use beadwright::{plan_file, template};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -56,9 +58,10 @@ impl Reading {
         }
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
         let mut module = |name: &str| find_module(&folder, name);
-        let inform_cm_per_min = profile.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
-        let options = readback::Options { arc: self.codes(profile), filament_diameter: None, inform_cm_per_min };
-        let program = readback::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
+        let inform_cm_per_min =
+            profile.dialects.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
+        let options = reading::Options { arc: self.codes(profile), filament_diameter: None, inform_cm_per_min };
+        let program = reading::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
         let settings = plan::deposit_settings(profile);
         let mut layers = simulate::layers(&program, &settings, &profile.bead.law, self.bead_width);
         let mut notes = program.notes.clone();
@@ -72,7 +75,7 @@ impl Reading {
             }
             simulate::outline(&mut layers, &part.mesh, profile.slice_options(), task)?;
         }
-        let language = program.dialect.name();
+        let language = program.language;
         let mut totals = Totals::of_program(&program.totals(), &layers, profile);
         if let Some(motion) = &profile.motion {
             totals.total_time_s = program.seconds(motion);
@@ -82,29 +85,12 @@ impl Reading {
 
     /// What switches the arc: the words given, and the lines of the profile's templates without placeholders.
     fn codes(&self, profile: &Profile) -> ArcCodes {
-        let krl = profile.krl.as_ref().map(|k| (&k.arc_on, &k.arc_off));
-        let gcode = profile.gcode.as_ref().map(|g| (&g.arc_on, &g.arc_off));
-        let rapid = profile.rapid.as_ref().map(|r| (&r.arc_on, &r.arc_off));
-        let fanuc = profile.fanuc.as_ref().map(|f| (&f.arc_on, &f.arc_off));
-        let inform = profile.inform.as_ref().map(|i| (&i.arc_on, &i.arc_off));
-        let urscript = profile.urscript.as_ref().map(|u| (&u.arc_on, &u.arc_off));
-        let templates = || [krl, gcode, rapid, fanuc, inform, urscript].into_iter().flatten();
-        let plain = |lines: &[String]| {
-            lines.iter().filter(|l| !template::has_placeholder(l)).map(|l| statement(l)).collect::<Vec<_>>()
-        };
-        // The last line that lights and the first that ends: gas and delays lie before and behind.
-        let on = templates().filter_map(|(on, _)| plain(on).pop());
-        let off = templates().filter_map(|(_, off)| plain(off).into_iter().next());
+        let templates = profile.dialects.arc_codes();
         ArcCodes {
-            on: self.arc_on.iter().cloned().chain(on).collect(),
-            off: self.arc_off.iter().cloned().chain(off).collect(),
+            on: self.arc_on.iter().cloned().chain(templates.on).collect(),
+            off: self.arc_off.iter().cloned().chain(templates.off).collect(),
         }
     }
-}
-
-/// A line of a template without the sign that ends a statement in RAPID: readers have it cut off.
-fn statement(line: &str) -> String {
-    line.trim_end().trim_end_matches(';').to_owned()
 }
 
 fn load_plan(name: &str, text: &str, profile: &Profile) -> anyhow::Result<Loaded> {

@@ -4,7 +4,9 @@
 //! *Far* shows all of it, *near* is four times nearer, where every segment is drawn; *moving* is what a drag shows.
 //! Prints a line for 200,000 and one for 1,000,000 segments, or for the numbers given. Works on any adapter.
 
-use beadwright::plan::{Layer, plan};
+use beadwright::plan::plan;
+
+use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{example, model};

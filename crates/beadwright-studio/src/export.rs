@@ -3,7 +3,7 @@
 use crate::state::PlanState;
 use beadwright::plan::deposit_settings_over;
 use beadwright::report::Report;
-use beadwright::{plan_file, post};
+use beadwright::{dialect, plan_file};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -35,13 +35,13 @@ const NOT_YET: &str = "The plan is not complete yet.";
 ///
 /// # Errors
 /// A sentence: the plan is not complete, or the profile lacks the dialect's section.
-pub fn program(state: &PlanState, dialect: &str) -> Result<BTreeMap<String, String>, String> {
+pub fn program(state: &PlanState, name: &str) -> Result<BTreeMap<String, String>, String> {
     let (Some(header), Some(profile), Some(_), true) =
         (&state.header, &state.profile, &state.summary, state.is_of_last_request())
     else {
         return Err(NOT_YET.to_owned());
     };
-    post::write(dialect, &header.part, &state.layers, profile).map_err(|error| error.to_string())
+    dialect::write(name, &state.layers, &profile.job(&header.part)).map_err(|error| error.to_string())
 }
 
 /// The text of a file that belongs to the plan; `files` are named in the report.

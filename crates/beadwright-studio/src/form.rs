@@ -1,6 +1,7 @@
 //! The profile as a form: fields from the schema, so that a new key of the library appears by itself.
 
-use beadwright::profile::{Limit, Profile};
+use beadwright::limit::Limit;
+use beadwright::profile::Profile;
 use serde_json::Value;
 use std::sync::OnceLock;
 

@@ -1,7 +1,7 @@
 //! Small work in the background: one answer, to be fetched when it is there.
 
 use beadwright::fill::hybrid::Steps;
-use beadwright::plan::Layer;
+use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Reach, Track};
 use eframe::egui::Context;

@@ -1,12 +1,13 @@
 //! Strategies and programs side by side: what each lays, and what the deposit model says of it.
 
 use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, stack::Growth};
+use crate::dialect::reading::ReadTotals;
+use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
-use crate::plan::{self, Header, Layer, PlanError, Sink};
+use crate::plan::{self, Header, PlanError, Sink};
 use crate::profile::Profile;
-use crate::readback;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::Sheet;
 use crate::report::steps;
@@ -101,7 +102,7 @@ impl<'a> Judging<'a> {
         if self.chosen.as_ref().is_some_and(|chosen| !chosen.contains(&layer.index)) {
             return;
         }
-        let mut judged = self.judge.layer(layer.subject());
+        let mut judged = self.judge.layer(layer);
         judged.voids.truncate(KEPT_PATCHES);
         judged.peaks.truncate(KEPT_PATCHES);
         let (index, z) = (layer.index, layer.z);
@@ -177,7 +178,7 @@ impl Totals {
     }
 
     /// Of a program read back; `layers` are its layers. What its starts, ends and corners take follows from the profile.
-    pub fn of_program(totals: &readback::Totals, layers: &[Layer], profile: &Profile) -> Self {
+    pub fn of_program(totals: &ReadTotals, layers: &[Layer], profile: &Profile) -> Self {
         let nominal = plan::deposit_settings(profile).nominal;
         let mut metrics = Metrics::new(profile);
         layers.iter().for_each(|layer| metrics.add(layer));

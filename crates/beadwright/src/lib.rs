@@ -2,7 +2,7 @@
 //!
 //! A file's bytes become a [`Mesh`](model::Mesh) ([`model::import`]), the mesh is cut into [layers](mod@slice), every
 //! island of a layer is [filled](fill) with passes, the passes are put in [`order`], and a [plan](plan::plan)
-//! holds the result. A plan becomes a neutral [`program`], and a [`post`] writes that in a robot's language. All
+//! holds the result. A plan becomes a neutral [`program`], and a [`dialect`] writes that in a robot's language. All
 //! values of the process come from a [`profile`]. Data goes down this table only:
 //!
 //! | stage | module |
@@ -17,7 +17,7 @@
 //! | start and stop | [`weld`] |
 //! | plan | [`plan`], [`metrics`], [`plan_file`] |
 //! | program | [`program`] |
-//! | post | [`post`] |
+//! | dialect | [`dialect`] |
 //! | show | [`report`] |
 //! | reach | [`robot`] |
 //!
@@ -39,8 +39,11 @@ pub mod check;
 pub mod compare;
 pub mod curve;
 pub mod deposit;
+pub mod dialect;
 pub mod example;
 pub mod fill;
+pub mod layer;
+pub mod limit;
 pub mod metrics;
 pub mod model;
 pub mod motion;
@@ -49,10 +52,9 @@ pub mod order;
 pub mod pass;
 pub mod plan;
 pub mod plan_file;
-pub mod post;
+pub mod process;
 pub mod profile;
 pub mod program;
-pub mod readback;
 pub mod report;
 pub mod reproduce;
 pub mod robot;

@@ -1,7 +1,7 @@
 //! The totals of a plan: passes, lengths, times, wire, heat.
 
 use crate::bead::wire_area;
-use crate::plan::Layer;
+use crate::layer::Layer;
 use crate::profile::Profile;
 use crate::weld::{Torch, path};
 use serde::Serialize;
@@ -89,7 +89,7 @@ impl Metrics {
             part_volume_mm3: 0.0,
             deposited_volume_mm3: 0.0,
             rates,
-            torch: Torch::of(profile),
+            torch: Torch::of(&profile.weld_settings()),
         }
     }
 

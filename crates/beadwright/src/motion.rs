@@ -5,6 +5,7 @@
 //! straight joints at full speed; a path begins and ends at rest. Without these values, as for robots whose controllers
 //! keep the speed, length over speed is the time.
 
+use crate::limit::{Limit, limits};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +29,16 @@ struct Piece {
 }
 
 impl Motion {
+    /// What the numbers can be.
+    pub(crate) fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "motion.acceleration": self.acceleration, 1.0, 1e6, "mm/s²",
+                "a machine that hardly speeds up never gets there";
+            "motion.corner_speed": self.corner_speed, 0.01, 1000.0, "mm/s",
+                "a machine that stops at every corner has no corner speed to tell";
+        }
+    }
+
     /// Time along a path from rest to rest, s: from a point to each of the others at its speed (mm, mm/s).
     pub fn seconds(&self, from: DVec3, moves: impl IntoIterator<Item = (DVec3, f64)>) -> f64 {
         let mut at = from;

@@ -1,7 +1,33 @@
 //! A pass in space: the path with the arc on, and the width and speed along it.
 
-use crate::fill::PassKind;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// What a pass is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PassKind {
+    /// Parallel to the boundary.
+    Contour,
+    /// Scan lines.
+    Infill,
+    /// Fill of pockets between contours.
+    Skeleton,
+    /// Along the middle of a wall.
+    Wall,
+}
+
+impl PassKind {
+    /// The word in plan.json and in programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contour => "contour",
+            Self::Infill => "infill",
+            Self::Skeleton => "skeleton",
+            Self::Wall => "wall",
+        }
+    }
+}
 
 /// A value along a path.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,9 +2,10 @@
 
 use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
-use crate::fill::PassKind;
+use crate::layer::Layer;
 use crate::number::push_fixed;
-use crate::plan::{Along, Header, Layer, Pass};
+use crate::pass::{Along, Pass, PassKind};
+use crate::plan::Header;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;

@@ -5,12 +5,15 @@
 //! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and
 //! no arc: `Weld` then only tells the way, since no `ArcOn` came before it.
 
+mod settings;
 mod spread;
 
-use crate::fill::PassKind;
-use crate::plan::{Layer, Pass};
-use crate::profile::{Follow, Profile, Program};
-use crate::weld::{Pause, Torch, path};
+pub use settings::ProgramSettings;
+
+use crate::layer::Layer;
+use crate::pass::{Pass, PassKind};
+use crate::process::Follow;
+use crate::weld::{Pause, Torch, WeldSettings, path};
 use glam::DVec3;
 use planar::arcs::{Fit, Piece};
 use spread::Spread;
@@ -130,21 +133,20 @@ impl Programmer {
         Self { clearance, torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
     }
 
-    /// Everything as the profile says.
-    pub fn of(profile: &Profile) -> Self {
-        let sets_feed = profile.process.follow == Follow::WireFeed || profile.start_stop.crater_is_weaker();
-        let torch = Torch::of(profile);
-        let programmer = Self { torch, sets_feed, dry: profile.is_dry_run(), ..Self::new(profile.travel.clearance) };
-        programmer.with_fit(&profile.program)
+    /// Passes as they are welded; a dry run has the same moves and no arc.
+    pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
+        let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker();
+        let programmer = Self { torch: Torch::of(weld), sets_feed, dry, ..Self::new(weld.travel.clearance) };
+        programmer.with_fit(program)
     }
 
-    /// As the profile says, but with every point of the passes.
-    pub fn unfitted(profile: &Profile) -> Self {
-        Self { fit: None, spread: None, ..Self::of(profile) }
+    /// The same with every point of the passes.
+    pub fn unfitted(self) -> Self {
+        Self { fit: None, spread: None, ..self }
     }
 
-    /// Fits straight pieces and arcs as the profile says; without a tolerance every point is kept.
-    pub fn with_fit(mut self, program: &Program) -> Self {
+    /// Fits straight pieces and arcs; without a tolerance every point is kept.
+    pub fn with_fit(mut self, program: &ProgramSettings) -> Self {
         // What dropping close points may have moved comes on top.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
         // Merging points and fitting pieces each take half of it.

@@ -2,10 +2,10 @@
 
 use crate::bead::Law;
 use crate::deposit::DepositSettings;
+use crate::dialect::reading::{ReadLayer, ReadPass, ReadProgram};
+use crate::layer::Layer;
 use crate::model::Mesh;
 use crate::pass::{Along, Pass};
-use crate::plan::Layer;
-use crate::readback::{Program, ReadLayer, ReadPass};
 use crate::slice::{Slab, SliceOptions, Slicer};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
@@ -15,7 +15,7 @@ use planar::Bounds;
 /// beads that high with that volume; else the program's own, else those that the bead law gives beads laid so fast. The speed of
 /// a piece is that at which the nominal wire feed lays its metal: the program's own where the arc tells of metal, and
 /// from the volume where the program tells that.
-pub fn layers(program: &Program, settings: &DepositSettings, law: &Law, width: Option<f64>) -> Vec<Layer> {
+pub fn layers(program: &ReadProgram, settings: &DepositSettings, law: &Law, width: Option<f64>) -> Vec<Layer> {
     let read = program.layers();
     let layer = |(index, read): (usize, ReadLayer)| {
         let height = if read.height > 0.0 { read.height } else { settings.nominal.rise };
@@ -54,7 +54,7 @@ fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64
     // The last point has no piece behind it.
     widths.push(*widths.last()?);
     speeds.push(*speeds.last()?);
-    let kind = crate::fill::PassKind::Infill;
+    let kind = crate::pass::PassKind::Infill;
     Some(Pass { kind, closed: false, points, width: Along::Each(widths), speed: Along::Each(speeds) })
 }
 

@@ -5,14 +5,14 @@ use beadwright::example;
 use beadwright::model::{Mesh, import};
 use beadwright::pass::{Along, Pass};
 use beadwright::plan::{self, Plan};
-use beadwright::profile::{self, Profile};
-use beadwright::program::{Circle, Instruction, Programmer};
+use beadwright::profile::Profile;
+use beadwright::program::{Circle, Instruction, ProgramSettings, Programmer};
 use beadwright::task::Task;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-fn fitted() -> profile::Program {
-    profile::Program { chord_tolerance: 0.05, arcs: true, ..profile::Program::default() }
+fn fitted() -> ProgramSettings {
+    ProgramSettings { chord_tolerance: 0.05, arcs: true, ..ProgramSettings::default() }
 }
 
 fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
@@ -22,7 +22,7 @@ fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
 }
 
 /// Instructions of every layer, as planned and fitted.
-fn programs(plan: &Plan, settings: &profile::Program) -> Vec<Vec<Instruction>> {
+fn programs(plan: &Plan, settings: &ProgramSettings) -> Vec<Vec<Instruction>> {
     let mut programmer = Programmer::new(10.0).with_fit(settings);
     plan.layers.iter().map(|layer| programmer.layer(layer).instructions).collect()
 }
@@ -83,8 +83,8 @@ fn dense(pass: &Pass) -> Vec<DVec3> {
 }
 
 /// Checks distance and speeds and gives the moves before and after.
-fn compare(case: &str, plan: &Plan, settings: &profile::Program) -> (usize, usize) {
-    let (full, fitted) = (programs(plan, &profile::Program::default()), programs(plan, settings));
+fn compare(case: &str, plan: &Plan, settings: &ProgramSettings) -> (usize, usize) {
+    let (full, fitted) = (programs(plan, &ProgramSettings::default()), programs(plan, settings));
     for (layer, instructions) in plan.layers.iter().zip(&fitted) {
         let paths = traced(instructions);
         assert_eq!(paths.len(), layer.passes.len(), "{case}");
@@ -138,14 +138,14 @@ fn propellers_take_a_third_of_the_moves_along_the_same_path() {
             let plan = planned(&mesh, "cmt-al2319-kuka", strategy);
             let case = format!("{name} {strategy}");
             let (before, after) = compare(&case, &plan, &fitted());
-            let lines = compare(&case, &plan, &profile::Program { arcs: false, ..fitted() }).1;
+            let lines = compare(&case, &plan, &ProgramSettings { arcs: false, ..fitted() }).1;
             println!("{case}: {before} moves, {after} fitted, {lines} with lines only");
             if strategy == "contour" {
                 assert!(before >= 3 * after, "{case}: {before} moves became {after}");
                 continue;
             }
             // The hybrid's speed follows its width from place to place, and no move spans a change of it.
-            let level = profile::Program { speed_tolerance: 0.11, ..fitted() };
+            let level = ProgramSettings { speed_tolerance: 0.11, ..fitted() };
             let level = compare(&case, &plan, &level).1;
             println!("{case}: {level} with speeds of 11 % one");
             let even = compare(&case, &of_one_speed(plan), &fitted());
@@ -166,10 +166,10 @@ fn of_one_speed(mut plan: Plan) -> Plan {
 #[test]
 fn points_are_as_far_apart_as_the_controller_needs() {
     let plan = planned(&example::find("cross").unwrap().mesh(), "cmt-al2319-kuka", "hybrid");
-    let straight = profile::Program { chord_tolerance: 0.2, ..profile::Program::default() };
-    let spread = profile::Program { min_point_time: 0.1, ..straight.clone() };
+    let straight = ProgramSettings { chord_tolerance: 0.2, ..ProgramSettings::default() };
+    let spread = ProgramSettings { min_point_time: 0.1, ..straight.clone() };
     let (before, after) = (programs(&plan, &straight), programs(&plan, &spread));
-    let exact = programs(&plan, &profile::Program::default());
+    let exact = programs(&plan, &ProgramSettings::default());
     let times = |programs: &[Vec<Instruction>]| -> Vec<f64> {
         let (mut at, mut times) = (DVec3::ZERO, Vec::new());
         for instruction in programs.iter().flatten() {

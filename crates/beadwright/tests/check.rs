@@ -3,8 +3,9 @@
 
 use beadwright::check::{self, CHECKS};
 use beadwright::example;
+use beadwright::layer::Layer;
 use beadwright::pass::Along;
-use beadwright::plan::{self, Layer};
+use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::DVec3;

@@ -2,12 +2,10 @@
 #![allow(clippy::unwrap_used)]
 
 use beadwright::bead::{Bead, Section};
-use beadwright::deposit::{
-    self, Cause, DepositSettings, Figures, Judge, Judgement, Nominal, Stroke, Subject, corner, field,
-};
+use beadwright::deposit::{self, Cause, DepositSettings, Figures, Judge, Judgement, Nominal, Stroke, corner, field};
 use beadwright::example;
-use beadwright::fill::PassKind;
-use beadwright::pass::{Along, Pass};
+use beadwright::layer::Layer;
+use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
@@ -32,9 +30,13 @@ fn rectangle(low: (f64, f64), high: (f64, f64)) -> Polygon {
     Polygon::simple(Ring::new(points.map(DVec2::from).to_vec()))
 }
 
+fn layer(index: usize, islands: &[Polygon], passes: &[Pass]) -> Layer {
+    Layer { index, islands: islands.to_vec(), passes: passes.to_vec(), ..Layer::default() }
+}
+
 fn judge(islands: &[Polygon], passes: &[Pass], step: f64) -> Judgement {
     let settings = DepositSettings { step, ..DepositSettings::new(NOMINAL, 0.0) };
-    Judge::new(settings).layer(Subject { layer: 0, islands, passes })
+    Judge::new(settings).layer(&layer(0, islands, passes))
 }
 
 /// ∫ f over [a, b] by 16-point Gauss–Legendre.
@@ -212,7 +214,7 @@ fn metal_outside_counts_only_beyond_the_allowance() {
     let expected = 30.0 * 2.5 * 0.95_f64.sqrt();
     assert!((outside - expected).abs() < 0.15 * expected, "{outside} {expected}");
     let settings = DepositSettings { step: 0.1, ..DepositSettings::new(NOMINAL, 2.6) };
-    let allowed = Judge::new(settings).layer(Subject { layer: 0, islands: &island, passes: &pass });
+    let allowed = Judge::new(settings).layer(&layer(0, &island, &pass));
     assert_eq!(allowed.figures.outside, 0.0);
 }
 
@@ -237,8 +239,8 @@ fn the_stack_grows_where_beads_cross() {
     let cross = [open_pass(&[(-15.0, 0.0), (15.0, 0.0)]), open_pass(&[(0.0, -15.0), (0.0, 15.0)])];
     let bounds = Bounds { min: DVec2::splat(-20.0), max: DVec2::splat(20.0) };
     let mut judge = Judge::new(DepositSettings::new(NOMINAL, 0.0)).with_stack(&bounds);
-    for layer in 0..4 {
-        judge.layer(Subject { layer, islands: &island, passes: &cross });
+    for index in 0..4 {
+        judge.layer(&layer(index, &island, &cross));
     }
     let growth = judge.stack().unwrap().growth();
     for (k, now) in growth.iter().enumerate() {
@@ -280,7 +282,7 @@ fn cross_plan(strategy: &str, gap: f64) -> Plan {
 fn figures(plan: &Plan, step: f64) -> Figures {
     let profile = Profile::built_in("plasma-304-cnc").unwrap();
     let settings = DepositSettings { step, ..plan::deposit_settings(&profile) };
-    Judge::new(settings).layer(plan.layers[0].subject()).figures
+    Judge::new(settings).layer(&plan.layers[0]).figures
 }
 
 /// Liu et al. 2022, figure 7. An independent numerical model gave 2.25 % at 0.738 w and 0.24 % at 0.591 w; our zigzag
@@ -321,7 +323,7 @@ fn threads_change_nothing() {
     let settings = plan::deposit_settings(&Profile::built_in("plasma-304-cnc").unwrap());
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Judge::new(settings).with_pictures(200).layer(plan.layers[1].subject()))
+        pool.install(|| Judge::new(settings).with_pictures(200).layer(&plan.layers[1]))
     };
     let (one, two, five) = (run(1), run(2), run(5));
     assert_eq!(one, two);

@@ -3,13 +3,19 @@
 
 mod readers;
 
-use beadwright::fill::PassKind;
+use beadwright::dialect::fanuc::FanucSpeed;
+use beadwright::dialect::gcode::GcodeComments;
+use beadwright::dialect::inform::InformSpeed;
+use beadwright::dialect::krl::KrlArc;
+use beadwright::dialect::rapid::RapidArc;
+use beadwright::dialect::reading::{ArcCodes, Options, read};
+use beadwright::layer::Layer;
+use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::{self, Layer};
-use beadwright::profile::{FanucSpeed, GcodeComments, InformSpeed, KrlArc, Profile, RapidArc};
-use beadwright::readback::{ArcCodes, Options, read};
+use beadwright::plan;
+use beadwright::profile::Profile;
 use beadwright::task::Task;
-use beadwright::{example, post};
+use beadwright::{dialect, example};
 use glam::{DVec2, DVec3};
 use readers::{Motion, Point, Weld, distance};
 use std::collections::BTreeMap;
@@ -21,10 +27,10 @@ type Files = BTreeMap<String, String>;
 fn profile() -> Profile {
     let built_in = |name| Profile::built_in(name).unwrap();
     let mut profile = built_in("cmt-steel-robots");
-    profile.rapid = built_in("cmt-steel-abb").rapid;
-    profile.krl = built_in("cmt-al2319-kuka").krl;
-    profile.gcode = built_in("plasma-304-cnc").gcode;
-    profile.marlin = built_in("fdm-abs-0.4").marlin;
+    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
+    profile.dialects.krl = built_in("cmt-al2319-kuka").dialects.krl;
+    profile.dialects.gcode = built_in("plasma-304-cnc").dialects.gcode;
+    profile.dialects.marlin = built_in("fdm-abs-0.4").dialects.marlin;
     (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
     profile
 }
@@ -58,13 +64,13 @@ fn job() -> Vec<Layer> {
 }
 
 fn written(name: &str, part: &str, layers: &[Layer], profile: &Profile) -> Files {
-    post::write(name, part, layers, profile).unwrap()
+    dialect::write(name, layers, &profile.job(part)).unwrap()
 }
 
 /// The flavours of G-code.
 fn flavour(name: &str) -> Profile {
     let mut profile = profile();
-    let gcode = profile.gcode.as_mut().unwrap();
+    let gcode = profile.dialects.gcode.as_mut().unwrap();
     let lines = |lines: &[&str]| lines.iter().map(|l| (*l).to_owned()).collect::<Vec<_>>();
     match name {
         "fanuc" => {
@@ -93,10 +99,10 @@ fn all() -> Vec<(&'static str, Files, Motion)> {
 fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
     let write = |post: &str| written(post, "demo", job, &profile());
     let mut plain = profile();
-    plain.rapid.as_mut().unwrap().arc = RapidArc::Plain;
+    plain.dialects.rapid.as_mut().unwrap().arc = RapidArc::Plain;
     let plain = written("rapid", "demo", job, &plain);
     let mut arctech = profile();
-    arctech.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    arctech.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let arctech = written("krl", "demo", job, &arctech);
     let (krl, rapid, fanuc, inform) = (write("krl"), write("rapid"), write("fanuc"), write("inform"));
     let (urscript, marlin) = (write("urscript"), write("marlin"));
@@ -203,7 +209,7 @@ fn what_the_project_reads_is_the_same() {
 #[test]
 fn arctech_switches_speeds_where_they_change() {
     let mut profile = profile();
-    profile.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let mut job = job();
     for pass in job.iter_mut().flat_map(|l| &mut l.passes) {
         if let Along::Each(speeds) = &mut pass.speed {
@@ -222,10 +228,10 @@ fn arctech_switches_speeds_where_they_change() {
     profile.program.speed_tolerance = 0.3;
     // The levelled speed of the line is its own.
     assert_eq!(count(&profile), ([2, 0, 2], 3));
-    profile.krl.as_mut().unwrap().arctech.as_mut().unwrap().version = "3.3.3".to_owned();
+    profile.dialects.krl.as_mut().unwrap().arctech.as_mut().unwrap().version = "3.3.3".to_owned();
     let error = Profile::parse(&toml::to_string(&profile).unwrap()).unwrap_err().to_string();
     assert!(error.contains("krl.arctech.version = \"3.3.3\""), "{error}");
-    profile.krl.as_mut().unwrap().arctech = None;
+    profile.dialects.krl.as_mut().unwrap().arctech = None;
     let error = Profile::parse(&toml::to_string(&profile).unwrap()).unwrap_err().to_string();
     assert!(error.contains("krl.arc = \"arctech\"") && error.contains("[krl.arctech]"), "{error}");
 }
@@ -233,7 +239,7 @@ fn arctech_switches_speeds_where_they_change() {
 #[test]
 fn the_krl_reader_refuses_what_arctech_would() {
     let mut profile = profile();
-    profile.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let good = written("krl", "demo", &job(), &profile);
     let taken = |files: &Files| std::panic::catch_unwind(|| readers::krl::run(files, "DEMO", "no output")).is_ok();
     assert!(taken(&good));
@@ -270,15 +276,15 @@ fn long_layers_are_split_and_read_back_alike() {
         (readers::fanuc::run(&fanuc, &a), readers::inform::run(&inform, &b), fanuc.len(), inform.len())
     };
     let whole = long("demo", &profile);
-    profile.fanuc.as_mut().unwrap().max_points = 20;
-    profile.inform.as_mut().unwrap().max_points = 20;
+    profile.dialects.fanuc.as_mut().unwrap().max_points = 20;
+    profile.dialects.inform.as_mut().unwrap().max_points = 20;
     for part in ["demo", &*"long ".repeat(20), "7-segment display", "Gr\u{fc}n", ""] {
         let split = long(part, &profile);
         assert!(split.2 > whole.2 + 8 && split.3 > whole.3 + 8, "{} {}", split.2, split.3);
         assert_eq!((&split.0, &split.1), (&whole.0, &whole.1));
     }
-    profile.fanuc.as_mut().unwrap().speed = FanucSpeed::CentimetresPerMinute;
-    profile.inform.as_mut().unwrap().speed = InformSpeed::CentimetresPerMinute;
+    profile.dialects.fanuc.as_mut().unwrap().speed = FanucSpeed::CentimetresPerMinute;
+    profile.dialects.inform.as_mut().unwrap().speed = InformSpeed::CentimetresPerMinute;
     let other = long("demo", &profile);
     assert!((other.0.welds[1].speeds[0] - 8.0).abs() < 0.02);
     assert!((other.1.welds[1].speeds[0] - 48.0).abs() < 0.06);
@@ -289,10 +295,10 @@ fn long_layers_are_split_and_read_back_alike() {
 fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
     let mut profile = profile();
     for (arc, outputs) in [(KrlArc::Outputs, "$OUT[2]"), (KrlArc::Arctech, "no output")] {
-        profile.krl.as_mut().unwrap().arc = arc;
-        profile.krl.as_mut().unwrap().max_points = 2000;
+        profile.dialects.krl.as_mut().unwrap().arc = arc;
+        profile.dialects.krl.as_mut().unwrap().max_points = 2000;
         let whole = written("krl", "demo", &job(), &profile);
-        profile.krl.as_mut().unwrap().max_points = 10;
+        profile.dialects.krl.as_mut().unwrap().max_points = 10;
         let cut = written("krl", "demo", &job(), &profile);
         assert!(cut.len() > whole.len() && cut.contains_key("DEMO_L001_2.src"), "{:?}", cut.keys());
         assert_eq!(readers::krl::run(&cut, "DEMO", outputs), readers::krl::run(&whole, "DEMO", outputs));
@@ -300,10 +306,10 @@ fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
         assert!(long.keys().all(|file| file.split('.').next().unwrap().len() <= 24), "{:?}", long.keys());
     }
     for (arc, output) in [(RapidArc::Instructions, ""), (RapidArc::Plain, "doArc")] {
-        let rapid = profile.rapid.as_mut().unwrap();
+        let rapid = profile.dialects.rapid.as_mut().unwrap();
         (rapid.arc, rapid.max_points) = (arc, 10_000);
         let whole = written("rapid", "demo", &job(), &profile);
-        profile.rapid.as_mut().unwrap().max_points = 10;
+        profile.dialects.rapid.as_mut().unwrap().max_points = 10;
         let cut = written("rapid", "demo", &job(), &profile);
         assert!(cut.len() > whole.len() && cut.contains_key("demo_L001_2.mod"), "{:?}", cut.keys());
         assert_eq!(readers::rapid::run(&cut, "demo", output), readers::rapid::run(&whole, "demo", output));

@@ -4,18 +4,20 @@
 mod readers;
 mod solids;
 
+use beadwright::dialect;
+use beadwright::dialect::reading::{self, Options};
 use beadwright::example;
 use beadwright::fill::compound::Compound;
 use beadwright::fill::zigzag::regions::Weave;
-use beadwright::fill::{PassKind, Strategy as _, angle};
+use beadwright::fill::{Strategy as _, angle};
+use beadwright::layer::Layer;
 use beadwright::model::import;
+use beadwright::pass::{Pass, PassKind};
 use beadwright::plan::{self, Plan};
 use beadwright::planar::scan::{Scan, Spacing};
 use beadwright::planar::turns::ends_at;
 use beadwright::planar::{DVec2, FillRule, Join, Polygon, Region, Ring};
-use beadwright::post;
 use beadwright::profile::Profile;
-use beadwright::readback::{self, Options};
 use beadwright::slice::Slicer;
 use beadwright::task::Task;
 use proptest::prelude::*;
@@ -35,14 +37,14 @@ fn plan_of(part: &str, profile: &Profile) -> Plan {
 }
 
 fn gcode(plan: &Plan, profile: &Profile) -> String {
-    post::write("marlin", "part", &plan.layers, profile).unwrap().into_values().collect()
+    dialect::write("marlin", &plan.layers, &profile.job("part")).unwrap().into_values().collect()
 }
 
 #[test]
 fn filament_is_the_deposited_volume() {
     for (part, relative) in [("plate", true), ("plate", false), ("gear", true), ("star", false)] {
         let mut profile = profile();
-        profile.marlin.as_mut().unwrap().relative_extrusion = relative;
+        profile.dialects.marlin.as_mut().unwrap().relative_extrusion = relative;
         let plan = plan_of(part, &profile);
         let print = readers::marlin::run(&gcode(&plan, &profile));
         let volume = print.filament * PI * profile.wire.diameter * profile.wire.diameter / 4.0;
@@ -62,7 +64,7 @@ fn filament_is_the_deposited_volume() {
 fn our_own_reader_reads_the_same() {
     let profile = profile();
     let plan = plan_of("plate", &profile);
-    let program = readback::read(&gcode(&plan, &profile), &mut |_| None, &Options::default()).unwrap();
+    let program = reading::read(&gcode(&plan, &profile), &mut |_| None, &Options::default()).unwrap();
     let (totals, metrics) = (program.totals(), &plan.summary.metrics);
     assert_eq!(totals.arc_starts, metrics.passes);
     assert!((totals.deposited_length_mm - metrics.deposited_length_mm).abs() < 1e-3 * metrics.deposited_length_mm);
@@ -85,8 +87,7 @@ fn sparse_infill_is_solid_at_tops_and_bottoms() {
     let mut profile = profile();
     profile.fill.infill_density = 0.2;
     let plan = plan_of("plate", &profile);
-    let infill =
-        |l: &plan::Layer| l.passes.iter().filter(|p| p.kind == PassKind::Infill).map(plan::Pass::length).sum::<f64>();
+    let infill = |l: &Layer| l.passes.iter().filter(|p| p.kind == PassKind::Infill).map(Pass::length).sum::<f64>();
     let lengths: Vec<f64> = plan.layers.iter().map(infill).collect();
     let (solid, count) = (profile.fill.solid_layers as usize, lengths.len());
     for (i, length) in lengths.iter().enumerate() {

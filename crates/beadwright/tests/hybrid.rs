@@ -1,11 +1,12 @@
 //! The contour-skeleton hybrid step by step, and what it builds beside plain contours.
 #![allow(clippy::unwrap_used)]
 
-use beadwright::deposit::{Figures, Judge, Subject};
+use beadwright::deposit::{Figures, Judge};
 use beadwright::example;
 use beadwright::fill::hybrid::pockets::{self, Level, PocketKind};
 use beadwright::fill::hybrid::{Steps, contours};
-use beadwright::fill::{self, FillSettings, Pass};
+use beadwright::fill::{self, FillSettings, Path};
+use beadwright::layer::Layer;
 use beadwright::pass::{self, Along};
 use beadwright::plan;
 use beadwright::profile::Profile;
@@ -144,8 +145,8 @@ fn example_slice(name: &str) -> Vec<Polygon> {
     middle(&example::find(name).unwrap().mesh(), &profile())
 }
 
-fn lifted(passes: impl IntoIterator<Item = Pass>, speed: f64, width: f64) -> Vec<pass::Pass> {
-    let lift = |p: Pass| pass::Pass {
+fn lifted(passes: impl IntoIterator<Item = Path>, speed: f64, width: f64) -> Vec<pass::Pass> {
+    let lift = |p: Path| pass::Pass {
         kind: p.kind,
         closed: p.closed,
         points: p.points.into_iter().map(|q| q.extend(0.0)).collect(),
@@ -162,7 +163,8 @@ fn judged(islands: &[Polygon], strategy: &str, profile: &Profile) -> (Figures, V
     let long = passes.filter(|p| p.length() >= settings.min_pass_length);
     let passes = lifted(long, profile.process.deposition_speed, profile.bead.width);
     let mut judge = Judge::new(plan::deposit_settings(profile));
-    (judge.layer(Subject { layer: 0, islands, passes: &passes }).figures, passes)
+    let layer = Layer { islands: islands.to_vec(), passes, ..Layer::default() };
+    (judge.layer(&layer).figures, layer.passes)
 }
 
 /// What was reached when this was written, with some room: void and overfill in %, and the void of plain contours over

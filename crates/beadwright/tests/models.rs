@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use beadwright::model::import;
-use beadwright::slice::{Layer, SliceOptions, Slicer};
+use beadwright::slice::{Slice, SliceOptions, Slicer};
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use glam::DVec3;
@@ -46,7 +46,7 @@ fn name(path: &Path) -> String {
 }
 
 /// The part enlarged to 200 mm in 200 layers.
-fn sliced(mesh: &mut beadwright::model::Mesh) -> Vec<Layer> {
+fn sliced(mesh: &mut beadwright::model::Mesh) -> Vec<Slice> {
     mesh.place(200.0 / mesh.size().max_element(), DVec3::ZERO);
     let options = SliceOptions { layer_height: mesh.size().z / 200.0, close_gap: 0.5, simplify: 0.01 };
     Slicer::new(mesh, options, &Task::new()).unwrap().all(&Task::new()).unwrap()

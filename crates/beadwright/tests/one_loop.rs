@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used)]
 
 use beadwright::bead::{Bead, Law, Section};
-use beadwright::deposit::{Figures, Judge, Subject};
-use beadwright::fill::{self, Fill, FillSettings, Pass};
+use beadwright::deposit::{Figures, Judge};
+use beadwright::fill::{self, Fill, FillSettings, Path};
+use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Join, Polygon, Region, Ring, polyline};
 use beadwright::profile::Profile;
 use beadwright::slice::Slicer;
@@ -15,12 +16,12 @@ fn profile() -> Profile {
     Profile::built_in("cmt-al2319-kuka").unwrap()
 }
 
-fn lay(strategy: &str, island: &Polygon, settings: &FillSettings) -> Vec<Pass> {
+fn lay(strategy: &str, island: &Polygon, settings: &FillSettings) -> Vec<Path> {
     let Fill { stages, .. } = fill::strategy(strategy).unwrap().fill(island, settings);
     stages.into_iter().flatten().collect()
 }
 
-fn looped(island: &Polygon, profile: &Profile) -> Vec<Pass> {
+fn looped(island: &Polygon, profile: &Profile) -> Vec<Path> {
     lay("loop", island, &profile.fill_settings(0))
 }
 
@@ -49,9 +50,9 @@ fn rectangle(low: (f64, f64), high: (f64, f64)) -> Ring {
     Ring::new([low, (high.0, low.1), high, (low.0, high.1)].map(DVec2::from).to_vec())
 }
 
-fn lifted(passes: &[Pass], profile: &Profile) -> Vec<pass::Pass> {
+fn lifted(passes: &[Path], profile: &Profile) -> Vec<pass::Pass> {
     let (bead, law, speed) = (profile.bead(), &profile.bead.law, profile.process.deposition_speed);
-    let lift = |path: &Pass| pass::Pass {
+    let lift = |path: &Path| pass::Pass {
         kind: path.kind,
         closed: path.closed,
         points: path.points.iter().map(|p| p.extend(2.0)).collect(),
@@ -61,10 +62,9 @@ fn lifted(passes: &[Pass], profile: &Profile) -> Vec<pass::Pass> {
     passes.iter().map(lift).collect()
 }
 
-fn judged(island: &Polygon, passes: &[Pass], profile: &Profile) -> Figures {
-    let (islands, passes) = ([island.clone()], lifted(passes, profile));
-    let subject = Subject { layer: 0, islands: &islands, passes: &passes };
-    Judge::new(plan::deposit_settings(profile)).layer(subject).figures
+fn judged(island: &Polygon, passes: &[Path], profile: &Profile) -> Figures {
+    let (islands, passes) = (vec![island.clone()], lifted(passes, profile));
+    Judge::new(plan::deposit_settings(profile)).layer(&Layer { islands, passes, ..Layer::default() }).figures
 }
 
 /// Where a disc of 1.4 bead widths fits.
@@ -246,7 +246,7 @@ fn thin_walls_are_welded_by_every_solid_strategy_and_tied_in() {
     let island = Polygon::simple(Ring::new(outline.map(DVec2::from).to_vec()));
     for strategy in ["loop", "contour", "compound", "zigzag", "hybrid"] {
         let passes = lay(strategy, &island, &profile.fill_settings(0));
-        let on_fin = |pass: &Pass| {
+        let on_fin = |pass: &Path| {
             let path = pass.path();
             let pieces = path.windows(2).enumerate().map(|(i, w)| {
                 let within = (w[0].x.max(w[1].x).min(115.0) - w[0].x.min(w[1].x).max(75.0)).max(0.0);
@@ -357,13 +357,13 @@ fn laws_keep_the_metal() {
 fn starts_stand_up_and_ends_sink() {
     let mut profile = profile();
     let line = pass::Pass {
-        kind: fill::PassKind::Contour,
+        kind: pass::PassKind::Contour,
         closed: false,
         points: vec![glam::DVec3::new(0.0, 0.0, 2.0), glam::DVec3::new(100.0, 0.0, 2.0)],
         speed: pass::Along::Same(profile.process.deposition_speed),
         width: pass::Along::Same(profile.bead.width),
     };
-    let layer = plan::Layer { passes: vec![line], ..plan::Layer::default() };
+    let layer = Layer { passes: vec![line], ..Layer::default() };
     let metal = |profile: &Profile| {
         let bead = profile.bead();
         let time = |s: pass::Segment| s.length() / s.speed;
@@ -386,7 +386,7 @@ fn a_quarter_turn_of_a_square_is_the_square() {
     // What symmetric islands get must not depend on which way they are looked at.
     let profile = profile();
     let square = Polygon::simple(rectangle((-40.0, -40.0), (40.0, 40.0)));
-    let length = |island: &Polygon| looped(island, &profile).iter().map(Pass::length).sum::<f64>();
+    let length = |island: &Polygon| looped(island, &profile).iter().map(Path::length).sum::<f64>();
     let way = DVec2::from_angle(FRAC_PI_2);
     let (a, b) = (length(&square), length(&moved(&square, |p| way.rotate(p))));
     assert!((a / b - 1.0).abs() < 0.01, "{a} and {b} mm");

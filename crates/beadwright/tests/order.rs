@@ -3,30 +3,32 @@
 
 mod solids;
 
-use beadwright::fill::{Fill, FillSettings, Pass, PassKind, STRATEGIES};
+use beadwright::fill::{Fill, FillSettings, Path, STRATEGIES};
+
 use beadwright::order::{OrderSettings, Seam, order};
 use beadwright::pass::Along;
+use beadwright::pass::PassKind;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
 use proptest::prelude::*;
 use solids::runner;
 use std::sync::LazyLock;
 
-fn open(points: &[(f64, f64)], reversible: bool) -> Pass {
+fn open(points: &[(f64, f64)], reversible: bool) -> Path {
     let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
-    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), reversible }
+    Path { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), reversible }
 }
 
-fn closed(points: &[(f64, f64)]) -> Pass {
-    Pass { kind: PassKind::Contour, closed: true, ..open(points, true) }
+fn closed(points: &[(f64, f64)]) -> Path {
+    Path { kind: PassKind::Contour, closed: true, ..open(points, true) }
 }
 
-fn end(pass: &Pass) -> DVec2 {
+fn end(pass: &Path) -> DVec2 {
     if pass.closed { pass.points[0] } else { *pass.points.last().unwrap() }
 }
 
 /// Length of the moves without arc, mm.
-fn travel<'a>(passes: impl IntoIterator<Item = &'a Pass>, mut torch: DVec2) -> f64 {
+fn travel<'a>(passes: impl IntoIterator<Item = &'a Path>, mut torch: DVec2) -> f64 {
     let mut length = 0.0;
     for pass in passes {
         length += torch.distance(pass.points[0]);
@@ -40,7 +42,7 @@ fn between(point: DVec2, (a, b): (DVec2, DVec2)) -> bool {
 }
 
 /// Whether `laid` is `pass` as it may be laid.
-fn same(laid: &Pass, pass: &Pass) -> bool {
+fn same(laid: &Path, pass: &Path) -> bool {
     let mut points = pass.points.clone();
     let turned = if pass.closed {
         // It may begin in the middle of an edge.
@@ -54,16 +56,16 @@ fn same(laid: &Pass, pass: &Pass) -> bool {
         points.reverse();
         pass.reversible && points == laid.points
     };
-    let rest = |p: &Pass| (p.kind, p.closed, p.reversible);
+    let rest = |p: &Path| (p.kind, p.closed, p.reversible);
     rest(laid) == rest(pass) && (laid.points == pass.points || turned)
 }
 
 /// Orders the islands and returns, for each pass laid, its island and stage. Every pass must come once.
-fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Pass>, Vec<(usize, usize)>) {
+fn check(islands: &[Fill], torch: Option<DVec2>) -> (Vec<Path>, Vec<(usize, usize)>) {
     let mut at = torch;
     let laid = order(islands.to_vec(), &OrderSettings::default(), &mut at);
     assert_eq!(at, laid.last().map(end).or(torch), "the torch ends where the last pass ends");
-    let mut left: Vec<(usize, usize, &Pass)> = Vec::new();
+    let mut left: Vec<(usize, usize, &Path)> = Vec::new();
     for (i, fill) in islands.iter().enumerate() {
         left.extend(fill.stages.iter().enumerate().flat_map(|(s, stage)| stage.iter().map(move |p| (i, s, p))));
     }
@@ -154,7 +156,7 @@ fn a_fixed_order_is_kept_with_its_directions() {
 }
 
 /// Passes of 2 to 6 points within 100 mm.
-fn random_pass() -> impl Strategy<Value = Pass> {
+fn random_pass() -> impl Strategy<Value = Path> {
     let points = prop::collection::vec((0.0..100.0, 0.0..100.0), 2..7);
     (points, any::<bool>(), any::<bool>()).prop_map(|(points, ring, reversible)| {
         if ring && points.len() > 2 { closed(&points) } else { open(&points, reversible) }
@@ -195,7 +197,7 @@ fn seams(seam: Seam, fixed_order: bool, layers: usize) -> Vec<f64> {
         let settings = OrderSettings { seam, layer, bead_width: 5.0, ..OrderSettings::default() };
         let laid = order(vec![fill.clone()], &settings, &mut Some(DVec2::new(7.0, -9.0)));
         assert!(same(&laid[0], &ring), "{laid:?}");
-        let path = Pass {
+        let path = Path {
             points: vec![(0.0, 30.0).into(), (0.0, 0.0).into(), (30.0, 0.0).into(), (30.0, 30.0).into()],
             ..ring.clone()
         }
@@ -226,7 +228,7 @@ fn seams_lie_where_they_are_wanted() {
 }
 
 /// Where a pass begins, and which way it goes on.
-fn way(pass: &Pass) -> [DVec2; 2] {
+fn way(pass: &Path) -> [DVec2; 2] {
     [pass.points[0], pass.points[1]]
 }
 
@@ -245,7 +247,7 @@ fn passes_alternate_from_layer_to_layer() {
             let settings = OrderSettings { seam: Seam::Aligned, alternate: true, layer, ..OrderSettings::default() };
             order(vec![fill.clone()], &settings, &mut Some(DVec2::new(7.0, -9.0)))
         };
-        let find = |laid: &[Pass], x: f64| laid.iter().find(|p| p.points.iter().any(|q| q.x == x)).unwrap().clone();
+        let find = |laid: &[Path], x: f64| laid.iter().find(|p| p.points.iter().any(|q| q.x == x)).unwrap().clone();
         for layer in 0..4 {
             let (laid, odd) = (laid(layer), layer % 2 == 1);
             let ring = find(&laid, 30.0);

@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::example;
+use beadwright::layer::Layer;
 use beadwright::model::{Import, Model, Part, PartError, Placement, Units};
-use beadwright::plan::{self, Layer};
+use beadwright::plan;
 use beadwright::profile::{Profile, edit};
 use beadwright::task::Task;
 use glam::{DMat3, DVec3};

@@ -4,12 +4,14 @@
 
 mod readers;
 
+use beadwright::dialect;
+use beadwright::dialect::rapid::RapidArc;
 use beadwright::fill::STRATEGIES;
+use beadwright::layer::Layer;
 use beadwright::model::Mesh;
-use beadwright::plan::{self, Layer, Plan};
+use beadwright::plan::{self, Plan};
 use beadwright::planar::DVec2;
-use beadwright::post;
-use beadwright::profile::{Profile, RapidArc};
+use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{example, plan_file};
 use readers::{Motion, distance};
@@ -166,7 +168,7 @@ fn dense_strategies_lay_about_the_volume_of_the_part() {
 
 /// Writes the plan with a post and returns its files.
 fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
-    post::write(name, "Test part-1", &plan.layers, profile).unwrap()
+    dialect::write(name, &plan.layers, &profile.job("Test part-1")).unwrap()
 }
 
 fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
@@ -192,7 +194,7 @@ fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
 fn krl_reads_back_as_planned() {
     each_case(|case, plan, profile| {
         let mut profile = profile.clone();
-        profile.krl = Profile::built_in("cmt-al2319-kuka").unwrap().krl;
+        profile.dialects.krl = Profile::built_in("cmt-al2319-kuka").unwrap().dialects.krl;
         let files = written(plan, &profile, "krl");
         same_as_plan(case, &readers::krl::run(&files, "TEST_PART_1", "$OUT[2]"), plan, &profile);
     });
@@ -202,7 +204,7 @@ fn krl_reads_back_as_planned() {
 fn gcode_reads_back_as_planned() {
     each_case(|case, plan, profile| {
         let mut profile = profile.clone();
-        profile.gcode = Profile::built_in("plasma-304-cnc").unwrap().gcode;
+        profile.dialects.gcode = Profile::built_in("plasma-304-cnc").unwrap().dialects.gcode;
         let files = written(plan, &profile, "gcode");
         same_as_plan(case, &readers::gcode::run(&files["Test part-1.nc"], 3, 5), plan, &profile);
     });
@@ -212,12 +214,12 @@ fn gcode_reads_back_as_planned() {
 fn rapid_reads_back_as_planned() {
     each_case(|case, plan, profile| {
         let mut profile = profile.clone();
-        let mut rapid = Profile::built_in("cmt-steel-abb").unwrap().rapid.unwrap();
+        let mut rapid = Profile::built_in("cmt-steel-abb").unwrap().dialects.rapid.unwrap();
         // Fine steps: the times are compared within 1 %, at down to 3 mm/s.
         rapid.speed_step = 0.02;
-        let plain = profile.krl.is_none();
+        let plain = profile.dialects.krl.is_none();
         rapid.arc = if plain { RapidArc::Plain } else { RapidArc::Instructions };
-        profile.rapid = Some(rapid);
+        profile.dialects.rapid = Some(rapid);
         let files = written(plan, &profile, "rapid");
         let output = if plain { "doArc" } else { "" };
         same_as_plan(case, &readers::rapid::run(&files, "Test_part_1", output), plan, &profile);

@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use beadwright::bead::MassBalance;
-use beadwright::post;
-use beadwright::profile::{BUILT_IN, Profile, StartStop};
+use beadwright::dialect;
+use beadwright::process::StartStop;
+use beadwright::profile::{BUILT_IN, Profile};
 use toml_edit::{Document, DocumentMut, Item, Value};
 
 const KUKA: &str = "cmt-al2319-kuka";
@@ -43,7 +44,7 @@ fn built_in_profiles_have_no_notes() {
         assert!((profile.mass_balance().ratio() - 1.0).abs() < 0.01, "{name}: {}", profile.mass_balance().ratio());
         assert!(!profile.posts.is_empty() && !profile.description.is_empty());
         for post in &profile.posts {
-            assert!(post::post(post, "part", &profile).is_ok(), "{name} names the post {post}");
+            assert!(dialect::writer(post, &profile.job("part")).is_ok(), "{name} names the post {post}");
         }
     }
 }
@@ -57,7 +58,9 @@ fn a_misspelt_name_gets_the_nearest_or_all() {
 
 #[test]
 fn a_post_without_its_section_is_refused() {
-    let Err(error) = post::post("krl", "part", &Profile::built_in(CNC).unwrap()) else { panic!("it was taken") };
+    let Err(error) = dialect::writer("krl", &Profile::built_in(CNC).unwrap().job("part")) else {
+        panic!("it was taken")
+    };
     let error = error.to_string();
     assert!(
         error.contains("no [krl] section") && error.contains(&format!("beadwright profile show {KUKA}")),
@@ -195,7 +198,7 @@ fn the_example_of_starts_and_stops_is_valid() {
     let mut profile = Profile::parse(&format!("{head}[start_stop]{}\n{rest}", example.replace("\n# ", "\n"))).unwrap();
     assert!(profile.start_stop.end_overlap > 0.0 && profile.start_stop.min_layer_time > 0.0);
     assert_eq!(profile.notes(), [""; 0]);
-    assert!(post::post("krl", "part", &profile).is_ok());
+    assert!(dialect::writer("krl", &profile.job("part")).is_ok());
     // It changes nothing else.
     profile.start_stop = StartStop::default();
     assert_eq!(profile, Profile::built_in(KUKA).unwrap());

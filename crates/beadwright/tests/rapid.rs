@@ -3,13 +3,14 @@
 
 mod readers;
 
-use beadwright::fill::PassKind;
+use beadwright::dialect;
+use beadwright::dialect::rapid::{RapidArc, RapidModules, WireFeedUnit};
+use beadwright::dialect::reading::{ArcCodes, Options, ReadProgram, read};
+use beadwright::layer::Layer;
+use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::Layer;
-use beadwright::profile::{Profile, RapidArc, RapidModules, WireFeedUnit};
+use beadwright::profile::Profile;
 use beadwright::program::Programmer;
-use beadwright::readback::{ArcCodes, Options, read};
-use beadwright::{post, readback};
 use glam::DVec3;
 use readers::distance;
 use std::collections::BTreeMap;
@@ -22,7 +23,7 @@ fn profile() -> Profile {
 
 fn plain() -> Profile {
     let mut profile = profile();
-    let rapid = profile.rapid.as_mut().unwrap();
+    let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.arc, rapid.modules) = (RapidArc::Plain, RapidModules::Call);
     profile
 }
@@ -62,7 +63,7 @@ fn job() -> Vec<Layer> {
 
 fn written(part: &str, layers: &[Layer], count: usize, profile: &Profile) -> Files {
     let mut files = Files::new();
-    let mut post = post::post("rapid", part, profile).unwrap();
+    let mut post = dialect::writer("rapid", &profile.job(part)).unwrap();
     let mut programmer = Programmer::new(profile.travel.clearance);
     let mut chunks = post.begin(count);
     for layer in layers {
@@ -107,7 +108,7 @@ fn the_job_reads_back_as_planned() {
             ..Options::default()
         };
         let mut find = |name: &str| files.get(&format!("{name}.mod")).cloned();
-        let program: readback::Program = read(&files["frame.mod"], &mut find, &options).unwrap();
+        let program: ReadProgram = read(&files["frame.mod"], &mut find, &options).unwrap();
         let totals = program.totals();
         assert_eq!(totals.arc_starts, 4);
         assert!((totals.deposited_length_mm - motion.weld_length()).abs() < 1e-6, "{}", totals.deposited_length_mm);
@@ -123,7 +124,7 @@ fn every_layer_declares_the_few_speeds_that_it_uses() {
         assert_eq!(files[layer].matches("LOCAL PERS welddata ").count(), 4, "{}", files[layer]);
     }
     let mut coarse = profile();
-    coarse.rapid.as_mut().unwrap().speed_step = 50.0;
+    coarse.dialects.rapid.as_mut().unwrap().speed_step = 50.0;
     let files = written("frame", &job(), 2, &coarse);
     assert_eq!(files["frame_L001.mod"].matches(" wd1:=[8.000,0,[1,7,").count(), 1);
     assert!(!files["frame_L001.mod"].contains("wd2"));
@@ -139,7 +140,7 @@ fn long_and_strange_names_stay_legal_and_distinct() {
     for part in [&*"w".repeat(60), "fine", "7-segment display", "Gr\u{fc}n", "tTorch", "MODULE", "", "layer001", "wd1"]
     {
         let mut profile = profile();
-        profile.rapid.as_mut().unwrap().folder = format!("HOME:/{}", "f".repeat(34));
+        profile.dialects.rapid.as_mut().unwrap().folder = format!("HOME:/{}", "f".repeat(34));
         for count in [2, 20_000] {
             let files = written(part, &job(), count, &profile);
             let main = files.keys().min_by_key(|k| k.len()).unwrap().strip_suffix(".mod").unwrap();
@@ -151,7 +152,7 @@ fn long_and_strange_names_stay_legal_and_distinct() {
 #[test]
 fn exact_stops_without_a_zone_and_no_list_where_none_is_wanted() {
     let mut profile = profile();
-    let rapid = profile.rapid.as_mut().unwrap();
+    let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.zone, rapid.pgf, rapid.wire_feed_unit) = (0.0, false, WireFeedUnit::MillimetresPerSecond);
     rapid.orientation = [0.0, 0.7072, 0.0, 0.7072];
     let files = written("frame", &job(), 2, &profile);
@@ -165,7 +166,7 @@ fn exact_stops_without_a_zone_and_no_list_where_none_is_wanted() {
 #[test]
 fn data_of_the_controller_are_not_declared_again() {
     let mut profile = profile();
-    let rapid = profile.rapid.as_mut().unwrap();
+    let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.tool_frame, rapid.part_frame) = (None, None);
     let main = &written("frame", &job(), 2, &profile)["frame.mod"];
     assert!(!main.contains("tooldata") && !main.contains("wobjdata") && main.contains("tTorch\\WObj:=wPart"));

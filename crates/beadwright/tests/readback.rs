@@ -1,25 +1,25 @@
 //! Programs read back: known geometry in each dialect, the same program in other words, errors, our own programs.
 #![allow(clippy::unwrap_used)]
 
+use beadwright::dialect::reading::{ArcCodes, CHORD_MM, Metal, Options, ReadError, ReadProgram, ReadTotals, read};
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
-use beadwright::readback::{ArcCodes, CHORD_MM, Dialect, Metal, Options, Program, ReadError, Totals, read};
 use beadwright::task::Task;
-use beadwright::{example, post};
+use beadwright::{dialect, example};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 
-fn try_read(text: &str, options: &Options) -> Result<Program, ReadError> {
+fn try_read(text: &str, options: &Options) -> Result<ReadProgram, ReadError> {
     read(text, &mut |_| None, options)
 }
 
-fn of(text: &str) -> Program {
+fn of(text: &str) -> ReadProgram {
     try_read(text, &Options::default()).unwrap()
 }
 
 /// Reads with other modules at hand.
-fn with_modules(text: &str, modules: &[(&str, &str)]) -> Result<Program, ReadError> {
+fn with_modules(text: &str, modules: &[(&str, &str)]) -> Result<ReadProgram, ReadError> {
     let mut find = |name: &str| modules.iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| m.1.to_owned());
     read(text, &mut find, &Options::default())
 }
@@ -34,7 +34,7 @@ fn near(a: f64, b: f64) {
 }
 
 #[track_caller]
-fn totals_are(program: &Program, starts: usize, deposited: f64, travel: f64) -> Totals {
+fn totals_are(program: &ReadProgram, starts: usize, deposited: f64, travel: f64) -> ReadTotals {
     let totals = program.totals();
     assert_eq!(totals.arc_starts, starts, "{program:#?}");
     near(totals.deposited_length_mm, deposited);
@@ -74,7 +74,7 @@ N170 M30
 #[test]
 fn gcode_of_a_machine() {
     let program = of(TWO_LAYERS);
-    assert_eq!((program.dialect, program.notes.len()), (Dialect::Gcode, 0), "{:?}", program.notes);
+    assert_eq!((program.language, program.notes.len()), ("G-code", 0), "{:?}", program.notes);
     // Down 8; up 8, back 50, down 6.
     let totals = totals_are(&program, 2, 100.0, 8.0 + 8.0 + 50.0 + 6.0);
     near(totals.time_s, 70.0 / 10.0 + 30.0 / 5.0 + 2.5);
@@ -225,7 +225,7 @@ fn settings_of_a_printer_move_nothing() {
     let plain = of("G28\nG1 Z1 F60\nG1 X10 E1\nG1 X20 E2\n");
     let settings =
         of("G28\nG1 Z1 F60\nG1 X10 E1\nM201 X9000 Y9000 E5000\nM207 S1 F3600\nM84 X Y E\nM117 X1 done\nG1 X20 E2\n");
-    let ends = |p: &Program| p.moves.iter().map(|m| (m.to, m.speed, m.metal)).collect::<Vec<_>>();
+    let ends = |p: &ReadProgram| p.moves.iter().map(|m| (m.to, m.speed, m.metal)).collect::<Vec<_>>();
     assert_eq!(ends(&settings), ends(&plain));
     assert!(settings.notes.iter().all(|n| n.contains("1.75")), "{:?}", settings.notes);
 }
@@ -314,7 +314,7 @@ const KRL_DATA: &str = "&ACCESS RVP\nDEFDAT PART\nDECL E6AXIS XHOME={A1 0.0,A2 -
 fn krl_with_data_and_subprograms() {
     let program = with_modules(KRL, &[("PART.dat", KRL_DATA)]).unwrap();
     let totals = program.totals();
-    assert_eq!((program.dialect, totals.arc_starts), (Dialect::Krl, 2));
+    assert_eq!((program.language, totals.arc_starts), ("KRL", 2));
     near(totals.travel_length_mm, 8.0 + 50.0);
     let half = 10.0 * PI;
     assert!((totals.deposited_length_mm - 70.0 - half).abs() < chord_loss(half, 10.0));
@@ -405,7 +405,7 @@ ENDMODULE
 fn rapid_with_weld_instructions() {
     let program = of(RAPID);
     let totals = program.totals();
-    assert_eq!((program.dialect, totals.arc_starts), (Dialect::Rapid, 2));
+    assert_eq!((program.language, totals.arc_starts), ("RAPID", 2));
     let lifted = DVec3::new(30.0, 40.0, 2.0).distance(DVec3::new(0.0, 0.0, 4.0));
     near(totals.travel_length_mm, 8.0 + lifted + 2.0);
     let (half, last) = (10.0 * PI, 20.0_f64.hypot(2.0));
@@ -474,7 +474,7 @@ fn broken_texts_never_panic() {
 
 /// Writes a plan with a post.
 fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
-    post::write(name, "PART", &plan.layers, profile).unwrap()
+    dialect::write(name, &plan.layers, &profile.job("PART")).unwrap()
 }
 
 #[test]

@@ -3,13 +3,16 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use beadwright::plan::{self, Along, Layer, Pass, Plan};
+use beadwright::example;
+use beadwright::layer::Layer;
+use beadwright::model::RepairReport;
+use beadwright::pass::{Along, Pass, PassKind};
+use beadwright::plan::{self, Plan};
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
 use beadwright::report::{Report, encode, svg};
 use beadwright::task::Task;
 use beadwright::warning::{Warning, WarningKind};
-use beadwright::{example, fill::PassKind, model::RepairReport};
 use std::io::Read;
 
 fn planned(part: &str) -> (Plan, Profile) {

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use beadwright::example;
-use beadwright::fill::PassKind;
-use beadwright::pass::{Along, Pass};
-use beadwright::plan::{self, Layer};
+use beadwright::layer::Layer;
+use beadwright::pass::{Along, Pass, PassKind};
+use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::robot::cell::BUILT_IN;
 use beadwright::robot::{self, Cell, CellError, Frame, PartPlace, Reach, Track, Trouble};

@@ -4,7 +4,7 @@
 mod solids;
 
 use beadwright::example;
-use beadwright::slice::{BATCH, Layer, SliceOptions, Slicer};
+use beadwright::slice::{BATCH, Slice, SliceOptions, Slicer};
 use beadwright::task::Task;
 use beadwright::warning::{WarningKind, WarningSummary, Warnings};
 use glam::DVec3;
@@ -20,7 +20,7 @@ fn options(layer_height: f64) -> SliceOptions {
 }
 
 /// All layers, after looking at what holds for every part.
-fn cut(facets: &[Facet], options: SliceOptions) -> Vec<Layer> {
+fn cut(facets: &[Facet], options: SliceOptions) -> Vec<Slice> {
     let mesh = imported(facets).mesh;
     let layers = Slicer::new(&mesh, options, &Task::new()).unwrap().all(&Task::new()).unwrap();
     for (k, layer) in layers.iter().enumerate() {
@@ -52,11 +52,11 @@ fn check(facets: &[Facet], layer_height: f64, layers: usize, area: impl Fn(f64) 
 }
 
 /// (islands, holes) of each layer.
-fn topology(layers: &[Layer]) -> Vec<(usize, usize)> {
+fn topology(layers: &[Slice]) -> Vec<(usize, usize)> {
     layers.iter().map(|l| (l.islands.len(), l.islands.iter().map(|i| i.holes.len()).sum())).collect()
 }
 
-fn summaries(layers: &[Layer]) -> Vec<WarningSummary> {
+fn summaries(layers: &[Slice]) -> Vec<WarningSummary> {
     let mut warnings = Warnings::default();
     layers.iter().flat_map(|l| &l.warnings).for_each(|w| warnings.add(*w));
     warnings.summaries().cloned().collect()
@@ -204,7 +204,7 @@ fn batches_in_any_order_are_the_same_layers() {
 }
 
 fn areas(facets: &[Facet]) -> Vec<f64> {
-    cut(facets, options(0.7)).iter().map(Layer::area).collect()
+    cut(facets, options(0.7)).iter().map(Slice::area).collect()
 }
 
 /// Parts with slopes, holes and several islands.

@@ -6,14 +6,17 @@ mod readers;
 
 use beadwright::check;
 use beadwright::deposit::Judge;
-use beadwright::fill::PassKind;
+use beadwright::dialect;
+use beadwright::dialect::fanuc::FanucSpeed;
+use beadwright::dialect::rapid::RapidArc;
+use beadwright::dialect::reading::{ArcCodes, Options, ReadProgram, read};
+use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
-use beadwright::pass::{Along, Pass};
-use beadwright::plan::{self, Layer};
-use beadwright::post;
-use beadwright::profile::{FanucSpeed, Follow, Profile, RapidArc, StartStop, edit};
-use beadwright::program::{Instruction, LayerProgram, Programmer};
-use beadwright::readback::{ArcCodes, Options, Program, read};
+use beadwright::pass::{Along, Pass, PassKind};
+use beadwright::plan;
+use beadwright::process::{Follow, StartStop};
+use beadwright::profile::{Profile, edit};
+use beadwright::program::{Instruction, LayerProgram};
 use beadwright::task::Task;
 use beadwright::weld;
 use glam::DVec3;
@@ -30,10 +33,10 @@ fn lines(lines: &[&str]) -> Vec<String> {
 fn plain() -> Profile {
     let built_in = |name| Profile::built_in(name).unwrap();
     let mut profile = built_in("cmt-steel-robots");
-    profile.rapid = built_in("cmt-steel-abb").rapid;
-    profile.krl = built_in("cmt-al2319-kuka").krl;
-    profile.gcode = built_in("plasma-304-cnc").gcode;
-    profile.marlin = built_in("fdm-abs-0.4").marlin;
+    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
+    profile.dialects.krl = built_in("cmt-al2319-kuka").dialects.krl;
+    profile.dialects.gcode = built_in("plasma-304-cnc").dialects.gcode;
+    profile.dialects.marlin = built_in("fdm-abs-0.4").dialects.marlin;
     profile
 }
 
@@ -53,23 +56,23 @@ fn with_ends() -> Profile {
         dwell_height: 15.0,
         ..StartStop::default()
     };
-    let krl = profile.krl.as_mut().unwrap();
+    let krl = profile.dialects.krl.as_mut().unwrap();
     krl.wire_feed = lines(&["$ANOUT[1] = {{wire_feed_ratio}}"]);
     krl.arc_off.push("WAIT SEC {{wire_retract_time}}".to_owned());
-    let gcode = profile.gcode.as_mut().unwrap();
+    let gcode = profile.dialects.gcode.as_mut().unwrap();
     gcode.wire_feed = lines(&["M67 E0 Q{{wire_feed_ratio}}"]);
     gcode.crater = lines(&["M68 E0 Q{{wire_feed_ratio}}"]);
     gcode.arc_off.push("G4 P{{wire_retract_time}}".to_owned());
-    let rapid = profile.rapid.as_mut().unwrap();
+    let rapid = profile.dialects.rapid.as_mut().unwrap();
     rapid.wire_feed = lines(&["SetAO aoWire,{{wire_feed_ratio}};"]);
     rapid.arc_off.push("WaitTime \\InPos,{{wire_retract_time}};".to_owned());
-    let fanuc = profile.fanuc.as_mut().unwrap();
+    let fanuc = profile.dialects.fanuc.as_mut().unwrap();
     fanuc.wire_feed = lines(&["AO[1]={{wire_feed_ratio}}"]);
     fanuc.arc_off.push("WAIT {{wire_retract_time}}(sec)".to_owned());
-    let inform = profile.inform.as_mut().unwrap();
+    let inform = profile.dialects.inform.as_mut().unwrap();
     inform.wire_feed = lines(&["AOUT AO#(1) {{wire_feed_ratio}}"]);
     inform.arc_off.push("TIMER T={{wire_retract_time}}".to_owned());
-    let urscript = profile.urscript.as_mut().unwrap();
+    let urscript = profile.dialects.urscript.as_mut().unwrap();
     urscript.wire_feed = lines(&["set_standard_analog_out(0, {{wire_feed_ratio}})"]);
     urscript.arc_off.push("sleep({{wire_retract_time}})".to_owned());
     profile
@@ -96,14 +99,14 @@ fn job() -> Vec<Layer> {
 const LENGTH: f64 = 2.0 * (126.0 + 40.0);
 
 fn written(name: &str, profile: &Profile) -> Files {
-    post::write(name, "demo", &job(), profile).unwrap()
+    dialect::write(name, &job(), &profile.job("demo")).unwrap()
 }
 
 /// Every dialect with its files and what an independent reader finds in them; `part` is its name in the files.
 fn all(profile: &Profile, part: &str) -> Vec<(&'static str, Files, Motion)> {
     let upper = part.to_uppercase();
     let mut plain = profile.clone();
-    plain.rapid.as_mut().unwrap().arc = RapidArc::Plain;
+    plain.dialects.rapid.as_mut().unwrap().arc = RapidArc::Plain;
     let (krl, gcode, rapid) = (written("krl", profile), written("gcode", profile), written("rapid", profile));
     let (fanuc, inform, urscript) =
         (written("fanuc", profile), written("inform", profile), written("urscript", profile));
@@ -132,7 +135,7 @@ fn printer(mut profile: Profile) -> Profile {
 }
 
 fn programs(profile: &Profile) -> (Vec<LayerProgram>, Option<Instruction>) {
-    let mut programmer = Programmer::of(profile);
+    let mut programmer = profile.programmer();
     let layers = job().iter().map(|layer| programmer.layer(layer)).collect();
     (layers, programmer.leave())
 }
@@ -324,7 +327,7 @@ fn totals_are_those_of_the_program() {
     }
 }
 
-fn back(files: &Files, main: &str) -> Program {
+fn back(files: &Files, main: &str) -> ReadProgram {
     let arc = ArcCodes { on: vec!["$OUT[2] = TRUE".to_owned()], off: vec!["$OUT[2] = FALSE".to_owned()] };
     let options = Options { arc, ..Options::default() };
     let mut find = |name: &str| {
@@ -376,10 +379,10 @@ fn long_waits_are_cut_for_timers() {
 #[test]
 fn a_dry_run_moves_alike_and_lights_nothing() {
     let mut profile = with_ends();
-    profile.fanuc.as_mut().unwrap().speed = FanucSpeed::WeldSpeed;
+    profile.dialects.fanuc.as_mut().unwrap().speed = FanucSpeed::WeldSpeed;
     profile.process.follow = Follow::WireFeed;
     let dry = profile.clone().dry_run();
-    profile.fanuc.as_mut().unwrap().speed = FanucSpeed::MillimetresPerSecond;
+    profile.dialects.fanuc.as_mut().unwrap().speed = FanucSpeed::MillimetresPerSecond;
     let hot = all(&profile, "demo");
     let cold = all(&dry, "dry_demo");
     for ((name, files, motion), (_, _, hot)) in cold.iter().zip(&hot) {
@@ -407,7 +410,7 @@ fn what_a_dialect_cannot_do_is_refused() {
     let refused = |name: &str, change: fn(&mut Profile)| {
         let mut profile = plain();
         change(&mut profile);
-        post::post(name, "demo", &profile).err().map(|e| e.to_string())
+        dialect::writer(name, &profile.job("demo")).err().map(|e| e.to_string())
     };
     for name in ["krl", "gcode", "fanuc", "inform", "urscript"] {
         let feed = refused(name, |p| p.process.follow = Follow::WireFeed).unwrap();
@@ -422,7 +425,7 @@ fn what_a_dialect_cannot_do_is_refused() {
     // RAPID's arc instructions have all of it; plain moves have not.
     assert_eq!(refused("rapid", |p| p.process.follow = Follow::WireFeed), None);
     let plain = |p: &mut Profile| {
-        (p.process.follow, p.rapid.as_mut().unwrap().arc) = (Follow::WireFeed, RapidArc::Plain);
+        (p.process.follow, p.dialects.rapid.as_mut().unwrap().arc) = (Follow::WireFeed, RapidArc::Plain);
     };
     assert!(refused("rapid", plain).unwrap().contains("no rapid.wire_feed"));
     assert_eq!(refused("marlin", |p| p.process.follow = Follow::WireFeed), None);

@@ -2,11 +2,12 @@
 //! the angle of a turn table.
 #![allow(clippy::unwrap_used)]
 
-use beadwright::fill::PassKind;
+use beadwright::dialect;
+use beadwright::dialect::krl::KrlArc;
+use beadwright::layer::Layer;
+use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::Layer;
-use beadwright::post;
-use beadwright::profile::{KrlArc, Profile};
+use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track, part_from_tool};
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::collections::BTreeMap;
@@ -14,8 +15,8 @@ use std::collections::BTreeMap;
 fn profile() -> Profile {
     let built_in = |name| Profile::built_in(name).unwrap();
     let mut profile = built_in("cmt-steel-robots");
-    profile.rapid = built_in("cmt-steel-abb").rapid;
-    profile.krl = built_in("cmt-al2319-kuka").krl;
+    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
+    profile.dialects.krl = built_in("cmt-al2319-kuka").dialects.krl;
     profile
 }
 
@@ -41,7 +42,7 @@ fn numbers_behind(files: &BTreeMap<String, String>, mark: &str, count: usize) ->
 
 /// The rotations that a dialect writes, by the definition of its angles.
 fn rotations(post: &str, profile: &Profile) -> Vec<DMat3> {
-    let mut files = post::write(post, "part", &job(), profile).unwrap();
+    let mut files = dialect::write(post, &job(), &profile.job("part")).unwrap();
     // RAPID's main module holds frames too.
     files.retain(|name, _| post != "rapid" || name.contains("_L"));
     let about = |x: f64, y: f64, z: f64| {
@@ -88,7 +89,7 @@ fn every_dialect_writes_the_same_turn() {
         profile.program.torch_angle = angle;
         let expected = DMat3::from_quat(part_from_tool(DVec3::ZERO, angle).rotation);
         POSTS.iter().for_each(|post| all_are(post, &profile, expected));
-        profile.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+        profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
         all_are("krl", &profile, expected);
     }
 }
@@ -99,11 +100,11 @@ fn a_leaning_torch_keeps_its_wire() {
     let lean = DQuat::from_euler(EulerRot::ZYX, 0.3, 0.2, 2.9);
     let (z, y, x) = lean.to_euler(EulerRot::ZYX);
     let mut profile = profile();
-    profile.krl.as_mut().unwrap().orientation = [z, y, x].map(f64::to_degrees);
-    profile.fanuc.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
-    profile.inform.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
-    profile.rapid.as_mut().unwrap().orientation = [lean.w, lean.x, lean.y, lean.z];
-    profile.urscript.as_mut().unwrap().orientation = lean.to_scaled_axis().to_array();
+    profile.dialects.krl.as_mut().unwrap().orientation = [z, y, x].map(f64::to_degrees);
+    profile.dialects.fanuc.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
+    profile.dialects.inform.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
+    profile.dialects.rapid.as_mut().unwrap().orientation = [lean.w, lean.x, lean.y, lean.z];
+    profile.dialects.urscript.as_mut().unwrap().orientation = lean.to_scaled_axis().to_array();
     for angle in [0.0_f64, 25.0, -140.0] {
         profile.program.torch_angle = angle;
         let expected = DMat3::from_quat(lean) * DMat3::from_rotation_z(-angle.to_radians());
@@ -133,18 +134,18 @@ fn the_angle_of_reach_is_what_the_program_has() {
 fn the_table_stands_in_every_pose_or_the_post_refuses() {
     let mut profile = profile();
     profile.program.table_angle = Some(-35.0);
-    let krl = post::write("krl", "part", &job(), &profile).unwrap();
+    let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();
     let poses = |text: &str, mark: &str| text.matches(mark).count();
     let layer = &krl["PART_L001.src"];
     assert_eq!((poses(layer, "{X "), poses(layer, ",C 180.0000,E1 -35.0000}")), (4, 4), "{layer}");
-    let rapid = post::write("rapid", "part", &job(), &profile).unwrap();
+    let rapid = dialect::write("rapid", &job(), &profile.job("part")).unwrap();
     let layer = &rapid["part_L001.mod"];
     let axes = ",[-35.0000,9E+09,9E+09,9E+09,9E+09,9E+09]]";
     assert_eq!((poses(layer, ",[0,0,0,0],"), poses(layer, axes)), (4, 4), "{layer}");
     for post in ["fanuc", "inform", "urscript"] {
-        let error = post::write(post, "part", &job(), &profile).unwrap_err().to_string();
+        let error = dialect::write(post, &job(), &profile.job("part")).unwrap_err().to_string();
         assert!(error.contains("program.table_angle") && error.contains(post), "{error}");
     }
     profile.program.table_angle = None;
-    assert!(post::write("krl", "part", &job(), &profile).unwrap().values().all(|text| !text.contains(",E1 ")));
+    assert!(dialect::write("krl", &job(), &profile.job("part")).unwrap().values().all(|text| !text.contains(",E1 ")));
 }

@@ -4,9 +4,11 @@
 use beadwright::bead::wall::WallBead;
 use beadwright::curve::Nurbs;
 use beadwright::example;
+use beadwright::layer::Layer;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
 use beadwright::model::wall_curves::{WallCurves, WallCurvesError};
-use beadwright::plan::{self, Header, Layer, Pass, Sink};
+use beadwright::pass::Pass;
+use beadwright::plan::{self, Header, Sink};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::{DAffine3, DVec3};

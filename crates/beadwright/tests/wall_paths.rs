@@ -4,8 +4,9 @@
 use beadwright::deposit::{self, Nominal, Stroke};
 use beadwright::example::{self, blade};
 use beadwright::fill::wall::graph::{Graph, Line};
-use beadwright::fill::{self, FillSettings, Pass, PassKind};
+use beadwright::fill::{self, FillSettings, Path};
 use beadwright::pass;
+use beadwright::pass::PassKind;
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::slice::Slicer;
@@ -36,12 +37,12 @@ fn outline(points: &[(f64, f64)]) -> Polygon {
     Polygon::simple(Ring::new(points.iter().map(|&p| p.into()).collect()))
 }
 
-fn filled(island: &Polygon, settings: &FillSettings) -> Vec<Pass> {
+fn filled(island: &Polygon, settings: &FillSettings) -> Vec<Path> {
     fill::strategy("wall").unwrap().fill(island, settings).stages.concat()
 }
 
-fn length(passes: &[Pass]) -> f64 {
-    passes.iter().map(Pass::length).sum()
+fn length(passes: &[Path]) -> f64 {
+    passes.iter().map(Path::length).sum()
 }
 
 /// How often pieces of the passes cross, other than where one follows the other.

@@ -3,7 +3,7 @@
 use crate::app::Studio;
 use crate::export::Paper;
 use crate::jobs::Ask;
-use beadwright::post;
+use beadwright::dialect;
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let label = ui.label(studio.t("dialect"));
         let now = studio.view.dialect.clone();
         let combo = ComboBox::from_id_salt("dialect").selected_text(now).show_ui(ui, |ui| {
-            for name in post::NAMES {
+            for name in dialect::names() {
                 ui.selectable_value(&mut studio.view.dialect, name.to_owned(), name);
             }
         });

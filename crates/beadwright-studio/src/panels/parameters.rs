@@ -4,7 +4,8 @@ use crate::actions;
 use crate::app::Studio;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
-use beadwright::profile::{BUILT_IN, Limit, Profile};
+use beadwright::limit::Limit;
+use beadwright::profile::{BUILT_IN, Profile};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {

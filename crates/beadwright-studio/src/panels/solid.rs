@@ -2,7 +2,7 @@
 
 use crate::app::Studio;
 use crate::view3d::{Colour, Pick, Style, palette};
-use beadwright::fill::PassKind;
+use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
 /// What colours can tell, with their texts.

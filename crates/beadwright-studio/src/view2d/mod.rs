@@ -12,7 +12,7 @@ pub use heat::{heat, height};
 
 use beadwright::deposit::Judgement;
 use beadwright::fill::hybrid::Steps;
-use beadwright::plan::Layer;
+use beadwright::layer::Layer;
 use beadwright::planar::Bounds;
 use eframe::egui::{
     self, Align2, Color32, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, TextureOptions, Ui, WidgetInfo,

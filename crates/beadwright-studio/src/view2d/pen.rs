@@ -4,9 +4,9 @@ use super::heat::{VOID, heat};
 use super::{Eye, Show, Subject};
 use crate::view3d::palette;
 use beadwright::deposit::picture;
-use beadwright::fill::PassKind;
 use beadwright::fill::hybrid::Steps;
-use beadwright::plan::{Layer, Segment};
+use beadwright::layer::Layer;
+use beadwright::pass::{PassKind, Segment};
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use glam::DVec2;
 

@@ -3,8 +3,8 @@
 //! All of it is plain data, made on a worker thread. Numbers are `f32` where only a picture needs them.
 
 use super::pace::{Pace, travel_legs};
-use beadwright::fill::PassKind;
-use beadwright::plan::{Layer, Pass};
+use beadwright::layer::Layer;
+use beadwright::pass::{Pass, PassKind};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;

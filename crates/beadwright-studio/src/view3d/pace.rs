@@ -1,7 +1,7 @@
 //! How fast the torch goes where no metal is laid, so that the view's clock runs like the program.
 
 use beadwright::motion::Motion;
-use beadwright::plan::Pass;
+use beadwright::pass::Pass;
 use beadwright::profile::Profile;
 use glam::DVec3;
 

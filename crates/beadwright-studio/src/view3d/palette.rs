@@ -1,7 +1,7 @@
 //! The colours of beads: distinct hues for kinds, perceptually even maps for values.
 
 use super::style::Colour;
-use beadwright::fill::PassKind;
+use beadwright::pass::PassKind;
 
 /// Red, green, blue, 0 to 255, as on the screen.
 pub type Rgb = [u8; 3];

@@ -1,7 +1,7 @@
 //! What is written is what the command writes, byte for byte.
 
 use super::window::{has_adapter, run, studio, wait};
-use beadwright::post;
+use beadwright::dialect;
 use beadwright_studio::Studio;
 use beadwright_studio::export::Paper;
 use beadwright_studio::project::{Project, Source};
@@ -76,7 +76,7 @@ fn all_dialects_and_papers_are_those_of_the_command() {
             assert!(!message.error, "{}", message.text);
         }
     }
-    assert_eq!(dialects, BTreeSet::from(post::NAMES));
+    assert_eq!(dialects, BTreeSet::from_iter(dialect::names()));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Passes over a bead of their own layer.
 
 use super::{Check, Finding, Subject};
-use crate::plan::Layer;
+use crate::layer::Layer;
 use glam::DVec2;
 use rstar::primitives::{GeomWithData, Line};
 use rstar::{AABB, RTree, RTreeObject};

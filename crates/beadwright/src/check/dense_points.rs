@@ -1,7 +1,7 @@
 //! Points that come faster than the controller reads them.
 
 use super::{Check, Finding, Subject};
-use crate::program::{Instruction, Programmer};
+use crate::program::Instruction;
 use glam::DVec3;
 
 pub(super) const CHECK: Check = Check {
@@ -21,9 +21,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     if least <= 0.0 {
         return Vec::new();
     }
-    let mut programmer = Programmer::of(subject.profile);
-    let sound = |layer: &&&crate::plan::Layer| layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-    let finding = |layer: &&crate::plan::Layer| {
+    let mut programmer = subject.profile.programmer();
+    let sound = |layer: &&&crate::layer::Layer| layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
+    let finding = |layer: &&crate::layer::Layer| {
         let times = seconds(&programmer.layer(layer).instructions);
         let short = |time: &f64| *time < least;
         let dense = times.iter().any(|pass| pass.windows(IN_A_ROW).any(|w| w.iter().all(short)));

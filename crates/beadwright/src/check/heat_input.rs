@@ -19,7 +19,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     });
     let least = limits.min_layer_time.unwrap_or(0.0);
     let waits = &profile.start_stop;
-    let time = |layer: &crate::plan::Layer| {
+    let time = |layer: &crate::layer::Layer| {
         let welded = layer.passes.iter().map(crate::pass::Pass::seconds).sum::<f64>();
         (welded + waits.interpass_time).max(waits.min_layer_time)
     };

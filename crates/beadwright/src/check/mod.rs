@@ -23,7 +23,8 @@ mod void;
 mod wire_balance;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
-use crate::plan::{self, Layer};
+use crate::layer::Layer;
+use crate::plan;
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
 use glam::DVec3;
@@ -128,7 +129,7 @@ pub fn judge<L: Borrow<Layer>>(
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
         // Points that are no numbers are found by a check of their own; nothing can be built from them.
         let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-        let judgement = sound.then(|| judge.layer(plan::welded(layer, profile).subject()));
+        let judgement = sound.then(|| judge.layer(&plan::welded(layer, profile)));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }

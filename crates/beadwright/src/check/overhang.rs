@@ -1,7 +1,7 @@
 //! Layers that hang over.
 
 use super::{Check, Finding, Subject};
-use crate::plan::Layer;
+use crate::layer::Layer;
 use planar::{Join, Region};
 
 pub(super) const CHECK: Check = Check {

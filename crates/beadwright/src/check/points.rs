@@ -1,8 +1,8 @@
 //! Points that no controller can take.
 
 use super::{Check, Finding, Subject};
+use crate::layer::Layer;
 use crate::pass::Pass;
-use crate::plan::Layer;
 use crate::program::MIN_MOVE_MM;
 
 pub(super) const CHECK: Check = Check {

@@ -1,7 +1,7 @@
 //! Programs too large for a controller.
 
 use super::{Check, Finding, Subject};
-use crate::plan::Layer;
+use crate::layer::Layer;
 
 pub(super) const CHECK: Check = Check {
     name: "program-size",

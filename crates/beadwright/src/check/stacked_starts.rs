@@ -1,8 +1,8 @@
 //! Arc starts on top of each other.
 
 use super::{Check, Finding, Subject};
+use crate::layer::Layer;
 use crate::pass::Pass;
-use crate::plan::Layer;
 
 pub(super) const CHECK: Check = Check {
     name: "stacked-starts",

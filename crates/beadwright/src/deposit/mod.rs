@@ -21,8 +21,7 @@ pub use picture::Picture;
 pub use stack::Stack;
 pub use stroke::{Nominal, Stroke};
 
-use crate::pass::Pass;
-use crate::task::{Cancelled, Stage, Task};
+use crate::layer::Layer;
 use field::{Band, Grid};
 use glam::DVec2;
 use patch::Run;
@@ -71,17 +70,6 @@ impl DepositSettings {
         self.step = self.step.max(many.min(2.0 * self.step)).max((area / MOST_POINTS).sqrt());
         self
     }
-}
-
-/// What is judged: the passes of a layer and the slice that they ought to fill.
-#[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
-    /// Index from 0.
-    pub layer: usize,
-    /// Outlines of the slice.
-    pub islands: &'a [Polygon],
-    /// Passes in deposition order.
-    pub passes: &'a [Pass],
 }
 
 /// What a layer would be.
@@ -142,11 +130,11 @@ impl Judge {
     }
 
     /// Judges the next layer.
-    pub fn layer(&mut self, subject: Subject<'_>) -> Judgement {
+    pub fn layer(&mut self, layer: &Layer) -> Judgement {
         let nominal = self.settings.nominal;
-        let strokes: Vec<Stroke> = subject.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
-        let Some(grid) = grid_of(&subject, &strokes, self.settings.step) else { return Judgement::nothing() };
-        let mask = Mask::new(subject.islands, &self.settings, &grid);
+        let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
+        let Some(grid) = grid_of(layer, &strokes, self.settings.step) else { return Judgement::nothing() };
+        let mask = Mask::new(&layer.islands, &self.settings, &grid);
         let canvas = self.picture_pixels.map(|pixels| picture::Canvas::new(&grid, pixels));
         let keeps = self.stack.is_some();
         let look = |band: Band<'_>| Seen {
@@ -167,7 +155,7 @@ impl Judge {
         self.total.add(&figures);
         let work = seen.iter().map(|s| s.work).sum();
         let (runs, painted): (Vec<_>, Vec<_>) = seen.into_iter().map(|s| (s.runs, s.picture)).unzip();
-        let (voids, peaks) = patch::patches(runs, &grid, &subject, &nominal);
+        let (voids, peaks) = patch::patches(runs, &grid, layer, &nominal);
         let picture = canvas.map(|canvas| canvas.picture(painted.into_iter().flatten()));
         Judgement { figures, voids, peaks, picture, work }
     }
@@ -188,29 +176,11 @@ impl Judgement {
     }
 }
 
-fn grid_of(subject: &Subject<'_>, strokes: &[Stroke], step: f64) -> Option<Grid> {
-    let outlines = subject.islands.iter().flat_map(|i| i.outer.points().iter().copied());
+fn grid_of(layer: &Layer, strokes: &[Stroke], step: f64) -> Option<Grid> {
+    let outlines = layer.islands.iter().flat_map(|i| i.outer.points().iter().copied());
     let bounds = Bounds::of(outlines.chain(strokes.iter().flat_map(|s| [s.from, s.to])))?;
     let widest = strokes.iter().map(|s| s.bead.width).fold(0.0, f64::max);
     Some(Grid::covering(&bounds, widest / 2.0 + step, step))
-}
-
-/// Judges a whole stack of layers, with progress.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn judge_all<'a>(
-    judge: &mut Judge,
-    layers: impl ExactSizeIterator<Item = Subject<'a>>,
-    task: &Task,
-) -> Result<Vec<Judgement>, Cancelled> {
-    let count = layers.len().max(1) as f64;
-    let mut judged = Vec::with_capacity(layers.len());
-    for (done, subject) in layers.enumerate() {
-        task.step(Stage::Deposit, done as f64 / count)?;
-        judged.push(judge.layer(subject));
-    }
-    Ok(judged)
 }
 
 /// Where the outline less its rim is, and where metal is outside, as crossings of the grid's rows.

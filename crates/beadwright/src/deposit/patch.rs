@@ -2,9 +2,9 @@
 
 use super::field::{Band, Grid};
 use super::stroke::Nominal;
-use super::{Mask, OVERFILL, Subject, VOID};
-use crate::fill::PassKind;
-use crate::pass::Pass;
+use super::{Mask, OVERFILL, VOID};
+use crate::layer::Layer;
+use crate::pass::{Pass, PassKind};
 use glam::DVec2;
 use serde::Serialize;
 use std::ops::Range;
@@ -96,12 +96,7 @@ pub(super) fn runs(band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<Run> 
 }
 
 /// Runs of all bands joined where they touch: voids, the largest first, and peaks, the highest first.
-pub(super) fn patches(
-    runs: Vec<Vec<Run>>,
-    grid: &Grid,
-    subject: &Subject<'_>,
-    nominal: &Nominal,
-) -> (Vec<Patch>, Vec<Patch>) {
+pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
     let mut parents: Vec<usize> = (0..runs.len()).collect();
     // Both rows are walked once: a run of this row against those of the last row that end after it begins.
@@ -127,7 +122,7 @@ pub(super) fn patches(
     for (i, run) in runs.iter().enumerate() {
         let area = run.columns.len() as f64 * cell;
         let (place, height) = (grid.place(run.at, run.row), run.extreme);
-        let patch = Patch { layer: subject.layer, place, height, area, cause: None };
+        let patch = Patch { layer: layer.index, place, height, area, cause: None };
         match &mut found[root(&mut parents, i)] {
             Some((overfilled, known)) => {
                 known.area += area;
@@ -142,7 +137,7 @@ pub(super) fn patches(
     voids.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
     peaks.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
     let plain = |(_, patch)| patch;
-    let told = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, subject.passes, nominal), ..patch };
+    let told = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, &layer.passes, nominal), ..patch };
     // Causes are looked up for the peaks that are told.
     let rest = peaks.split_off(peaks.len().min(TOLD_PEAKS));
     let peaks = peaks.into_iter().map(told).chain(rest.into_iter().map(plain)).collect();

@@ -6,7 +6,7 @@
 use super::contour::rings;
 use super::thin;
 use super::zigzag::{zigzag, zigzag_spaced};
-use super::{Fill, FillSettings, Pass, Strategy};
+use super::{Fill, FillSettings, Path, Strategy};
 use planar::scan::Spacing;
 use planar::{Join, Polygon, Region};
 
@@ -44,7 +44,7 @@ fn core(innermost: &Region, settings: &FillSettings) -> Region {
     innermost.offset(-settings.contour_gap, Join::ROUND)
 }
 
-fn infill(core: &Region, settings: &FillSettings) -> Vec<Pass> {
+fn infill(core: &Region, settings: &FillSettings) -> Vec<Path> {
     let Some(near_surface) = settings.solid else { return zigzag(core, settings) };
     let solid = core.intersection(near_surface);
     // Both kinds keep a bead's distance, so they do not lie on each other.

@@ -1,7 +1,7 @@
 //! Rings parallel to the boundary, one stepover apart, until nothing is left.
 
 use super::thin;
-use super::{Fill, FillSettings, Pass, Strategy};
+use super::{Fill, FillSettings, Path, Strategy};
 use planar::{Join, Polygon, Region};
 
 /// Contour-parallel rings.
@@ -21,11 +21,11 @@ impl Strategy for Contour {
 }
 
 /// Up to `count` rings from `outermost` inwards, and the region that the innermost ones bound.
-pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (Vec<Vec<Pass>>, Region) {
+pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (Vec<Vec<Path>>, Region) {
     let mut stages = Vec::new();
     let mut region = outermost;
     for done in 1.. {
-        stages.push(region.rings().map(|ring| Pass::contour(ring.clone(), settings.bead.width)).collect());
+        stages.push(region.rings().map(|ring| Path::contour(ring.clone(), settings.bead.width)).collect());
         if done == count {
             break;
         }

@@ -24,7 +24,7 @@ pub mod wall;
 pub mod zigzag;
 
 use crate::bead::{Bead, Law};
-use crate::pass::Along;
+use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::scan::Spacing;
 use planar::{Join, Polygon, Region, Ring};
@@ -70,35 +70,9 @@ pub trait Strategy: Sync {
     }
 }
 
-/// What a pass is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PassKind {
-    /// Parallel to the boundary.
-    Contour,
-    /// Scan lines.
-    Infill,
-    /// Fill of pockets between contours.
-    Skeleton,
-    /// Along the middle of a wall.
-    Wall,
-}
-
-impl PassKind {
-    /// The word in plan.json and in programs.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Contour => "contour",
-            Self::Infill => "infill",
-            Self::Skeleton => "skeleton",
-            Self::Wall => "wall",
-        }
-    }
-}
-
 /// One path with the arc on, in the plane of its layer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pass {
+pub struct Path {
     /// What it is for.
     pub kind: PassKind,
     /// Whether it ends where it began; the first point is then not repeated.
@@ -111,7 +85,7 @@ pub struct Pass {
     pub reversible: bool,
 }
 
-impl Pass {
+impl Path {
     /// A closed pass along a ring, as wide as a bead, mm.
     pub fn contour(ring: Ring, width: f64) -> Self {
         let (kind, width) = (PassKind::Contour, Along::Same(width));
@@ -138,7 +112,7 @@ impl Pass {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fill {
     /// Groups of passes to be laid one group after another.
-    pub stages: Vec<Vec<Pass>>,
+    pub stages: Vec<Vec<Path>>,
     /// Whether the passes of a stage must stay in the order in which they stand.
     pub fixed_order: bool,
 }
@@ -242,7 +216,7 @@ impl FillSettings<'_> {
         }
     }
 
-    fn ordered(&self, mut outside_in: Vec<Vec<Pass>>) -> Vec<Vec<Pass>> {
+    fn ordered(&self, mut outside_in: Vec<Vec<Path>>) -> Vec<Vec<Path>> {
         if self.contour_order == ContourOrder::InsideOut {
             outside_in.reverse();
         }

@@ -1,6 +1,6 @@
 //! Parallel scan lines, each a pass of its own, all in one direction.
 
-use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use super::{Fill, FillSettings, PassKind, Path, Strategy};
 use planar::scan::{End, Scan};
 use planar::{Polygon, Region};
 
@@ -16,7 +16,7 @@ impl Strategy for Raster {
         let scan = Scan::new(&self.infill(island, settings), settings.raster_angle, settings.spacing());
         let line = |span| {
             let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
-            Pass { reversible: false, ..Pass::line(PassKind::Infill, points.to_vec(), settings.bead.width) }
+            Path { reversible: false, ..Path::line(PassKind::Infill, points.to_vec(), settings.bead.width) }
         };
         Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
     }

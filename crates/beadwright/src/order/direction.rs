@@ -1,7 +1,7 @@
 //! The other way round on every second layer, so that the low ends of beads come to lie over their high starts.
 
 use super::OrderSettings;
-use crate::fill::{Fill, Pass};
+use crate::fill::{Fill, Path};
 
 /// Turns open passes that may be turned so that they begin at their left end on even layers, at their right end on odd
 /// ones, and stay so. An order alone cannot do it: it lays the same line on every layer the way that is shortest.
@@ -22,7 +22,7 @@ pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
 
 /// Turns closed passes round on odd layers; they begin where they began. To be done last, since seams that wander are
 /// measured along the path as the strategy laid it.
-pub(super) fn turn_closed(passes: &mut [Pass], settings: &OrderSettings) {
+pub(super) fn turn_closed(passes: &mut [Path], settings: &OrderSettings) {
     if !settings.alternate || settings.layer.is_multiple_of(2) {
         return;
     }
@@ -36,7 +36,7 @@ pub(super) fn turn_closed(passes: &mut [Pass], settings: &OrderSettings) {
 }
 
 /// Whether a pass ends further left (then lower) than it begins.
-fn runs_left(pass: &Pass) -> bool {
+fn runs_left(pass: &Path) -> bool {
     let (Some(first), Some(last)) = (pass.points.first(), pass.points.last()) else { return false };
     let across = last.x - first.x;
     // Upright lines have no left end.

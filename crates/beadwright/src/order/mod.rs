@@ -22,7 +22,7 @@ pub mod nearest;
 mod random;
 pub mod tour;
 
-use crate::fill::{Fill, Pass};
+use crate::fill::{Fill, Path};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use tour::{Ends, Stop, Visit};
@@ -91,7 +91,7 @@ pub struct OrderSettings {
 
 impl OrderSettings {
     /// Where a closed pass must begin; `None` where the order may choose.
-    fn seam_of(&self, pass: &Pass) -> Option<DVec2> {
+    fn seam_of(&self, pass: &Path) -> Option<DVec2> {
         /// What remains of 1 after the golden section: multiples of it spread evenly.
         const GOLDEN: f64 = 0.381_966_011_250_105;
         if !pass.closed || self.seam == Seam::Nearest {
@@ -110,14 +110,14 @@ impl OrderSettings {
     }
 
     /// The stop that a pass is, with its seam where it must be.
-    fn stop(&self, pass: &Pass) -> Stop {
+    fn stop(&self, pass: &Path) -> Stop {
         self.seam_of(pass).map_or_else(|| Stop::of(pass), |seam| Stop::anywhere([seam]))
     }
 }
 
 /// Puts the passes of a layer in order. `torch` is where the torch stands before and after; without one it counts as
 /// standing in the origin.
-pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Pass> {
+pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Path> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
     direction::settle_open(&mut islands, settings);
     for fill in islands_in_order(islands, settings, torch.unwrap_or_default()) {
@@ -152,14 +152,14 @@ fn islands_in_order(mut islands: Vec<Fill>, settings: &OrderSettings, from: DVec
     tour.iter().filter_map(|visit| islands.get_mut(visit.stop)?.take()).collect()
 }
 
-fn stage_in_order(stage: Vec<Pass>, settings: &OrderSettings, from: DVec2) -> Vec<Pass> {
+fn stage_in_order(stage: Vec<Path>, settings: &OrderSettings, from: DVec2) -> Vec<Path> {
     let stops: Vec<Stop> = stage.iter().map(|pass| settings.stop(pass)).collect();
     let tour = settings.method.tour(&stops, Ends::From(from));
-    let mut stage: Vec<Option<Pass>> = stage.into_iter().map(Some).collect();
+    let mut stage: Vec<Option<Path>> = stage.into_iter().map(Some).collect();
     tour.iter().filter_map(|visit| Some(begin_at(stage.get_mut(visit.stop)?.take()?, visit.enter))).collect()
 }
 
-fn begin_at_seam(pass: Pass, settings: &OrderSettings) -> Pass {
+fn begin_at_seam(pass: Path, settings: &OrderSettings) -> Path {
     match settings.seam_of(&pass) {
         Some(seam) => begin_at(pass, seam),
         None => pass,
@@ -167,7 +167,7 @@ fn begin_at_seam(pass: Pass, settings: &OrderSettings) -> Pass {
 }
 
 /// The pass, begun at that point of it.
-pub fn begin_at(mut pass: Pass, start: DVec2) -> Pass {
+pub fn begin_at(mut pass: Path, start: DVec2) -> Path {
     if pass.closed {
         let index = vertex_at(&mut pass, start);
         pass.points.rotate_left(index);
@@ -180,7 +180,7 @@ pub fn begin_at(mut pass: Pass, start: DVec2) -> Pass {
 }
 
 /// Index of the vertex of a closed pass at a point of its path; a new one where there is none yet.
-fn vertex_at(pass: &mut Pass, point: DVec2) -> usize {
+fn vertex_at(pass: &mut Path, point: DVec2) -> usize {
     let path = pass.path();
     let distance = |(a, b): (DVec2, DVec2)| tour::nearest_on(a, b, point).distance_squared(point);
     let edges = path.windows(2).map(|w| (w[0], w[1]));
@@ -200,6 +200,6 @@ fn vertex_at(pass: &mut Pass, point: DVec2) -> usize {
 const SAME_POINT_MM: f64 = 1e-3;
 
 /// Where the torch stands after a pass.
-fn last_point(pass: &Pass) -> Option<DVec2> {
+fn last_point(pass: &Path) -> Option<DVec2> {
     if pass.closed { pass.points.first().copied() } else { pass.points.last().copied() }
 }

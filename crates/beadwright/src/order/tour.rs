@@ -1,6 +1,6 @@
 //! Stops, gates and tours: a travelling salesman's problem in which every town has several gates.
 
-use crate::fill::Pass;
+use crate::fill::Path;
 use glam::DVec2;
 
 /// Most vertices of a closed pass at which the search lets it begin; in the end its start moves along the whole path.
@@ -79,7 +79,7 @@ pub enum Ends {
 
 impl Stop {
     /// The stop that a pass is.
-    pub fn of(pass: &Pass) -> Self {
+    pub fn of(pass: &Path) -> Self {
         let first = pass.points.first().copied().unwrap_or_default();
         if pass.closed {
             return Self::ring(pass.points.clone());

@@ -1,9 +1,9 @@
 //! A slice with its passes, and what a bead cannot reach of it.
 
 use super::scan_lines::Planned;
-use crate::fill::{Fill, FillSettings, Pass as Path, Strategy};
+use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
-use crate::slice::Layer as Slice;
+use crate::slice::Slice;
 use crate::warning::{Warning, WarningKind};
 use crate::weld;
 use glam::DVec2;

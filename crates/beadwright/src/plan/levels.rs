@@ -8,7 +8,7 @@ use crate::model::Mesh;
 use crate::model::wall_curves::WallCurves;
 use crate::plan::MAX_LAYERS;
 use crate::profile::Profile;
-use crate::slice::{self, Layer as Slice, Slab, Slicer};
+use crate::slice::{self, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Task};
 use planar::Region;
 use rayon::prelude::*;

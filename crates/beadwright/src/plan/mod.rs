@@ -21,16 +21,17 @@ mod scan_lines;
 pub use preview::preview;
 
 use crate::bead::wall::{WallBead, WallError};
-use crate::deposit::{DepositSettings, Figures, Nominal, Subject};
+use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
-use crate::fill::{self, Pass as Path, Strategy};
+use crate::fill::{self, Path, Strategy};
+use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::model::{Mesh, Part};
 use crate::order;
-pub use crate::pass::{Along, Pass, Segment};
+use crate::pass::Pass;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, Layer as Slice, Slab, Slicer};
+use crate::slice::{self, BATCH, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
 use crate::weld;
@@ -42,34 +43,6 @@ use rayon::prelude::*;
 use scan_lines::Planned;
 use serde::Serialize;
 use std::borrow::Cow;
-
-/// One layer, ready to be deposited.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Layer {
-    /// Index from 0.
-    pub index: usize,
-    /// Top of the layer, mm.
-    pub z: f64,
-    /// Thickness, mm.
-    pub height: f64,
-    /// Outlines of the slice.
-    pub islands: Vec<Polygon>,
-    /// Passes in deposition order; between two the arc is off.
-    pub passes: Vec<Pass>,
-    /// Area of the slice, mm².
-    pub slice_area: f64,
-    /// Area within reach of a bead, mm².
-    pub planned_area: f64,
-    /// What was lost or mended here.
-    pub warnings: Vec<Warning>,
-}
-
-impl Layer {
-    /// What the deposit model judges.
-    pub fn subject(&self) -> Subject<'_> {
-        Subject { layer: self.index, islands: &self.islands, passes: &self.passes }
-    }
-}
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the profile has
 /// them.

@@ -3,7 +3,7 @@
 
 use crate::fill::{self, Strategy};
 use crate::profile::{Profile, RasterTurn};
-use crate::slice::{BATCH, Layer as Slice, Slicer};
+use crate::slice::{BATCH, Slice, Slicer};
 use crate::task::{Cancelled, Task};
 use planar::{Join, Polygon, Region};
 use rayon::prelude::*;

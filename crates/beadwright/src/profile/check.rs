@@ -1,5 +1,6 @@
 //! Limits of the checks in profiles.
 
+use crate::limit::{Limit, TINY, limits};
 use serde::{Deserialize, Serialize};
 
 /// Limits of the checks; every key has a default.
@@ -45,6 +46,34 @@ impl Default for CheckLimits {
             stacked_starts: 12,
             max_points: 20_000,
             max_plan_points: None,
+        }
+    }
+}
+
+impl CheckLimits {
+    /// What the numbers can be.
+    pub(super) fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "check.max_void": self.max_void, 0.0, 100.0, "% of the area", "beyond this nothing would ever be found";
+            "check.max_overfill": self.max_overfill, 0.0, 100.0, "% of the area",
+                "beyond this nothing would ever be found";
+            "check.max_outside": self.max_outside, 0.0, 100.0, "% of the area",
+                "beyond this nothing would ever be found";
+            "check.max_overhang": self.max_overhang, 0.0, 10.0, "bead widths",
+                "beyond this nothing would ever be found";
+            "check.min_speed": self.min_speed.unwrap_or(1.0), 0.0, 2000.0, "mm/s",
+                "beyond this nothing would ever be found";
+            "check.max_speed": self.max_speed.unwrap_or(1.0), TINY, 2000.0, "mm/s",
+                "beyond this nothing would ever be found";
+            "check.max_heat_input": self.max_heat_input.unwrap_or(1.0), TINY, 1e6, "J/mm",
+                "beyond this nothing would ever be found";
+            "check.min_layer_time": self.min_layer_time.unwrap_or(1.0), 0.0, 1e6, "s",
+                "beyond this nothing would ever be found";
+            "check.stacked_starts": self.stacked_starts.into(), 2.0, 1e6, "layers",
+                "one start over another is no tower yet";
+            "check.max_points": self.max_points.into(), 10.0, 1e8, "points", "beyond this nothing would ever be found";
+            "check.max_plan_points": self.max_plan_points.unwrap_or(50_000).into(), 10.0, 1e9, "points",
+                "beyond this nothing would ever be found";
         }
     }
 }

@@ -1,7 +1,12 @@
 //! TOML text to [`Profile`], and errors that name the line and the nearest valid word.
 
 use super::{BUILT_IN, Profile, limits};
+use crate::dialect::{self, Sections};
+use crate::limit::Broken;
+use serde::Deserialize as _;
 use std::path::PathBuf;
+use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 
 /// Why a profile was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -40,38 +45,6 @@ pub enum ProfileError {
         /// The key.
         key: String,
     },
-    /// The profile lacks the section of a dialect that was asked for.
-    #[error("profile \"{profile}\" has no [{section}] section, which the post \"{section}\" needs. {hint}")]
-    NoSection {
-        /// Name of the profile.
-        profile: String,
-        /// Missing section.
-        section: &'static str,
-        /// Where to copy it from.
-        hint: String,
-    },
-    /// The profile lacks a key of a dialect that its other keys need.
-    #[error("profile \"{profile}\" has no {key} that {why} needs. {remedy}")]
-    NoKey {
-        /// Name of the profile.
-        profile: String,
-        /// Full key, such as `krl.wire_feed`.
-        key: String,
-        /// What needs it.
-        why: String,
-        /// What to write, or what to do without.
-        remedy: String,
-    },
-    /// A dialect cannot do what the profile asks for.
-    #[error("the post \"{post}\" cannot write {what}. {remedy}")]
-    Cannot {
-        /// Name of the post.
-        post: &'static str,
-        /// What it cannot.
-        what: &'static str,
-        /// What to do.
-        remedy: &'static str,
-    },
     /// The file cannot be read; made by callers, since the library does no I/O.
     #[error("the profile {path} cannot be read: {reason}")]
     File {
@@ -83,16 +56,29 @@ pub enum ProfileError {
 }
 
 pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
-    let profile: Profile = toml::from_str(text).map_err(|e| {
+    let profile = deserialize(text).map_err(|e| {
         let line = e.span().map_or(1, |span| line_of(text, span.start));
         ProfileError::Text { line, reason: explain(e.message()) }
     })?;
     match limits::first_broken(&profile) {
         None => Ok(profile),
-        Some(limits::Broken { key, value, reason }) => {
+        Some(Broken { key, value, reason }) => {
             Err(ProfileError::Value { line: line_of_key(text, &key), key, value, reason })
         }
     }
+}
+
+/// The sections of dialects are taken out and read by themselves, so that a profile does not know them one by one.
+fn deserialize(text: &str) -> Result<Profile, toml::de::Error> {
+    let mut general = DeTable::parse(text)?;
+    let mut sections = Spanned::new(general.span(), DeTable::new());
+    for name in dialect::names() {
+        if let Some((key, section)) = general.get_mut().remove_entry(name) {
+            sections.get_mut().insert(key, section);
+        }
+    }
+    let dialects = Sections::deserialize(Deserializer::from(sections))?;
+    Ok(Profile { dialects, ..Profile::deserialize(Deserializer::from(general))? })
 }
 
 pub(super) fn unknown_name(name: &str) -> ProfileError {

@@ -2,9 +2,10 @@
 //! (Han et al. 2018, figures of 3.1).
 
 use super::plot::{Curve, Plot};
+use crate::fill;
 use crate::fill::angle::{self, Curves};
-use crate::fill::{self, PassKind};
-use crate::plan::Layer;
+use crate::layer::Layer;
+use crate::pass::PassKind;
 use crate::profile::Profile;
 
 /// The plots; each has the angle in degrees below. `mark` is the angle that is laid, °.

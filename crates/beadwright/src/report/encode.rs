@@ -19,8 +19,8 @@
 //! little-endian), then a byte a pixel as in [`Picture`].
 
 use crate::deposit::{Figures, Picture};
-use crate::fill::PassKind;
-use crate::plan::{Along, Layer, Pass};
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, PassKind};
 use crate::warning::{Warning, WarningKind};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

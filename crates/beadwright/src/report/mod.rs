@@ -25,8 +25,10 @@ pub mod svg;
 mod tables;
 
 use crate::deposit::{Figures, Judgement};
+use crate::layer::Layer;
 use crate::model::RepairReport;
-use crate::plan::{Header, Layer, Pass, Summary};
+use crate::pass::Pass;
+use crate::plan::{Header, Summary};
 use crate::profile::Profile;
 use crate::template;
 use glam::DVec2;

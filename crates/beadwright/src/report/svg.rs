@@ -1,9 +1,9 @@
 //! One layer as a standalone SVG picture, in millimetres.
 
 use super::{escape, travels};
-use crate::fill::PassKind;
+use crate::layer::Layer;
 use crate::number::push_fixed;
-use crate::plan::{Along, Layer};
+use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
 

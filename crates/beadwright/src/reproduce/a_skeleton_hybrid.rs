@@ -3,10 +3,10 @@
 use super::{ReproduceError, Reproduced};
 use crate::bead::MassBalance;
 use crate::compare::{self, Chosen, Entry};
+use crate::dialect;
 use crate::example;
 use crate::model::Mesh;
 use crate::plan;
-use crate::post;
 use crate::profile::Profile;
 use crate::report::sheet::Sheet;
 use crate::task::Task;
@@ -48,7 +48,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     lines.push(finding);
     let plan = plan::plan("propeller", &mesh, &profile, task).map_err(|e| wrong(&e))?;
     let files: Vec<_> =
-        post::write("krl", "propeller", &plan.layers, &profile).map_err(|e| wrong(&e))?.into_iter().collect();
+        dialect::write("krl", &plan.layers, &profile.job("propeller")).map_err(|e| wrong(&e))?.into_iter().collect();
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
     lines.push(format!("KRL of the default hybrid: {} files beside the page", names.len()));
     Ok(Reproduced { page, lines, files })

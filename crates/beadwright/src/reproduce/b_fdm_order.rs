@@ -311,7 +311,7 @@ fn in_file_order(stops: &[Stop]) -> Vec<Visit> {
 
 /// A ring as a path that begins and ends at a point of it.
 fn begin_at_point(ring: Ring, start: DVec2) -> Vec<DVec2> {
-    begin_at(crate::fill::Pass::contour(ring, 0.0), start).path()
+    begin_at(crate::fill::Path::contour(ring, 0.0), start).path()
 }
 
 fn circle(x: f64, y: f64, radius: f64) -> Ring {

@@ -5,11 +5,11 @@ use super::{ReproduceError, Reproduced};
 use crate::bead::wall::WallBead;
 use crate::compare::MAP_PIXELS;
 use crate::deposit::{Judge, Picture};
+use crate::dialect;
 use crate::example;
-use crate::fill::PassKind;
-use crate::pass::{Along, Pass};
-use crate::plan::{self, Layer, Plan};
-use crate::post;
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, PassKind};
+use crate::plan::{self, Plan};
 use crate::profile::Profile;
 use crate::report::sheet::Sheet;
 use crate::report::svg;
@@ -66,7 +66,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         let layer = &plan.layers[plan.layers.len() / 3];
         page.text(&format!("{}, layer {} at z {:.2} mm", plan.header.part, layer.index + 1, layer.z));
         page.svg(&svg::layer(layer, &plan.header.part));
-        files.extend(post::write("rapid", &plan.header.part, &plan.layers, profile).map_err(|e| wrong(&e))?);
+        files.extend(dialect::write("rapid", &plan.layers, &profile.job(&plan.header.part)).map_err(|e| wrong(&e))?);
     }
     let (frame, profile) = &plans[0];
     page.heading("Junctions of the frame after eight layers");
@@ -147,7 +147,7 @@ fn stacked(layers: &[&Layer], profile: &Profile) -> (f64, Option<Picture>) {
     let width = profile.bead.width;
     let bounds = Bounds { min: bounds.min - width, max: bounds.max + width };
     let mut judge = Judge::new(plan::deposit_settings(profile)).with_stack(&bounds).with_pictures(MAP_PIXELS);
-    let judged: Vec<_> = layers.iter().map(|layer| judge.layer(layer.subject())).collect();
+    let judged: Vec<_> = layers.iter().map(|layer| judge.layer(layer)).collect();
     let nominal = plan::deposit_settings(profile).nominal.rise * layers.len() as f64;
     let mean = judge.total().mean() * layers.len() as f64;
     let peak = judge.stack().and_then(|stack| stack.growth().last().map(|growth| (nominal + growth.peak) / mean));

@@ -1,8 +1,8 @@
 //! The way of the torch through a plan, travels included, in pieces short enough to be checked point by point.
 
-use crate::plan::Layer;
+use crate::layer::Layer;
 use crate::profile::Profile;
-use crate::program::{Instruction, Programmer};
+use crate::program::Instruction;
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Borrow;
@@ -38,7 +38,7 @@ impl Track {
     /// The way through a plan's layers, as the programs made with the profile go it.
     pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Self {
         let (mut track, travel_speed) = (Self::default(), profile.travel.speed);
-        let mut programmer = Programmer::unfitted(profile);
+        let mut programmer = profile.programmer().unfitted();
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
         }

@@ -40,7 +40,7 @@ pub struct SliceOptions {
 
 /// One cut, ready to be filled.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Layer {
+pub struct Slice {
     /// Index from 0.
     pub index: usize,
     /// Top of the layer, mm.
@@ -53,7 +53,7 @@ pub struct Layer {
     pub warnings: Vec<Warning>,
 }
 
-impl Layer {
+impl Slice {
     /// Area of the slice, mm².
     pub fn area(&self) -> f64 {
         self.islands.iter().map(Polygon::area).sum()
@@ -148,7 +148,7 @@ impl<'a> Slicer<'a> {
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
-    pub fn batch(&self, batch: usize, task: &Task) -> Result<Vec<Layer>, Cancelled> {
+    pub fn batch(&self, batch: usize, task: &Task) -> Result<Vec<Slice>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(self.planes.len());
         let by_layer = self.triangles_by_layer(batch, layers.clone());
         layers
@@ -165,7 +165,7 @@ impl<'a> Slicer<'a> {
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
-    pub fn all(&self, task: &Task) -> Result<Vec<Layer>, Cancelled> {
+    pub fn all(&self, task: &Task) -> Result<Vec<Slice>, Cancelled> {
         let mut layers = Vec::with_capacity(self.layer_count());
         for batch in 0..self.batch_count() {
             task.step(Stage::Slice, batch as f64 / self.batch_count() as f64)?;
@@ -185,9 +185,9 @@ impl<'a> Slicer<'a> {
         by_layer
     }
 
-    fn cut(&self, index: usize, triangles: &[u32]) -> Layer {
+    fn cut(&self, index: usize, triangles: &[u32]) -> Slice {
         let (Slab { z, height }, SliceOptions { close_gap, simplify, .. }) = (self.slabs[index], self.options);
-        let mut layer = Layer { index, z, height, ..Layer::default() };
+        let mut layer = Slice { index, z, height, ..Slice::default() };
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
         let Trace { mut rings, open } =

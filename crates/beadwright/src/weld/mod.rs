@@ -17,7 +17,21 @@ pub use path::{path, welded};
 pub(crate) use torch::retract_time;
 pub use torch::{Approach, Pause, Torch, Welded};
 
-use crate::profile::{Follow, Process};
+use crate::motion::Motion;
+use crate::process::{Follow, Process, StartStop, Travel};
+
+/// What times, ways and moves depend on besides the passes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeldSettings {
+    /// Arc, wire and speed.
+    pub process: Process,
+    /// How passes begin and end, and how long layers wait.
+    pub ends: StartStop,
+    /// Moves without arc.
+    pub travel: Travel,
+    /// How the machine speeds up, where that is known.
+    pub motion: Option<Motion>,
+}
 
 /// Speed of the torch and part of the nominal wire feed, at a pace (mm/s) of the metal.
 pub fn speed_and_feed(pace: f64, process: &Process) -> (f64, f64) {

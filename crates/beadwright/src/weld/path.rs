@@ -1,7 +1,7 @@
 //! A pass as it is welded: with its overlap, hot start and lead-out.
 
 use crate::pass::{Along, Pass};
-use crate::profile::StartStop;
+use crate::process::StartStop;
 use glam::DVec3;
 
 /// A change of power nearer to a point than this is made there, mm: no move is shorter.

@@ -1,8 +1,8 @@
 //! Follows the torch: the ways between passes, how long everything takes, and how long it must wait.
 
-use super::speed_and_feed;
+use super::{WeldSettings, speed_and_feed};
 use crate::motion::Motion;
-use crate::profile::{Process, Profile, StartStop};
+use crate::process::{Process, StartStop};
 use glam::DVec3;
 
 /// Waits are told in steps of this, s; they are made longer, never shorter.
@@ -79,15 +79,10 @@ impl Torch {
         }
     }
 
-    /// The torch of a profile.
-    pub fn of(profile: &Profile) -> Self {
-        Self {
-            process: Some(profile.process.clone()),
-            ends: profile.start_stop.clone(),
-            motion: profile.motion,
-            travel_speed: profile.travel.speed,
-            ..Self::new(profile.travel.clearance)
-        }
+    /// A torch whose ways and times count.
+    pub fn of(settings: &WeldSettings) -> Self {
+        let WeldSettings { process, ends, travel, motion } = settings.clone();
+        Self { process: Some(process), ends, motion, travel_speed: travel.speed, ..Self::new(travel.clearance) }
     }
 
     /// How passes begin and end.

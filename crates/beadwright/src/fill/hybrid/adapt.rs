@@ -3,8 +3,8 @@
 //! small gaps close without a bead of their own.
 
 use super::near::Near;
-use crate::fill::{FillSettings, Pass, PassKind};
-use crate::pass::Along;
+use crate::fill::{FillSettings, Path};
+use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::Polygon;
 
@@ -18,7 +18,7 @@ const GRAIN: f64 = 0.05;
 const OUTLINE: usize = usize::MAX;
 
 /// Gives every pass the widths that its neighbours leave; none reaches out of the island and its allowance.
-pub fn widths(passes: &mut [Pass], island: &Polygon, settings: &FillSettings) {
+pub fn widths(passes: &mut [Path], island: &Polygon, settings: &FillSettings) {
     let mut near = Near::new(SIGHT * settings.stepover);
     for (number, pass) in passes.iter().enumerate() {
         near.add_line(number, &pass.path());
@@ -35,7 +35,7 @@ fn closed(points: &[DVec2]) -> Vec<DVec2> {
     points.iter().chain(points.first()).copied().collect()
 }
 
-fn adapt(number: usize, pass: &mut Pass, near: &Near, settings: &FillSettings) {
+fn adapt(number: usize, pass: &mut Path, near: &Near, settings: &FillSettings) {
     let d = settings.stepover;
     let path = pass.path();
     let (mut points, mut widths) = (Vec::new(), Vec::new());

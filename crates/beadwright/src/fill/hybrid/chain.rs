@@ -6,7 +6,8 @@
 
 use super::contours::{Contours, Piece};
 use super::near::Near;
-use crate::fill::{FillSettings, Pass, PassKind};
+use crate::fill::{FillSettings, Path};
+use crate::pass::PassKind;
 use glam::DVec2;
 use planar::polyline::{point_at, without_end};
 use planar::{Region, Ring};
@@ -24,7 +25,7 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const SEAMS: usize = 12;
 
 /// Joins all contours.
-pub fn join(contours: &Contours, outermost: &Region, settings: &FillSettings) -> Vec<Pass> {
+pub fn join(contours: &Contours, outermost: &Region, settings: &FillSettings) -> Vec<Path> {
     let mut laid = Near::new(LONGEST_END_LINK * settings.stepover);
     for (number, (_, ring)) in contours.complete.iter().enumerate() {
         let closed: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
@@ -38,7 +39,7 @@ pub fn join(contours: &Contours, outermost: &Region, settings: &FillSettings) ->
     passes
 }
 
-fn join_complete(rings: &[(usize, Ring)], laid: &Near, settings: &FillSettings) -> Vec<Pass> {
+fn join_complete(rings: &[(usize, Ring)], laid: &Near, settings: &FillSettings) -> Vec<Path> {
     let mut free: Vec<bool> = vec![true; rings.len()];
     let mut passes = Vec::new();
     for start in 0..rings.len() {
@@ -97,18 +98,18 @@ fn next_ring(
 }
 
 /// One pass through the rings of a chain; the last of them is closed.
-fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettings) -> Pass {
+fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettings) -> Path {
     let turn = |(ring, seam): &(usize, DVec2)| turned_to(&rings[*ring].1, *seam);
     match chain {
-        [only] => Pass::contour(Ring::new(turn(only)), settings.bead.width),
+        [only] => Path::contour(Ring::new(turn(only)), settings.bead.width),
         [outer @ .., last] => {
             let gap = LEFT_OPEN * settings.stepover;
             let mut points: Vec<DVec2> = outer.iter().flat_map(|ring| shortened(&turn(ring), gap)).collect();
             points.extend(turn(last));
             points.push(last.1);
-            Pass::line(PassKind::Contour, points, settings.bead.width)
+            Path::line(PassKind::Contour, points, settings.bead.width)
         }
-        [] => Pass::line(PassKind::Contour, Vec::new(), settings.bead.width),
+        [] => Path::line(PassKind::Contour, Vec::new(), settings.bead.width),
     }
 }
 
@@ -118,7 +119,7 @@ fn is_clear(link: [DVec2; 2], laid: &Near) -> bool {
     !laid.crosses(link[0].lerp(link[1], 1e-3), link[1].lerp(link[0], 1e-3))
 }
 
-fn join_incomplete(pieces: &[Piece], laid: &Near, outermost: &Region, settings: &FillSettings) -> Vec<Pass> {
+fn join_incomplete(pieces: &[Piece], laid: &Near, outermost: &Region, settings: &FillSettings) -> Vec<Path> {
     let mut free: Vec<bool> = vec![true; pieces.len()];
     let mut inside_out: Vec<usize> = (0..pieces.len()).collect();
     inside_out.sort_by_key(|&i| std::cmp::Reverse(pieces[i].level));
@@ -140,7 +141,7 @@ fn join_incomplete(pieces: &[Piece], laid: &Near, outermost: &Region, settings: 
             }
             points.reverse();
         }
-        passes.push(Pass::line(PassKind::Contour, points, settings.bead.width));
+        passes.push(Path::line(PassKind::Contour, points, settings.bead.width));
     }
     passes
 }

@@ -6,8 +6,8 @@
 //! height.
 
 use super::near::Near;
-use crate::fill::{FillSettings, Pass, PassKind};
-use crate::pass::Along;
+use crate::fill::{FillSettings, Path};
+use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::clip::Keep;
 use planar::ladder::{Ladder, Rung, ladders};
@@ -27,7 +27,7 @@ const SHORTEST_PART: f64 = 0.6;
 
 /// The passes of a narrow piece. `laid` holds all that is laid already, and then these too; `outermost` is where
 /// centre-lines may lie.
-pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut Near, settings: &FillSettings) -> Vec<Pass> {
+pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut Near, settings: &FillSettings) -> Vec<Path> {
     let spacing = settings.bead.width / SAMPLES;
     let mut lines: Vec<Line> = Vec::new();
     for ladder in ladders(&piece.clone().into(), spacing).iter().filter(|ladder| !is_knot(ladder)) {
@@ -114,13 +114,13 @@ struct Line {
 }
 
 impl Line {
-    fn pass(self) -> Pass {
+    fn pass(self) -> Path {
         let mut widths = self.widths.clone();
         // On the way to the next point holds the mean of both.
         let next = self.widths.iter().cycle().skip(1);
         let last = if self.closed { widths.len() } else { widths.len().saturating_sub(1) };
         widths.iter_mut().zip(next).take(last).for_each(|(width, next)| *width = (*width + next) / 2.0);
-        Pass {
+        Path {
             kind: PassKind::Skeleton,
             closed: self.closed,
             points: self.points,

@@ -25,7 +25,7 @@ pub mod pockets;
 pub mod skeleton;
 
 use super::thin;
-use super::{Fill, FillSettings, Pass, Strategy};
+use super::{Fill, FillSettings, Path, Strategy};
 use contours::Contours;
 use planar::{Join, Polygon, Region};
 use pockets::Level;
@@ -121,9 +121,9 @@ pub struct Steps {
     /// The contours, those cut apart among them.
     pub contours: Contours,
     /// The contours joined to passes.
-    pub chains: Vec<Pass>,
+    pub chains: Vec<Path>,
     /// The fill of the skeleton regions.
-    pub skeleton: Vec<Pass>,
+    pub skeleton: Vec<Path>,
 }
 
 impl Steps {
@@ -152,11 +152,11 @@ impl Steps {
 
 /// Both kinds of passes with widths that follow the room.
 fn adapted(
-    mut chains: Vec<Pass>,
-    skeleton: Vec<Pass>,
+    mut chains: Vec<Path>,
+    skeleton: Vec<Path>,
     island: &Polygon,
     settings: &FillSettings,
-) -> (Vec<Pass>, Vec<Pass>) {
+) -> (Vec<Path>, Vec<Path>) {
     let count = chains.len();
     chains.extend(skeleton);
     adapt::widths(&mut chains, island, settings);

@@ -6,7 +6,7 @@
 
 use super::near::Near;
 use super::{ScanAlong, medial};
-use crate::fill::{FillSettings, Pass, zigzag};
+use crate::fill::{FillSettings, Path, zigzag};
 use glam::DVec2;
 use planar::polyline::{length, without_end};
 use planar::{Join, Polygon, Region, buffer, min_area_rect};
@@ -17,7 +17,7 @@ const BUFFER: f64 = 0.01;
 const ROUNDS: usize = 3;
 
 /// The passes of all skeleton regions. `contours` are laid already, joined.
-pub fn fill(outermost: &Region, regions: &Region, contours: &[Pass], settings: &FillSettings) -> Vec<Pass> {
+pub fn fill(outermost: &Region, regions: &Region, contours: &[Path], settings: &FillSettings) -> Vec<Path> {
     let mut free = room(outermost, contours, settings);
     let mut laid = Near::new(settings.stepover);
     contours.iter().for_each(|pass| laid.add_line(0, &pass.path()));
@@ -39,7 +39,7 @@ fn fill_room(
     regions: &Region,
     laid: &mut Near,
     settings: &FillSettings,
-) -> Vec<Pass> {
+) -> Vec<Path> {
     let mut passes = Vec::new();
     for piece in free.polygons() {
         // Thin walls leave long pieces of hardly any area.
@@ -56,7 +56,7 @@ fn fill_room(
         } else {
             // The zigzag keeps d2.
             let inner = piece.offset(settings.hybrid.least_gap - settings.hybrid.skeleton_gap, Join::ROUND);
-            let scanned: Vec<Pass> = inner.polygons().iter().flat_map(|p| scanned(p, settings)).collect();
+            let scanned: Vec<Path> = inner.polygons().iter().flat_map(|p| scanned(p, settings)).collect();
             scanned.iter().for_each(|pass| laid.add_line(0, &pass.path()));
             passes.extend(scanned);
         }
@@ -70,9 +70,9 @@ fn gap(settings: &FillSettings) -> f64 {
 }
 
 /// Where centre-lines of the fill may lie: what is free less the neighbourhood of what is laid.
-fn room(free: &Region, laid: &[Pass], settings: &FillSettings) -> Region {
+fn room(free: &Region, laid: &[Path], settings: &FillSettings) -> Region {
     let gap = gap(settings);
-    let (closed, open): (Vec<&Pass>, Vec<&Pass>) = laid.iter().partition(|pass| pass.closed);
+    let (closed, open): (Vec<&Path>, Vec<&Path>) = laid.iter().partition(|pass| pass.closed);
     let closed: Vec<Vec<DVec2>> = closed.into_iter().map(|pass| pass.points.clone()).collect();
     let open: Vec<Vec<DVec2>> =
         open.into_iter().map(|pass| shortened(&pass.points, settings.hybrid.end_overlap)).collect();
@@ -98,7 +98,7 @@ fn is_narrow(piece: &Polygon, settings: &FillSettings) -> bool {
 }
 
 /// A zigzag along the smallest rectangle of a piece.
-fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Pass> {
+fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Path> {
     let Some(rect) = min_area_rect(piece.outer.points()) else { return Vec::new() };
     let x = rect.axis.to_angle();
     let (short, long) = if rect.size.x < rect.size.y { (x, x + 0.25 * TURN) } else { (x + 0.25 * TURN, x) };
@@ -111,7 +111,7 @@ fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Pass> {
         ScanAlong::Long => at(long),
         ScanAlong::Auto => {
             let (a, b) = (at(short), at(long));
-            let cost = |passes: &[Pass]| (passes.len(), passes.iter().map(|p| p.points.len()).sum::<usize>());
+            let cost = |passes: &[Path]| (passes.len(), passes.iter().map(|p| p.points.len()).sum::<usize>());
             if cost(&a) <= cost(&b) { a } else { b }
         }
     }

@@ -32,7 +32,7 @@ pub mod spiral;
 
 use super::thin::tie::{TieSettings, tie};
 use super::thin::{Split, ThinLimits, split};
-use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use super::{Fill, FillSettings, PassKind, Path, Strategy};
 use crate::bead::{Bead, Law, Section};
 use crate::pass::Along;
 use glam::DVec2;
@@ -110,7 +110,7 @@ impl Strategy for OneLoop {
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
         let placed = steps(island, settings).into_iter();
         let passes = placed.flat_map(|(steps, middle)| steps.lines.into_iter().map(move |line| pass(line, middle)));
-        let passes: Vec<Pass> = passes.collect();
+        let passes: Vec<Path> = passes.collect();
         // A single loop begins where its seam was put; others in whatever way is short.
         let alone = matches!(&passes[..], [pass] if pass.closed);
         Fill { stages: vec![passes], fixed_order: alone }
@@ -137,10 +137,10 @@ fn about_origin(polygon: &Polygon) -> (Polygon, DVec2) {
     (Polygon { outer: ring(&polygon.outer), holes: polygon.holes.iter().map(ring).collect() }, middle)
 }
 
-fn pass(line: Line, middle: DVec2) -> Pass {
+fn pass(line: Line, middle: DVec2) -> Path {
     let kind = if line.thin.iter().all(|thin| *thin) { PassKind::Wall } else { PassKind::Contour };
     let points = line.points.iter().map(|p| *p + middle).collect();
-    Pass { kind, closed: line.closed, points, width: Along::Each(line.widths), reversible: true }
+    Path { kind, closed: line.closed, points, width: Along::Each(line.widths), reversible: true }
 }
 
 impl<'a> LoopSettings<'a> {
@@ -265,15 +265,15 @@ fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings
 }
 
 /// A width of 0 tells pieces whose width is not known yet.
-fn path_pass(points: Vec<DVec2>, closed: bool) -> Pass {
-    Pass { kind: PassKind::Contour, closed, points, width: Along::Same(0.0), reversible: true }
+fn path_pass(points: Vec<DVec2>, closed: bool) -> Path {
+    Path { kind: PassKind::Contour, closed, points, width: Along::Same(0.0), reversible: true }
 }
 
 /// Paths and thin walls tied together.
-fn tied(paths: Vec<Pass>, split: &Split, settings: &LoopSettings) -> Vec<Line> {
+fn tied(paths: Vec<Path>, split: &Split, settings: &LoopSettings) -> Vec<Line> {
     let tie_settings =
         TieSettings { limits: settings.thin_limits(), end_gap: settings.end_gap, shortest: settings.shortest };
-    let line = |pass: Pass| {
+    let line = |pass: Path| {
         let widths: Vec<f64> = (0..pass.points.len()).map(|i| pass.width.after(i)).collect();
         let thin = widths.iter().map(|width| *width > 0.0).collect();
         Line { points: pass.points, widths, thin, closed: pass.closed }

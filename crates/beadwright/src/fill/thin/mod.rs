@@ -7,7 +7,7 @@
 
 pub mod tie;
 
-use super::{Fill, FillSettings, Pass};
+use super::{Fill, FillSettings, Path};
 use crate::pass::Along;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
 use planar::polyline::simplify_ring;
@@ -114,7 +114,7 @@ pub(super) fn around<'a>(
 }
 
 /// Widths that stay until they are half a step off: few moves change the speed.
-fn step_widths(pass: &mut Pass, step: f64) {
+fn step_widths(pass: &mut Path, step: f64) {
     let Along::Each(widths) = &mut pass.width else { return };
     let mut held = f64::NEG_INFINITY;
     for width in widths {
@@ -126,14 +126,14 @@ fn step_widths(pass: &mut Pass, step: f64) {
 }
 
 /// The stage with the pass that lies nearest to a mouth.
-fn nearest_stage(stages: &[Vec<Pass>], walls: &[ThinWall]) -> usize {
+fn nearest_stage(stages: &[Vec<Path>], walls: &[ThinWall]) -> usize {
     let mouths: Vec<_> = walls
         .iter()
         .flat_map(|wall| [(wall.nodes.first(), &wall.ends[0]), (wall.nodes.last(), &wall.ends[1])])
         .filter(|(_, end)| matches!(end, End::Mouth(_)))
         .filter_map(|(node, _)| node)
         .collect();
-    let distance = |stage: &Vec<Pass>| {
+    let distance = |stage: &Vec<Path>| {
         let points = stage.iter().flat_map(|pass| &pass.points);
         let squares = points.flat_map(|p| mouths.iter().map(move |node| node.at.distance_squared(*p)));
         squares.fold(f64::INFINITY, f64::min)

@@ -4,9 +4,9 @@
 //! passes; a set of [`trails`] lays all of it with max(1, odd nodes / 2) arc starts a connected part.
 
 use super::{End, ThinLimits, ThinWall};
+use crate::fill::Path;
 use crate::fill::trails::{Dart, Network, Trail, other_end, trails};
-use crate::fill::{Pass, PassKind};
-use crate::pass::Along;
+use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::polyline;
 
@@ -33,7 +33,7 @@ pub struct TieSettings {
 }
 
 /// Passes and walls laid by the fewest passes.
-pub fn tie(passes: Vec<Pass>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Pass> {
+pub fn tie(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
     if walls.is_empty() {
         return passes;
     }
@@ -73,7 +73,7 @@ struct Place {
 }
 
 impl Line {
-    fn of_pass(pass: &Pass) -> Self {
+    fn of_pass(pass: &Path) -> Self {
         let points = pass.path();
         let widths = (0..points.len().saturating_sub(1)).map(|i| pass.width.after(i)).collect();
         Self { points, widths, kind: Some(pass.kind), closed: pass.closed }
@@ -268,7 +268,7 @@ impl Graph {
         }
     }
 
-    fn passes(&self, settings: &TieSettings) -> Vec<Pass> {
+    fn passes(&self, settings: &TieSettings) -> Vec<Path> {
         let network = self.network();
         let mut trails = trails(&network);
         self.lengthen(&mut trails, &network, settings.shortest);
@@ -281,7 +281,7 @@ impl Graph {
         trails.iter().map(|trail| self.pass(trail, &through, degree, settings.end_gap * self.width)).collect()
     }
 
-    fn pass(&self, trail: &Trail, through: &[usize], degree: impl Fn(usize) -> usize, gap: f64) -> Pass {
+    fn pass(&self, trail: &Trail, through: &[usize], degree: impl Fn(usize) -> usize, gap: f64) -> Path {
         let mut lines: Vec<Line> = trail.darts.iter().map(|&dart| self.line_of(dart)).collect();
         let longest = lines.iter().max_by(|a, b| a.length().total_cmp(&b.length()));
         let kind = longest.and_then(|line| line.kind).unwrap_or(PassKind::Wall);
@@ -317,7 +317,7 @@ impl Graph {
             points.extend(lines.last().and_then(|line| line.points.last()));
             widths.extend(widths.last().copied());
         }
-        Pass { kind, closed: trail.closed, points, width: Along::Each(widths), reversible: true }
+        Path { kind, closed: trail.closed, points, width: Along::Each(widths), reversible: true }
     }
 }
 

@@ -22,12 +22,12 @@ pub mod smooth;
 pub mod strand;
 
 use super::trails;
-use super::{Fill, FillSettings, Pass, PassKind, Strategy};
+use super::{Fill, FillSettings, PassKind, Path, Strategy};
 use crate::pass::Along;
 use glam::DVec2;
 use graph::{Graph, Line};
 use planar::Polygon;
-use rounding::Path;
+use rounding::Rounded;
 
 /// Beads along the middle of walls.
 pub struct Wall;
@@ -86,7 +86,7 @@ pub fn along(lines: &[Line], settings: &FillSettings) -> Fill {
     let (strands, network) = strand::strands(&graph, settings);
     let trails = trails::trails(&network);
     let paths = rounding::paths(&strands, &network, &trails, &settings.wall);
-    let mut passes: Vec<Pass> = in_order(paths).into_iter().map(pass).collect();
+    let mut passes: Vec<Path> = in_order(paths).into_iter().map(pass).collect();
     if settings.layer % 2 == 1 {
         passes.reverse();
         passes.iter_mut().for_each(reverse);
@@ -95,20 +95,20 @@ pub fn along(lines: &[Line], settings: &FillSettings) -> Fill {
 }
 
 /// Each path next to the end of the one before; closed ones run counter-clockwise.
-fn in_order(mut paths: Vec<Path>) -> Vec<Path> {
+fn in_order(mut paths: Vec<Rounded>) -> Vec<Rounded> {
     paths.retain(|path| path.points.len() >= 2);
-    let ring = |path: &Path| planar::Ring::new(path.points.iter().map(|p| p.at).collect()).area();
+    let ring = |path: &Rounded| planar::Ring::new(path.points.iter().map(|p| p.at).collect()).area();
     for path in paths.iter_mut().filter(|path| path.closed && ring(path) < 0.0) {
         path.points[1..].reverse();
     }
-    let mut ordered: Vec<Path> = Vec::with_capacity(paths.len());
+    let mut ordered: Vec<Rounded> = Vec::with_capacity(paths.len());
     while !paths.is_empty() {
         let torch = ordered.last().and_then(|path| if path.closed { path.points.first() } else { path.points.last() });
         let distance = |at: Option<&strand::Point>| match (torch, at) {
             (Some(torch), Some(point)) => torch.at.distance_squared(point.at),
             _ => 0.0,
         };
-        let near = |path: &Path| {
+        let near = |path: &Rounded| {
             let (start, end) = (distance(path.points.first()), distance(path.points.last()));
             if path.closed || start <= end { (start, false) } else { (end, true) }
         };
@@ -124,7 +124,7 @@ fn in_order(mut paths: Vec<Path>) -> Vec<Path> {
 }
 
 /// A path as a pass; on the way from a point to the next holds the mean of both widths.
-fn pass(path: Path) -> Pass {
+fn pass(path: Rounded) -> Path {
     let points: Vec<DVec2> = path.points.iter().map(|p| p.at).collect();
     let mut widths: Vec<f64> = path.points.iter().map(|p| p.width).collect();
     let first = widths.first().copied().unwrap_or_default();
@@ -136,11 +136,11 @@ fn pass(path: Path) -> Pass {
         widths.iter_mut().zip(next).take(count).for_each(|(width, next)| *width = (*width + next) / 2.0);
         Along::Each(widths)
     };
-    Pass { kind: PassKind::Wall, closed: path.closed, points, width, reversible: false }
+    Path { kind: PassKind::Wall, closed: path.closed, points, width, reversible: false }
 }
 
 /// The pass run backwards, from the same point if it is closed.
-fn reverse(pass: &mut Pass) {
+fn reverse(pass: &mut Path) {
     if !pass.closed {
         pass.points.reverse();
         pass.width.reverse();

@@ -25,7 +25,7 @@ const STEP: f64 = 0.02;
 
 /// A path along strands.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct Rounded {
     /// Its points; the first one of a closed path is not repeated.
     pub points: Vec<Point>,
     /// Whether it ends where it began.
@@ -33,9 +33,9 @@ pub struct Path {
 }
 
 /// The paths of all trails.
-pub fn paths(strands: &[Strand], network: &Network, trails: &[Trail], settings: &WallSettings) -> Vec<Path> {
+pub fn paths(strands: &[Strand], network: &Network, trails: &[Trail], settings: &WallSettings) -> Vec<Rounded> {
     let lanes = Lanes { strands, settings, touched: touched(network, trails) };
-    let mut paths: Vec<Path> = trails.iter().map(|trail| lanes.path(trail)).collect();
+    let mut paths: Vec<Rounded> = trails.iter().map(|trail| lanes.path(trail)).collect();
     let shared = shared_ends(network);
     let whole = paths.clone();
     for (i, (path, trail)) in paths.iter_mut().zip(trails).enumerate().filter(|(_, (_, trail))| !trail.closed) {
@@ -84,7 +84,7 @@ struct Lanes<'a> {
 }
 
 impl Lanes<'_> {
-    fn path(&self, trail: &Trail) -> Path {
+    fn path(&self, trail: &Trail) -> Rounded {
         let mut trail = trail.clone();
         if trail.closed {
             // It begins in the middle of its longest strand, which is halved.
@@ -118,7 +118,7 @@ impl Lanes<'_> {
         if trail.closed && points.len() > 1 {
             points.pop();
         }
-        Path { points, closed: trail.closed }
+        Rounded { points, closed: trail.closed }
     }
 
     /// A strand's points in the direction in which a dart enters it.
@@ -259,7 +259,13 @@ fn curve(p: Point, q: Point, way: DVec2, onward: DVec2, error: f64) -> Vec<Point
 }
 
 /// Takes so much off an end that it keeps the end gap from all other paths, and from its own beyond that strand.
-fn hold_back(path: &mut Path, (number, at_start): (usize, bool), others: &[Path], room: f64, settings: &WallSettings) {
+fn hold_back(
+    path: &mut Rounded,
+    (number, at_start): (usize, bool),
+    others: &[Rounded],
+    room: f64,
+    settings: &WallSettings,
+) {
     if at_start {
         path.points.reverse();
     }
@@ -286,7 +292,7 @@ fn hold_back(path: &mut Path, (number, at_start): (usize, bool), others: &[Path]
 }
 
 /// The pieces of a path; of its own path those beyond so many mm from the start or the end.
-fn segments(path: &Path, own: Option<(bool, f64)>) -> Vec<[DVec2; 2]> {
+fn segments(path: &Rounded, own: Option<(bool, f64)>) -> Vec<[DVec2; 2]> {
     let again = path.closed.then(|| path.points.first()).flatten();
     let mut points: Vec<Point> = path.points.iter().chain(again).copied().collect();
     if let Some((at_start, strand)) = own {

@@ -7,7 +7,7 @@
 pub mod regions;
 
 use super::thin;
-use super::{Fill, FillSettings, Pass, PassKind, RasterSpacing, Strategy};
+use super::{Fill, FillSettings, PassKind, Path, RasterSpacing, Strategy};
 use planar::scan::{Scan, Spacing};
 use planar::{Polygon, Region};
 use regions::Weave;
@@ -33,7 +33,7 @@ impl Strategy for Zigzag {
 }
 
 /// Zigzag paths that fill a region.
-pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
+pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Path> {
     match settings.raster_spacing {
         RasterSpacing::Fitted => {
             woven(&Scan::fitted(region, settings.raster_angle, settings.stepover), settings.stepover, settings)
@@ -43,14 +43,14 @@ pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Pass> {
 }
 
 /// Zigzag paths through a region, their lines that far apart.
-pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: Spacing) -> Vec<Pass> {
+pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: Spacing) -> Vec<Path> {
     let scan = Scan::new(region, settings.raster_angle, spacing);
     let (Spacing::AtMost(distance) | Spacing::Exact(distance)) = spacing;
     woven(&scan, distance, settings)
 }
 
-fn woven(scan: &Scan, distance: f64, settings: &FillSettings) -> Vec<Pass> {
+fn woven(scan: &Scan, distance: f64, settings: &FillSettings) -> Vec<Path> {
     let weave = Weave::new(scan, distance);
     let passes = weave.paths(&weave.merged()).into_iter();
-    passes.map(|points| Pass::line(PassKind::Infill, points, settings.bead.width)).collect()
+    passes.map(|points| Path::line(PassKind::Infill, points, settings.bead.width)).collect()
 }

@@ -1,0 +1,18 @@
+//! FANUC TP.
+
+mod read;
+mod section;
+mod write;
+
+pub use section::{Fanuc, FanucSpeed};
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "fanuc",
+    language: "FANUC TP",
+    turns_table: false,
+    typical: read::typical,
+    read: read::read,
+};

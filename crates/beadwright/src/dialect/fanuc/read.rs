@@ -1,0 +1,294 @@
+//! FANUC TP as ASCII (`.ls`): J, L and C motions to the positions of the listing, and the programs that it calls.
+//!
+//! Places are those of the user frame. The arc is switched by `Weld Start`, `Arc Start` and their ends, on lines of their
+//! own or behind a motion, or by the codes of the options.
+
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
+use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Instructions without bearing on place and metal, by their first words.
+const HARMLESS: [&str; 24] = [
+    "END",
+    "ABORT",
+    "PAUSE",
+    "LBL",
+    "MESSAGE",
+    "UALM",
+    "TIMER",
+    "OVERRIDE",
+    "PAYLOAD",
+    "COL",
+    "MONITOR",
+    "STOP_TRACKING",
+    "Weave",
+    "Track",
+    "TC_ONLINE",
+    "RESUME_PROG",
+    "MAINT_PROG",
+    "ENDIF",
+    "ENDFOR",
+    "UFRAME_NUM",
+    "UTOOL_NUM",
+    "LOCK",
+    "UNLOCK",
+    "BREAK",
+];
+
+/// Branches and loops.
+const CONTROL: [&str; 6] = ["IF", "ELSE", "FOR", "SELECT", "JMP", "WHILE"];
+
+/// Where a position lies.
+#[derive(Clone, Copy)]
+enum Position {
+    /// User frame and place, mm.
+    Place(u32, DVec3),
+    /// Joint angles, or not taught.
+    Unknown,
+}
+
+/// A listing: statements with their lines, and positions by number.
+struct Listing {
+    module: Option<String>,
+    statements: Vec<(usize, String)>,
+    positions: HashMap<u32, Position>,
+}
+
+/// Whether a line can only stand in a FANUC program.
+pub(super) fn typical(line: &str) -> bool {
+    begins_with(line, &["/PROG"])
+}
+
+pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    let mut reader = Reader {
+        trace: Trace::new(),
+        module,
+        listings: HashMap::new(),
+        on: Patterns::new(&options.arc.on),
+        off: Patterns::new(&options.arc.off),
+        frame: None,
+    };
+    let main = reader.listing(None, text)?;
+    if main.statements.is_empty() {
+        return Err(ReadError::NoProgram("FANUC TP"));
+    }
+    reader.run(&main, 0)?;
+    reader.trace.finish(super::DIALECT.language)
+}
+
+struct Reader<'a> {
+    trace: Trace,
+    module: &'a mut FindModule<'a>,
+    listings: HashMap<String, Rc<Listing>>,
+    on: Patterns,
+    off: Patterns,
+    /// User frame of the first position.
+    frame: Option<u32>,
+}
+
+impl Reader<'_> {
+    fn listing(&mut self, module: Option<&str>, text: &str) -> Result<Rc<Listing>, ReadError> {
+        let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
+        let (mut statements, mut positions) = (Vec::<(usize, String)>::new(), HashMap::new());
+        let (mut part, mut block) = ("", Block::default());
+        for (i, line) in text.lines().enumerate().map(|(i, l)| (i + 1, l.trim())) {
+            if let Some(head) = line.strip_prefix('/').filter(|l| !l.starts_with('/')) {
+                part = head;
+            } else if part.starts_with("MN") {
+                statement(line, i, &mut statements);
+            } else if part.starts_with("POS") && block.line(line, i, &self.trace)? {
+                let Block { number, frame, place, .. } = std::mem::take(&mut block);
+                let place = match place {
+                    [Some(x), Some(y), Some(z)] => Position::Place(frame, DVec3::new(x, y, z)),
+                    _ => Position::Unknown,
+                };
+                positions.extend(number.map(|n| (n, place)));
+            }
+        }
+        self.trace.module = caller;
+        Ok(Rc::new(Listing { module: module.map(str::to_owned), statements, positions }))
+    }
+
+    fn run(&mut self, listing: &Rc<Listing>, depth: usize) -> Result<(), ReadError> {
+        let caller = std::mem::replace(&mut self.trace.module, listing.module.clone());
+        for (line, text) in &listing.statements {
+            self.statement(text, *line, listing, depth)?;
+        }
+        self.trace.module = caller;
+        Ok(())
+    }
+
+    fn statement(&mut self, text: &str, line: usize, listing: &Listing, depth: usize) -> Result<(), ReadError> {
+        if text.is_empty() || text.starts_with(['!', '/', '-']) {
+            return Ok(());
+        }
+        let (word, rest) = name(text);
+        let is = |other: &&str| other.eq_ignore_ascii_case(word);
+        if ["J", "L", "C", "A", "S"].iter().any(is) && rest.starts_with(['P', 'p']) {
+            self.motion(&word.to_ascii_uppercase(), rest, line, listing);
+            return Ok(());
+        }
+        let flat = compact(text);
+        if self.switches(&flat, line) {
+        } else if is(&"WAIT") {
+            // Other waits are for signals.
+            if let Some(seconds) = rest.split_once("(sec)").map(|(seconds, _)| seconds) {
+                let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
+                self.trace.dwell += wait.max(0.0);
+            }
+        } else if is(&"CALL") || is(&"RUN") {
+            return self.call(rest, line, depth);
+        } else if CONTROL.iter().any(is) {
+            self.trace.note(&word.to_ascii_uppercase(), "is not followed: its lines were read once", line);
+            if let Some((_, called)) = text.split_once("CALL ").filter(|_| is(&"IF")) {
+                return self.call(called, line, depth);
+            }
+        } else if (flat.starts_with("DO[") || flat.starts_with("RO[")) && flat.ends_with("=ON") {
+            self.trace.see(text);
+        } else if !HARMLESS.iter().any(is) && !flat.contains('=') {
+            let word = text.split_whitespace().next().unwrap_or(text);
+            self.trace.note(word, "is not understood and was left out", line);
+        }
+        Ok(())
+    }
+
+    /// Whether the statement, without blanks, switches the arc.
+    fn switches(&mut self, flat: &str, line: usize) -> bool {
+        let has = |words: [&str; 2]| words.iter().any(|w| flat.contains(w));
+        let (on, off) = (has(["WELDSTART[", "ARCSTART["]), has(["WELDEND[", "ARCEND["]));
+        let (on, off) = (on || self.on.matches(flat), off || self.off.matches(flat));
+        if on || off {
+            self.trace.set_arc(on, line);
+        }
+        on || off
+    }
+
+    fn call(&mut self, rest: &str, line: usize, depth: usize) -> Result<(), ReadError> {
+        let (called, arguments) = name(rest);
+        self.trace.call(called, depth, line)?;
+        let key = called.to_ascii_uppercase();
+        if !self.listings.contains_key(&key) {
+            let Some(text) = (self.module)(called) else {
+                if arguments.starts_with('(') {
+                    let fate = "is called with arguments, was not found and was left out";
+                    self.trace.note(called, fate, line);
+                    return Ok(());
+                }
+                return Err(ReadError::MissingModule { place: self.trace.place(line), name: called.to_owned() });
+            };
+            let listing = self.listing(Some(called), &text)?;
+            self.listings.insert(key.clone(), listing);
+        }
+        match self.listings.get(&key).cloned() {
+            Some(listing) => self.run(&listing, depth + 1),
+            None => Ok(()),
+        }
+    }
+
+    /// `P[2] 100mm/sec FINE Weld Start[1,1]` behind the word of the motion.
+    fn motion(&mut self, word: &str, rest: &str, line: usize, listing: &Listing) {
+        let (first, mut rest) = position(rest);
+        let mut targets = vec![first];
+        while rest.starts_with("P[") || rest.starts_with("PR[") {
+            let (next, behind) = position(rest);
+            targets.push(next);
+            rest = behind;
+        }
+        let flat = compact(rest);
+        let relative = rest.split_whitespace().any(|w| w.eq_ignore_ascii_case("INC"));
+        if flat.contains("OFFSET") {
+            self.trace.note("an offset of a motion", "is not applied", line);
+        }
+        let speed = rest.split_whitespace().next().unwrap_or_default();
+        let speed = if word == "J" { Some(0.0) } else { mm_per_second(speed) };
+        if speed.is_none() {
+            self.trace.note("a speed", "is no plain length a time and was read as unknown", line);
+        }
+        if ["A", "S"].contains(&word) {
+            self.trace.note(word, "is a curve through several points and was read as straight moves", line);
+        }
+        let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
+        let places: Vec<Option<DVec3>> = targets.iter().map(|t| self.place(*t, relative, listing, line)).collect();
+        match places[..] {
+            [Some(to)] => self.trace.line(to.to_array().map(Some), step),
+            [Some(via), Some(to)] if word == "C" => self.trace.arc_over(via, to, None, step),
+            _ => {
+                self.trace.note("a motion to a place that is unknown here", "was left out", line);
+                self.trace.forget();
+            }
+        }
+        self.switches(&flat, line);
+    }
+
+    fn place(&mut self, number: Option<u32>, relative: bool, listing: &Listing, line: usize) -> Option<DVec3> {
+        let Position::Place(frame, place) = *listing.positions.get(&number?)? else { return None };
+        if *self.frame.get_or_insert(frame) != frame {
+            self.trace.note("a position in another user frame", "was read as if it were in the first", line);
+        }
+        Some(if relative { self.trace.at + place } else { place })
+    }
+}
+
+/// Takes the line of a statement in, or that on which one goes on.
+fn statement(line: &str, number: usize, statements: &mut Vec<(usize, String)>) {
+    let digits = line.bytes().take_while(u8::is_ascii_digit).count();
+    let Some(text) = line[digits..].strip_prefix(':') else { return };
+    let text = text.trim_end().trim_end_matches(';').trim();
+    match statements.last_mut().filter(|_| digits == 0) {
+        Some((_, open)) => *open = format!("{open} {text}"),
+        None => statements.push((number, text.to_owned())),
+    }
+}
+
+/// Number of the position at the start of the text (none for registers), and what follows it.
+fn position(text: &str) -> (Option<u32>, &str) {
+    let Some((head, rest)) = text.split_once(']') else { return (None, "") };
+    let number = head.strip_prefix("P[").or_else(|| head.strip_prefix("p["));
+    // A comment may stand behind the number.
+    let number = number.and_then(|n| n.split(':').next()?.trim().parse().ok());
+    (number, rest.trim_start())
+}
+
+/// mm/s of `8.0mm/sec`, `48.0cm/min` or `20.0inch/min`.
+fn mm_per_second(text: &str) -> Option<f64> {
+    let units = [("mm/sec", 1.0), ("cm/min", 10.0 / 60.0), ("inch/min", 25.4 / 60.0)];
+    units.iter().find_map(|(unit, factor)| number(text.strip_suffix(unit)?).map(|v| v * factor))
+}
+
+/// A position's block in the making.
+#[derive(Default)]
+struct Block {
+    number: Option<u32>,
+    groups: usize,
+    frame: u32,
+    place: [Option<f64>; 3],
+}
+
+impl Block {
+    /// Takes a line of the block; true where it ends. Only the first group moves the torch.
+    fn line(&mut self, line: &str, i: usize, trace: &Trace) -> Result<bool, ReadError> {
+        if line.starts_with("P[") {
+            *self = Self { number: position(line).0, ..Self::default() };
+        } else if line.starts_with("GP") {
+            self.groups += 1;
+        } else if line.starts_with('}') {
+            return Ok(true);
+        }
+        for (field, value) in line.split(',').filter_map(|f| f.split_once(['=', ':'])).filter(|_| self.groups < 2) {
+            let (field, value) = (field.trim(), value.trim().split(' ').next().unwrap_or_default());
+            let value = value.trim_end_matches("mm");
+            if field == "UF" {
+                self.frame = value.parse().unwrap_or_default();
+            }
+            // Asterisks: not taught.
+            let axis = ["X", "Y", "Z"].iter().position(|a| *a == field);
+            if let Some(axis) = axis.filter(|_| !value.starts_with('*')) {
+                self.place[axis] = Some(number(value).ok_or_else(|| trace.number_error(i, value))?);
+            }
+        }
+        Ok(false)
+    }
+}

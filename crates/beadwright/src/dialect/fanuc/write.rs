@@ -1,0 +1,211 @@
+//! FANUC TP as ASCII (R-30iB, ArcTool): `NAME.ls` calls `NAME_L001.ls` and so on; long layers go on in `NAME_L001_2.ls`.
+//!
+//! Every move has its own position, in the frames of the profile. The arc is switched by lines of their own after FINE;
+//! inside a pass moves are CNT. Lines are numbered from 1, an arc's second position stands on a line without number.
+
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::number::fixed;
+use super::section::{Fanuc, FanucSpeed};
+use crate::process::Process;
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+use std::fmt::Write as _;
+
+/// Program names may have this many characters.
+const MAX_NAME: usize = 36;
+
+/// Comments may have this many characters.
+const MAX_COMMENT: usize = 16;
+
+/// Longest wait of one line, s.
+const MAX_WAIT: f64 = 300.0;
+
+/// Room for `_L`, and for the number of a split layer.
+const SUFFIX: usize = 2 + 4;
+
+/// Writes FANUC.
+pub(super) struct FanucTp {
+    name: String,
+    comment: String,
+    fanuc: Fanuc,
+    values: Values,
+    travel_speed: f64,
+    nominal_speed: f64,
+    wire_feed_speed: f64,
+    digits: usize,
+    main: Program,
+}
+
+/// Lines and positions of one program.
+#[derive(Default)]
+struct Program {
+    lines: String,
+    count: usize,
+    positions: String,
+    points: usize,
+}
+
+impl Program {
+    fn line(&mut self, text: &str) {
+        self.count += 1;
+        // Motions begin right after the colon, instructions two blanks behind it.
+        let _ = write!(self.lines, "{:>4}:{text} ;\r\n", self.count);
+    }
+
+    fn position(&mut self, head: &str, axes: [(&str, String); 6]) -> usize {
+        self.points += 1;
+        let _ = write!(self.positions, "P[{}]{{\r\n   GP1:\r\n    {head}\r\n", self.points);
+        for (i, (axis, value)) in axes.iter().enumerate() {
+            let end = ["", ",", ",\r\n"][if i == 5 { 0 } else { 1 + usize::from(i == 2) }];
+            let _ = write!(self.positions, "{}{axis} = {value}{end}", if i % 3 == 0 { "    " } else { " " });
+        }
+        self.positions.push_str("\r\n};\r\n");
+        self.points
+    }
+
+    fn text(&self, name: &str, comment: &str) -> String {
+        let comment = &comment[..comment.len().min(MAX_COMMENT)];
+        format!(
+            "/PROG  {name}\r\n/ATTR\r\nOWNER = MNEDITOR;\r\nCOMMENT = \"{comment}\";\r\nLINE_COUNT = {};\r\n\
+             PROTECT = READ_WRITE;\r\nDEFAULT_GROUP = 1,*,*,*,*;\r\n/MN\r\n{}/POS\r\n{}/END\r\n",
+            self.count, self.lines, self.positions
+        )
+    }
+}
+
+impl FanucTp {
+    /// Begins the program of a part; its name becomes the program's name.
+    pub(super) fn new(job: &Job<'_>, fanuc: Fanuc) -> Self {
+        let name = upper_name(&job.part);
+        let values = Values::new(&name, job);
+        let Process { deposition_speed: nominal_speed, wire_feed_speed, .. } = job.weld.process;
+        let travel_speed = job.weld.travel.speed;
+        let comment = ascii(&job.part).replace('"', "_");
+        let main = Program::default();
+        Self { name, comment, fanuc, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main }
+    }
+
+    fn lines(&self, program: &mut Program, template: &[String]) {
+        self.values.expand(template).for_each(|line| program.line(&format!("  {line}")));
+    }
+
+    fn frames(&self, program: &mut Program) {
+        program.line(&format!("  UFRAME_NUM={}", self.fanuc.user_frame));
+        program.line(&format!("  UTOOL_NUM={}", self.fanuc.tool_frame));
+    }
+
+    /// Adds a position in the user frame and gives its number.
+    fn pose(&self, program: &mut Program, to: DVec3) -> usize {
+        let Fanuc { user_frame, tool_frame, configuration, orientation: [w, p, r], .. } = &self.fanuc;
+        let head = format!("UF : {user_frame}, UT : {tool_frame}, CONFIG : '{configuration}',");
+        let (mm, deg) = (|v: f64| format!("{:>9} mm", fixed(v, 3)), |v: &f64| format!("{:>9} deg", fixed(*v, 4)));
+        let axes = [("X", mm(to.x)), ("Y", mm(to.y)), ("Z", mm(to.z)), ("W", deg(w)), ("P", deg(p)), ("R", deg(r))];
+        program.position(&head, axes)
+    }
+
+    fn home(&self, program: &mut Program) {
+        let names = ["J1", "J2", "J3", "J4", "J5", "J6"];
+        let axes = std::array::from_fn(|i| (names[i], format!("{:>9} deg", fixed(self.fanuc.home[i], 3))));
+        let head = format!("UF : {}, UT : {},", self.fanuc.user_frame, self.fanuc.tool_frame);
+        let number = program.position(&head, axes);
+        program.line(&format!("J P[{number}] {}% FINE", fixed(self.fanuc.home_speed, 0)));
+    }
+
+    fn speed(&self, speed: f64) -> String {
+        match self.fanuc.speed {
+            FanucSpeed::WeldSpeed if (speed - self.nominal_speed).abs() < 1e-9 => "WELD_SPEED".to_owned(),
+            FanucSpeed::CentimetresPerMinute => format!("{}cm/min", fixed((speed * 6.0).max(0.1), 1)),
+            _ => format!("{}mm/sec", fixed(speed.max(0.1), 1)),
+        }
+    }
+
+    fn instruction(&mut self, program: &mut Program, instruction: Instruction) {
+        match instruction {
+            Instruction::Travel { to } => {
+                let number = self.pose(program, to);
+                // L takes at most 2000 mm/sec.
+                program.line(&format!("L P[{number}] {}mm/sec FINE", fixed(self.travel_speed.clamp(0.1, 2000.0), 1)));
+            }
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                program.line(&format!("  !pass {pass} {}", kind.name()));
+                self.lines(program, &self.fanuc.arc_on);
+            }
+            Instruction::Weld { to, circle, speed, last } => {
+                let via = circle.map(|circle| self.pose(program, circle.via));
+                let number = self.pose(program, to);
+                let end = if last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
+                let end = format!("P[{number}] {} {end}", self.speed(speed));
+                match via {
+                    Some(via) => program.line(&format!("C P[{via}]\r\n    :  {end}")),
+                    None => program.line(&format!("L {end}")),
+                }
+            }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(program, &self.fanuc.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(program, crater_lines(&self.fanuc.crater, &self.fanuc.wire_feed));
+                }
+                wait(program, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(program, seconds),
+            Instruction::ArcOff { .. } => self.lines(program, &self.fanuc.arc_off),
+        }
+    }
+}
+
+fn wait(program: &mut Program, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
+}
+
+impl Writer for FanucTp {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        self.name.truncate(MAX_NAME - SUFFIX - self.digits);
+        let mut main = Program::default();
+        self.frames(&mut main);
+        self.home(&mut main);
+        self.lines(&mut main, &self.fanuc.start);
+        self.main = main;
+        Vec::new()
+    }
+
+    fn layer(&mut self, layer: &LayerProgram) -> Vec<Chunk> {
+        if layer.instructions.is_empty() {
+            return Vec::new();
+        }
+        self.values.set("layer", layer.index + 1);
+        let mut chunks = Vec::new();
+        for (i, part) in split::parts(&layer.instructions, self.fanuc.max_points).into_iter().enumerate() {
+            let more = if i == 0 { String::new() } else { format!("_{}", i + 1) };
+            let name = format!("{}_L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
+            let mut program = Program::default();
+            self.frames(&mut program);
+            if i == 0 {
+                program.line(&format!("  !layer {}, z {} mm", layer.index + 1, fixed(layer.z, 3)));
+                self.lines(&mut program, &self.fanuc.layer_start);
+            }
+            part.iter().for_each(|&instruction| self.instruction(&mut program, instruction));
+            self.main.line(&format!("  CALL {name}"));
+            chunks.push(Chunk {
+                file: format!("{name}.ls"),
+                text: program.text(&name, &format!("LAYER {}", layer.index + 1)),
+            });
+        }
+        chunks
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut main = std::mem::take(&mut self.main);
+        if let Some(leave) = leave {
+            self.instruction(&mut main, leave);
+        }
+        self.lines(&mut main, &self.fanuc.end);
+        self.home(&mut main);
+        vec![Chunk { file: format!("{}.ls", self.name), text: main.text(&self.name, &self.comment) }]
+    }
+}

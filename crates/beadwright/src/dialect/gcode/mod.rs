@@ -1,0 +1,20 @@
+//! CNC G-code.
+
+mod block;
+mod hints;
+mod read;
+mod section;
+pub(super) mod write;
+
+pub use section::{Gcode, GcodeComments};
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "gcode",
+    language: "G-code",
+    turns_table: false,
+    typical: read::typical,
+    read: read::read,
+};

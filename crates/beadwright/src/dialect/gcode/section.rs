@@ -1,0 +1,109 @@
+//! CNC G-code in profiles: the keys, and what their values can be.
+
+use super::write::CncGcode;
+use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::writing::{needs, is_extension};
+use crate::program::ProgramSettings;
+use crate::limit::{Broken, CONTROLLER, Limit, limits};
+use serde::{Deserialize, Serialize};
+
+/// CNC G-code. Flavours of controllers differ in these keys and in the templates: a dwell of `{{gas_preflow}}` s is
+/// `G4 P{{gas_preflow}}` for LinuxCNC, `G4 P{{gas_preflow_ms}}` for Fanuc and `G4 F{{gas_preflow}}` for Siemens.
+/// Templates are blocks with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Gcode {
+    /// File name extension without the dot.
+    pub extension: String,
+    /// Whether blocks carry N numbers.
+    pub block_numbers: bool,
+    /// Decimals of coordinates, 1 to 4.
+    pub decimals: usize,
+    /// Whether a `%` stands before and behind the program (LinuxCNC, Fanuc; not Siemens); default true.
+    #[serde(default = "yes")]
+    pub percent_signs: bool,
+    /// O number of the program (Fanuc); default none.
+    pub program_number: Option<u32>,
+    /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
+    #[serde(default)]
+    pub comments: GcodeComments,
+    /// Blocks at the beginning.
+    pub header: Vec<String>,
+    /// Blocks at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Blocks that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Blocks that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Blocks that wait `{{dwell}}` s or `{{dwell_ms}}` ms; default `G4 P{{dwell}}`, which is LinuxCNC's.
+    #[serde(default = "seconds")]
+    pub dwell: Vec<String>,
+    /// Blocks that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
+    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
+    /// none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Blocks that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move, as LinuxCNC's M67 does: M68 does not.
+    #[serde(default)]
+    pub crater: Vec<String>,
+    /// Blocks at the end.
+    pub footer: Vec<String>,
+}
+
+/// How comments are written in CNC G-code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum GcodeComments {
+    /// `(LAYER 1)`
+    #[default]
+    Parentheses,
+    /// `; LAYER 1`
+    Semicolon,
+}
+
+fn seconds() -> Vec<String> {
+    vec!["G4 P{{dwell}}".to_owned()]
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Section for Gcode {
+    fn limits(&self) -> Vec<Limit> {
+        let number = self.program_number.unwrap_or(1);
+        limits! {
+            "gcode.decimals": self.decimals as f64, 1.0, 4.0, "decimals", CONTROLLER;
+            "gcode.program_number": number.into(), 1.0, 9999.0, "(O number)", CONTROLLER;
+        }
+    }
+
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
+        if !is_extension(&self.extension) {
+            return Some(Broken::text("gcode.extension", &self.extension, "letters and digits only."));
+        }
+        let coarse = program.arcs && self.decimals < 3;
+        coarse.then(|| program.broken_tolerance("arcs = true needs 3 gcode.decimals or more: the radius must be kept."))
+    }
+
+    fn templates(&self) -> Templates<'_> {
+        vec![
+            ("gcode.header", &self.header),
+            ("gcode.layer_start", &self.layer_start),
+            ("gcode.arc_on", &self.arc_on),
+            ("gcode.arc_off", &self.arc_off),
+            ("gcode.dwell", &self.dwell),
+            ("gcode.wire_feed", &self.wire_feed),
+            ("gcode.crater", &self.crater),
+            ("gcode.footer", &self.footer),
+        ]
+    }
+
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+        needs::lines("gcode", &self.templates(), "M67 E0 Q{{wire_feed_ratio}}", job)?;
+        Ok(Box::new(CncGcode::new(job, self.clone())))
+    }
+}

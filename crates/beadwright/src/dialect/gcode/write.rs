@@ -1,0 +1,201 @@
+//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
+//! keys and templates of the profile.
+
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines};
+use crate::number::push_fixed;
+use super::section::{Gcode, GcodeComments};
+use crate::program::{Circle, Instruction, LayerProgram};
+use glam::DVec3;
+
+/// Block numbers begin anew after this.
+const MAX_BLOCK: usize = 99_990;
+
+/// A comment may have this many characters: blocks stay under 80.
+const MAX_COMMENT: usize = 60;
+
+/// Writes G-code.
+pub(super) struct CncGcode {
+    file: String,
+    comment: String,
+    gcode: Gcode,
+    values: Values,
+    wire_feed_speed: f64,
+    block: usize,
+    /// Feed written last, mm/s.
+    feed: f64,
+    at: Option<DVec3>,
+}
+
+impl CncGcode {
+    /// Begins the program of a part.
+    pub(super) fn new(job: &Job<'_>, gcode: Gcode) -> Self {
+        let file = format!("{}.{}", job.part, gcode.extension);
+        let values = Values::new(&ascii(&job.part), job);
+        let comment = job.comment();
+        let wire_feed_speed = job.weld.process.wire_feed_speed;
+        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, at: None }
+    }
+
+    fn begin_block(&mut self, text: &mut String) {
+        if self.gcode.block_numbers {
+            self.block = if self.block >= MAX_BLOCK { 10 } else { self.block + 10 };
+            text.push_str(&format!("N{} ", self.block));
+        }
+    }
+
+    fn comment(&self, text: &mut String, comment: &str) {
+        let clean = comment.replace(['(', ')'], "_").to_uppercase();
+        let clean = &clean[..clean.len().min(MAX_COMMENT)];
+        match self.gcode.comments {
+            GcodeComments::Parentheses => text.push_str(&format!("({clean})\n")),
+            GcodeComments::Semicolon => text.push_str(&format!("; {clean}\n")),
+        }
+    }
+
+    fn blocks(&mut self, text: &mut String, template: &[String]) {
+        let lines: Vec<String> = self.values.expand(template).collect();
+        for line in lines {
+            self.begin_block(text);
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+
+    fn wait(&mut self, text: &mut String, seconds: f64) {
+        self.values.set_dwell(seconds);
+        let lines = self.gcode.dwell.clone();
+        self.blocks(text, &lines);
+    }
+
+    /// A straight move; axes that stand still are left out.
+    fn go(&mut self, text: &mut String, word: &str, to: DVec3, feed: Option<f64>) {
+        self.motion(text, word, to, None, feed);
+    }
+
+    fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
+        let word = circle.map_or("G1", |circle| circle.word());
+        self.motion(text, word, to, circle, Some(speed));
+    }
+
+    fn motion(&mut self, text: &mut String, word: &str, to: DVec3, circle: Option<Circle>, feed: Option<f64>) {
+        let moved = |axis: usize| self.at.is_none_or(|at| at[axis] != to[axis]);
+        let axes: Vec<usize> = (0..3).filter(|&axis| moved(axis)).collect();
+        if axes.is_empty() {
+            return;
+        }
+        self.begin_block(text);
+        text.push_str(word);
+        for axis in axes {
+            text.push_str([" X", " Y", " Z"][axis]);
+            push_fixed(text, to[axis], self.gcode.decimals);
+        }
+        if let (Some(circle), Some(at)) = (circle, self.at) {
+            push_centre(text, circle.centre - at, self.gcode.decimals);
+        }
+        if let Some(feed) = feed.filter(|&f| f != self.feed) {
+            self.feed = feed;
+            text.push_str(" F");
+            push_fixed(text, feed * 60.0, 1);
+        }
+        text.push('\n');
+        self.at = Some(to);
+    }
+
+    fn instruction(&mut self, text: &mut String, instruction: Instruction) {
+        match instruction {
+            // The machine may stand anywhere at first: rise before moving across.
+            Instruction::Travel { to } if self.at.is_none() => {
+                self.begin_block(text);
+                text.push_str("G0 Z");
+                push_fixed(text, to.z, self.gcode.decimals);
+                text.push('\n');
+                self.at = Some(DVec3::new(f64::NAN, f64::NAN, to.z));
+                self.go(text, "G0", to, None);
+            }
+            Instruction::Travel { to } => self.go(text, "G0", to, None),
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                self.comment(text, &format!("PASS {pass} {}", kind.name()));
+                let lines = self.gcode.arc_on.clone();
+                self.blocks(text, &lines);
+            }
+            Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                let lines = self.gcode.wire_feed.clone();
+                self.blocks(text, &lines);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    let lines = crater_lines(&self.gcode.crater, &self.gcode.wire_feed).to_vec();
+                    self.blocks(text, &lines);
+                }
+                self.wait(text, seconds);
+            }
+            Instruction::Dwell { seconds } => self.wait(text, seconds),
+            Instruction::ArcOff { .. } => {
+                let lines = self.gcode.arc_off.clone();
+                self.blocks(text, &lines);
+            }
+        }
+    }
+
+    fn chunk(&self, text: String) -> Vec<Chunk> {
+        vec![Chunk { file: self.file.clone(), text }]
+    }
+}
+
+/// I and J: where the centre lies from the start of the arc, mm. With one decimal more than the points: their rounding
+/// moves the whole arc.
+pub(in crate::dialect) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
+    let decimals = (decimals + 1).min(4);
+    text.push_str(" I");
+    push_fixed(text, centre.x, decimals);
+    text.push_str(" J");
+    push_fixed(text, centre.y, decimals);
+}
+
+impl Writer for CncGcode {
+    fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
+        let mut text = String::new();
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
+        if let Some(number) = self.gcode.program_number {
+            text.push_str(&format!("O{number:04}\n"));
+        }
+        self.comment(&mut text, &self.comment);
+        let header = self.gcode.header.clone();
+        self.blocks(&mut text, &header);
+        self.chunk(text)
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let mut text = String::with_capacity(program.instructions.len() * 32);
+        self.values.set("layer", program.index + 1);
+        self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
+        let layer_start = self.gcode.layer_start.clone();
+        self.blocks(&mut text, &layer_start);
+        for &instruction in &program.instructions {
+            self.instruction(&mut text, instruction);
+        }
+        self.chunk(text)
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        if let Some(leave) = leave {
+            self.instruction(&mut text, leave);
+        }
+        let footer = self.gcode.footer.clone();
+        self.blocks(&mut text, &footer);
+        if self.gcode.percent_signs {
+            text.push_str("%\n");
+        }
+        self.chunk(text)
+    }
+}

@@ -1,0 +1,18 @@
+//! Yaskawa INFORM.
+
+mod read;
+mod section;
+mod write;
+
+pub use section::{Inform, InformSpeed};
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "inform",
+    language: "INFORM",
+    turns_table: false,
+    typical: read::typical,
+    read: read::read,
+};

@@ -1,0 +1,215 @@
+//! Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
+//!
+//! Places are those of the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes of the options. A run
+//! of MOVC is a chain of arcs: start, a point on the way and end, then either a new start on the spot or the next two.
+
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{Patterns, compact, number};
+use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Instructions without bearing on place and metal, by their first words.
+const HARMLESS: [&str; 22] = [
+    "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
+    "SUB", "WVON", "WVOF", "ARCSET", "MSG", "PAUSE", "SPEED",
+];
+
+/// Branches and loops.
+const CONTROL: [&str; 8] = ["JUMP", "IF", "IFTHENEXP", "ELSE", "FOR", "WHILE", "SWITCH", "RET"];
+
+/// A MOVC this near to where the torch stands begins an arc, mm.
+const ON_THE_SPOT_MM: f64 = 0.005;
+
+/// A job: instructions with their lines, and positions by name; none for pulses.
+struct Job {
+    module: Option<String>,
+    instructions: Vec<(usize, String)>,
+    positions: HashMap<String, Option<DVec3>>,
+}
+
+/// Whether a line can only stand in a job.
+pub(super) fn typical(line: &str) -> bool {
+    line == "/JOB"
+}
+
+pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    let mut reader = Reader {
+        trace: Trace::new(),
+        module,
+        jobs: HashMap::new(),
+        on: Patterns::new(&options.arc.on),
+        off: Patterns::new(&options.arc.off),
+        unit: if options.inform_cm_per_min { 10.0 / 60.0 } else { 1.0 },
+        circle: Circle::None,
+    };
+    let main = reader.job(None, text)?;
+    if main.instructions.is_empty() {
+        return Err(ReadError::NoProgram("INFORM"));
+    }
+    reader.run(&main, 0)?;
+    reader.end_circle();
+    reader.trace.finish(super::DIALECT.language)
+}
+
+/// How far a chain of arcs has come.
+#[derive(Clone, Copy)]
+enum Circle {
+    /// No chain.
+    None,
+    /// The torch stands where an arc begins or ends.
+    At,
+    /// A point on the way is known.
+    Via(DVec3, Step),
+}
+
+struct Reader<'a> {
+    trace: Trace,
+    module: &'a mut FindModule<'a>,
+    jobs: HashMap<String, Rc<Job>>,
+    on: Patterns,
+    off: Patterns,
+    /// mm/s of V=1.
+    unit: f64,
+    circle: Circle,
+}
+
+impl Reader<'_> {
+    fn job(&mut self, module: Option<&str>, text: &str) -> Result<Rc<Job>, ReadError> {
+        let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
+        let (mut instructions, mut positions) = (Vec::new(), HashMap::new());
+        let (mut pulses, mut running) = (false, false);
+        for (i, line) in text.lines().enumerate().map(|(i, l)| (i + 1, l.trim())) {
+            if line.starts_with('/') {
+                pulses = (pulses || line == "///PULSE") && line != "///RECTAN";
+                running |= line.starts_with("//INST");
+            } else if running {
+                instructions.push((i, line.to_owned()));
+            } else if let Some((name, value)) = line.split_once('=') {
+                let place = if pulses { None } else { Some(self.place(value, i)?) };
+                positions.insert(name.trim().to_owned(), place);
+            }
+        }
+        self.trace.module = caller;
+        Ok(Rc::new(Job { module: module.map(str::to_owned), instructions, positions }))
+    }
+
+    fn place(&self, value: &str, line: usize) -> Result<DVec3, ReadError> {
+        let mut place = [0.0; 3];
+        let mut fields = value.split(',');
+        for axis in &mut place {
+            let field = fields.next().unwrap_or_default();
+            let wrong = if field.is_empty() { value } else { field };
+            *axis = number(field).ok_or_else(|| self.trace.number_error(line, wrong))?;
+        }
+        Ok(DVec3::from_array(place))
+    }
+
+    fn run(&mut self, job: &Rc<Job>, depth: usize) -> Result<(), ReadError> {
+        let caller = std::mem::replace(&mut self.trace.module, job.module.clone());
+        for (line, text) in &job.instructions {
+            self.instruction(text, *line, job, depth)?;
+        }
+        self.trace.module = caller;
+        Ok(())
+    }
+
+    fn instruction(&mut self, text: &str, line: usize, job: &Job, depth: usize) -> Result<(), ReadError> {
+        let mut words = text.split_whitespace();
+        let word = words.next().unwrap_or_default();
+        if word.is_empty() || word.starts_with(['\'', '*']) {
+            return Ok(());
+        }
+        if let Some(kind) = word.strip_prefix("MOV") {
+            self.motion(kind, &words.collect::<Vec<_>>(), line, job);
+            return Ok(());
+        }
+        let flat = compact(text);
+        let (on, off) = (word == "ARCON" || self.on.matches(&flat), word == "ARCOF" || self.off.matches(&flat));
+        if on || off {
+            self.end_circle();
+            self.trace.set_arc(on, line);
+        } else if word == "TIMER" {
+            let seconds = words.next().and_then(|w| w.strip_prefix("T=")).unwrap_or_default();
+            let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, text))?;
+            self.trace.dwell += wait.max(0.0);
+        } else if word == "CALL" {
+            return self.call(words.next().unwrap_or_default(), line, depth);
+        } else if CONTROL.contains(&word) {
+            self.trace.note(word, "is not followed: its lines were read once", line);
+        } else if word == "DOUT" && flat.ends_with("ON") {
+            self.trace.see(text);
+        } else if !HARMLESS.contains(&word) {
+            self.trace.note(word, "is not understood and was left out", line);
+        }
+        Ok(())
+    }
+
+    fn call(&mut self, target: &str, line: usize, depth: usize) -> Result<(), ReadError> {
+        let called = target.strip_prefix("JOB:").unwrap_or(target);
+        self.trace.call(called, depth, line)?;
+        if !self.jobs.contains_key(called) {
+            let Some(text) = (self.module)(called) else {
+                return Err(ReadError::MissingModule { place: self.trace.place(line), name: called.to_owned() });
+            };
+            let job = self.job(Some(called), &text)?;
+            self.jobs.insert(called.to_owned(), job);
+        }
+        match self.jobs.get(called).cloned() {
+            Some(job) => self.run(&job, depth + 1),
+            None => Ok(()),
+        }
+    }
+
+    /// `MOVL C00001 V=8.0 PL=0`, `kind` being `L`.
+    fn motion(&mut self, kind: &str, words: &[&str], line: usize, job: &Job) {
+        let place = words.first().and_then(|name| job.positions.get(*name)).copied().flatten();
+        let speed = words.iter().find_map(|w| w.strip_prefix("V=")).and_then(number).map(|v| v * self.unit);
+        if speed.is_none() && kind != "J" {
+            self.trace.note("a speed", "is no plain V= and was read as unknown", line);
+        }
+        let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
+        let Some(to) = place else {
+            self.trace.note("a motion to a place that is unknown here", "was left out", line);
+            self.circle = Circle::None;
+            return self.trace.forget();
+        };
+        match kind {
+            "C" => self.arc(to, step),
+            "L" | "J" => {
+                self.end_circle();
+                self.trace.line(to.to_array().map(Some), step);
+            }
+            _ => {
+                self.end_circle();
+                self.trace.note(&format!("MOV{kind}"), "was read as a straight move", line);
+                self.trace.line(to.to_array().map(Some), step);
+            }
+        }
+    }
+
+    /// The next point of a chain of arcs.
+    fn arc(&mut self, to: DVec3, step: Step) {
+        self.circle = match self.circle {
+            Circle::None => {
+                self.trace.line(to.to_array().map(Some), step);
+                Circle::At
+            }
+            Circle::At if self.trace.at.distance(to) < ON_THE_SPOT_MM => Circle::At,
+            Circle::At => Circle::Via(to, step),
+            Circle::Via(via, _) => {
+                self.trace.arc_over(via, to, None, step);
+                Circle::At
+            }
+        };
+    }
+
+    /// A chain that lacks its end point goes straight to its last one.
+    fn end_circle(&mut self) {
+        if let Circle::Via(to, step) = std::mem::replace(&mut self.circle, Circle::None) {
+            self.trace.note("an arc", "has no end point and was read as a straight move", step.line);
+            self.trace.line(to.to_array().map(Some), step);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and what its values can be.
+
+use super::write::YaskawaInform;
+use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::writing::{orientation, needs};
+use crate::program::ProgramSettings;
+use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use serde::{Deserialize, Serialize};
+
+/// Unit of `V=`, as the controller's parameters say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum InformSpeed {
+    /// Millimetres a second.
+    #[serde(rename = "mm/s")]
+    MillimetresPerSecond,
+    /// Centimetres a minute.
+    #[serde(rename = "cm/min")]
+    CentimetresPerMinute,
+}
+
+/// Yaskawa INFORM. Templates are instructions with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Inform {
+    /// User frame of the part, 1 to 63.
+    pub user_frame: u32,
+    /// Tool of the torch, 0 to 63.
+    pub tool: u32,
+    /// Robot's group, such as `RB1`.
+    pub group: String,
+    /// Configuration of the points, ///RCONF: `1,0,0,0,0,0,0,0`.
+    pub configuration: String,
+    /// Axis position before and after the program, pulses of S, L, U, R, B, T.
+    pub home: [i64; 6],
+    /// Speed to and from it, VJ, %.
+    pub home_speed: f64,
+    /// Orientation of the tool in the user frame: Rx, Ry, Rz, °; `[180, 0, 0]` is straight down.
+    pub orientation: [f64; 3],
+    /// Position level along a pass: PL 0 to 8; where the arc switches it is 0.
+    pub position_level: u32,
+    /// Unit of `V=`, as the controller is set: `mm/s` or `cm/min`.
+    pub speed: InformSpeed,
+    /// Date in the jobs, `yyyy/mm/dd hh:mm`: the same plan gives the same bytes.
+    pub date: String,
+    /// Job names have at most this many characters: 32, or 8 on the NX100.
+    pub max_name: usize,
+    /// A job of a layer holds at most this many moves and goes on in another: controllers take 9,999 instructions.
+    pub max_points: usize,
+    /// Instructions at the beginning of the main job.
+    pub start: Vec<String>,
+    /// Instructions at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Instructions that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Instructions that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`.
+    /// Needed where those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
+    /// Instructions at the end of the main job.
+    pub end: Vec<String>,
+}
+
+impl Section for Inform {
+    fn limits(&self) -> Vec<Limit> {
+        let mut limits = limits! {
+            "inform.user_frame": self.user_frame.into(), 1.0, 63.0, "(user frame)", CONTROLLER;
+            "inform.tool": self.tool.into(), 0.0, 63.0, "(tool)", CONTROLLER;
+            "inform.home_speed": self.home_speed, 0.01, 100.0, "%", CONTROLLER;
+            "inform.position_level": self.position_level.into(), 0.0, 8.0, "(PL)", CONTROLLER;
+            "inform.max_name": self.max_name as f64, 8.0, 32.0, "characters", CONTROLLER;
+            "inform.max_points": self.max_points as f64, 10.0, 2000.0, "moves a job",
+                "larger programs do not load into the controller";
+        };
+        limits.extend(self.home.map(|axis| limit("inform.home", axis as f64, (-1e7, 1e7), "pulses", CONTROLLER)));
+        limits.extend(self.orientation.map(|angle| limit("inform.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
+        limits
+    }
+
+    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+        let digits = |text: &str, marks: &[u8]| text.bytes().all(|b| b.is_ascii_digit() || marks.contains(&b));
+        let group = !self.group.is_empty() && self.group.bytes().all(|b| b.is_ascii_alphanumeric() || b == b',');
+        let date = self.date.len() == 16 && digits(&self.date, b"/ :");
+        let configuration = !self.configuration.is_empty() && digits(&self.configuration, b",");
+        [
+            (group, "inform.group", &self.group, "such as \"RB1\"."),
+            (configuration, "inform.configuration", &self.configuration, "such as \"1,0,0,0,0,0,0,0\"."),
+            (date, "inform.date", &self.date, "yyyy/mm/dd hh:mm."),
+        ]
+        .into_iter()
+        .find(|(fits, ..)| !fits)
+        .map(|(_, key, value, reason)| Broken::text(key, value, reason))
+    }
+
+    fn templates(&self) -> Templates<'_> {
+        vec![
+            ("inform.start", &self.start),
+            ("inform.layer_start", &self.layer_start),
+            ("inform.arc_on", &self.arc_on),
+            ("inform.arc_off", &self.arc_off),
+            ("inform.wire_feed", &self.wire_feed),
+            ("inform.crater", &self.crater),
+            ("inform.end", &self.end),
+        ]
+    }
+
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+        needs::lines("inform", &self.templates(), "AOUT AO#(1) {{wire_feed_ratio}}", job)?;
+        let mut section = self.clone();
+        section.orientation = orientation::xyz(section.orientation, job.program.torch_angle);
+        Ok(Box::new(YaskawaInform::new(job, section)))
+    }
+}

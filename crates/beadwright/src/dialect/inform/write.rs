@@ -1,0 +1,211 @@
+//! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; long
+//! layers go on in `NAME-L001-2.jbi`, and `NAME-END.jbi` takes the torch away.
+//!
+//! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
+//! begins, so the robot does not move for it.
+
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::number::fixed;
+use super::section::{Inform, InformSpeed};
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+use std::fmt::Write as _;
+
+/// Comments may have this many characters.
+const MAX_COMMENT: usize = 32;
+
+/// Longest wait of one timer, s.
+const MAX_WAIT: f64 = 600.0;
+
+/// Room for `-L`, and for the number of a split layer (which short names go without as long as they can).
+const SUFFIX: usize = 2;
+
+/// Writes INFORM.
+pub(super) struct YaskawaInform {
+    name: String,
+    comment: String,
+    inform: Inform,
+    values: Values,
+    travel_speed: f64,
+    wire_feed_speed: f64,
+    digits: usize,
+    /// Instructions of the main job so far.
+    main: String,
+    at: DVec3,
+}
+
+/// Positions and instructions of one job.
+#[derive(Default)]
+struct JobText {
+    positions: String,
+    count: usize,
+    instructions: String,
+}
+
+impl JobText {
+    fn line(&mut self, text: &str) {
+        self.instructions.push_str(text);
+        self.instructions.push_str("\r\n");
+    }
+}
+
+impl YaskawaInform {
+    /// Begins the program of a part; its name becomes the job's name.
+    pub(super) fn new(job: &Job<'_>, inform: Inform) -> Self {
+        let name = upper_name(&job.part);
+        let values = Values::new(&name, job);
+        let travel_speed = job.weld.travel.speed;
+        Self {
+            name,
+            comment: ascii(&job.part),
+            inform,
+            values,
+            travel_speed,
+            wire_feed_speed: job.weld.process.wire_feed_speed,
+            digits: 3,
+            main: String::new(),
+            at: DVec3::ZERO,
+        }
+    }
+
+    fn lines(&self, text: &mut String, template: &[String]) {
+        for line in self.values.expand(template) {
+            text.push_str(&line);
+            text.push_str("\r\n");
+        }
+    }
+
+    /// Adds a position in the user frame and gives its name.
+    fn pose(&self, job: &mut JobText, to: DVec3) -> String {
+        let name = format!("C{:05}", job.count);
+        let [x, y, z] = to.to_array().map(|v| fixed(v, 3));
+        let [rx, ry, rz] = self.inform.orientation.map(|v| fixed(v, 4));
+        let _ = write!(job.positions, "{name}={x},{y},{z},{rx},{ry},{rz}\r\n");
+        job.count += 1;
+        name
+    }
+
+    fn speed(&self, speed: f64) -> String {
+        let (value, least) = match self.inform.speed {
+            InformSpeed::MillimetresPerSecond => (speed.min(1500.0), 0.1),
+            InformSpeed::CentimetresPerMinute => (speed.min(1500.0) * 6.0, 1.0),
+        };
+        format!("V={}", fixed(value.max(least), 1))
+    }
+
+    fn motion(&mut self, job: &mut JobText, word: &str, to: DVec3, speed: f64, level: u32) {
+        let pose = self.pose(job, to);
+        job.line(&format!("{word} {pose} {} PL={level}", self.speed(speed)));
+        self.at = to;
+    }
+
+    fn instruction(&mut self, job: &mut JobText, instruction: Instruction) {
+        match instruction {
+            Instruction::Travel { to } => self.motion(job, "MOVL", to, self.travel_speed, 0),
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
+                self.lines(&mut job.instructions, &self.inform.arc_on);
+            }
+            Instruction::Weld { to, circle, speed, last } => {
+                let level = if last { 0 } else { self.inform.position_level };
+                let Some(circle) = circle else { return self.motion(job, "MOVL", to, speed, level) };
+                for (to, level) in
+                    [(self.at, self.inform.position_level), (circle.via, self.inform.position_level), (to, level)]
+                {
+                    self.motion(job, "MOVC", to, speed, level);
+                }
+            }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(&mut job.instructions, &self.inform.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(&mut job.instructions, crater_lines(&self.inform.crater, &self.inform.wire_feed));
+                }
+                wait(job, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(job, seconds),
+            Instruction::ArcOff { .. } => self.lines(&mut job.instructions, &self.inform.arc_off),
+        }
+    }
+
+    /// A job in the user frame.
+    fn relative(&self, name: &str, comment: &str, job: &JobText) -> Chunk {
+        let Inform { user_frame, tool, configuration, .. } = &self.inform;
+        let head = format!(
+            "///USER {user_frame}\r\n///TOOL {tool}\r\n///POSTYPE USER\r\n///RECTAN\r\n///RCONF {configuration}\r\n"
+        );
+        let attributes = format!("SC,RW,RJ\r\n////FRAME USER {user_frame}");
+        self.file(name, comment, &head, &attributes, job)
+    }
+
+    fn file(&self, name: &str, comment: &str, head: &str, attributes: &str, job: &JobText) -> Chunk {
+        let comment = &comment[..comment.len().min(MAX_COMMENT)];
+        let text = format!(
+            "/JOB\r\n//NAME {name}\r\n//POS\r\n///NPOS {},0,0,0,0,0\r\n{head}{}//INST\r\n///DATE {}\r\n\
+             ///COMM {comment}\r\n///ATTR {attributes}\r\n///GROUP1 {}\r\nNOP\r\n{}END\r\n",
+            job.count, job.positions, self.inform.date, self.inform.group, job.instructions
+        );
+        Chunk { file: format!("{name}.jbi"), text }
+    }
+}
+
+fn wait(job: &mut JobText, seconds: f64) {
+    waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
+}
+
+impl Writer for YaskawaInform {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // With room to spare the names of split layers fit too: "-L001-2".
+        let more = if self.inform.max_name > 16 { 4 } else { 2 };
+        self.name.truncate((self.inform.max_name - SUFFIX - self.digits).saturating_sub(more).max(1));
+        let mut main = String::new();
+        self.lines(&mut main, &self.inform.start);
+        self.main = main;
+        Vec::new()
+    }
+
+    fn layer(&mut self, layer: &LayerProgram) -> Vec<Chunk> {
+        if layer.instructions.is_empty() {
+            return Vec::new();
+        }
+        self.values.set("layer", layer.index + 1);
+        let mut chunks = Vec::new();
+        for (i, part) in split::parts(&layer.instructions, self.inform.max_points).into_iter().enumerate() {
+            let more = if i == 0 { String::new() } else { format!("-{}", i + 1) };
+            let name = format!("{}-L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
+            let mut job = JobText::default();
+            if i == 0 {
+                self.lines(&mut job.instructions, &self.inform.layer_start);
+            }
+            part.iter().for_each(|&instruction| self.instruction(&mut job, instruction));
+            self.main.push_str(&format!("CALL JOB:{name}\r\n"));
+            chunks.push(self.relative(&name, &format!("LAYER {} Z {}", layer.index + 1, fixed(layer.z, 3)), &job));
+        }
+        chunks
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut chunks = Vec::new();
+        if let Some(leave) = leave {
+            let (name, mut job) = (format!("{}-END", self.name), JobText::default());
+            self.instruction(&mut job, leave);
+            self.main.push_str(&format!("CALL JOB:{name}\r\n"));
+            chunks.push(self.relative(&name, "TORCH AWAY", &job));
+        }
+        let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
+        let go = |number: usize| format!("MOVJ C{number:05} VJ={}\r\n", fixed(self.inform.home_speed, 2));
+        let mut instructions = go(0) + &self.main;
+        self.lines(&mut instructions, &self.inform.end);
+        instructions.push_str(&go(1));
+        let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
+        let main = JobText { positions, count: 2, instructions };
+        let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
+        chunks.push(self.file(&self.name, &self.comment, &head, "SC,RW", &main));
+        chunks
+    }
+}

@@ -1,0 +1,127 @@
+//! The section `[krl.arctech]`: data sets of KUKA ArcTech Basic 3.x, and what their values can be.
+//!
+//! "(u)" marks what no source confirms for every version of the package: compare it with a form made on the pendant.
+
+use crate::limit::{Broken, Limit, limit, limits};
+use serde::{Deserialize, Serialize};
+
+/// What switches the arc in KRL.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum KrlArc {
+    /// The lines `arc_on` and `arc_off`.
+    #[default]
+    Outputs,
+    /// The inline forms ARCON, ARCSWI and ARCOFF of ArcTech Basic, with the data of `[krl.arctech]`.
+    Arctech,
+}
+
+/// ArcTech Basic. Times of gas and ignition come from `[process]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ArcTech {
+    /// Version of the package on the controller, such as `3.3.3.366`: data of another version are refused there.
+    pub version: String,
+    /// Ignition.
+    pub strike: ArcTechStrike,
+    /// Welding.
+    pub weld: ArcTechWeld,
+    /// End crater.
+    pub crater: ArcTechCrater,
+}
+
+/// The group `Strike` of a data set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ArcTechStrike {
+    /// Mode of the power source, `JobModeId`, as WorkVisual names it: `Job mode`, `GMAW synergic S2-Step` (u).
+    pub mode: String,
+    /// Set of parameters, `ParamSetId`, such as `Set1` (u).
+    pub set: String,
+    /// Values of the channels 1 to 8 as WorkVisual has them: job number; or synergic line, wire feed in m/min, arc-length
+    /// correction and dynamic correction (u).
+    pub channels: [f64; 8],
+    /// Time to fill the gas lines, s.
+    pub purge_time: f64,
+}
+
+/// The group `Weld` of a data set; its speed is that of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ArcTechWeld {
+    /// Mode of the power source, `JobModeId`.
+    pub mode: String,
+    /// Set of parameters, `ParamSetId`.
+    pub set: String,
+    /// Values of the channels 1 to 8.
+    pub channels: [f64; 8],
+}
+
+/// The group `Crater` of a data set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ArcTechCrater {
+    /// Mode of the power source, `JobModeId`.
+    pub mode: String,
+    /// Set of parameters, `ParamSetId`.
+    pub set: String,
+    /// Values of the channels 1 to 8.
+    pub channels: [f64; 8],
+    /// Time for which the crater is filled at the end point, s.
+    pub time: f64,
+    /// Time for which the wire burns back, s.
+    pub burnback_time: f64,
+}
+
+impl ArcTech {
+    /// The version as the data sets hold it: 3.3.3.366 is 303030366; none for what is no version.
+    pub(crate) fn number(&self) -> Option<u64> {
+        let parts: Vec<u64> = self.version.split('.').map(|p| p.parse().ok()).collect::<Option<_>>()?;
+        let [major, minor, revision, build] = parts[..] else { return None };
+        let fits = (1..100).contains(&major) && minor < 100 && revision < 100 && build < 10_000;
+        fits.then(|| ((major * 100 + minor) * 100 + revision) * 10_000 + build)
+    }
+
+    /// What the numbers can be.
+    pub(super) fn limits(&self) -> Vec<Limit> {
+        let mut limits = limits! {
+            "krl.arctech.strike.purge_time": self.strike.purge_time, 0.0, 60.0, "s",
+                "beyond this the value has no meaning";
+            "krl.arctech.crater.time": self.crater.time, 0.0, 60.0, "s", "beyond this the value has no meaning";
+            "krl.arctech.crater.burnback_time": self.crater.burnback_time, 0.0, 10.0, "s",
+                "beyond this the value has no meaning";
+        };
+        for (key, channels) in [
+            ("krl.arctech.strike.channels", self.strike.channels),
+            ("krl.arctech.weld.channels", self.weld.channels),
+            ("krl.arctech.crater.channels", self.crater.channels),
+        ] {
+            limits.extend(channels.map(|value| limit(key, value, (-1e5, 1e5), "(as the channel is configured)", "the welding package takes no other values")));
+        }
+        limits
+    }
+
+    /// The first text that a controller would refuse.
+    pub(super) fn broken(&self) -> Option<Broken> {
+        if self.number().is_none() {
+            return Some(Broken::text("krl.arctech.version", &self.version, "four numbers such as \"3.3.3.366\"."));
+        }
+        let texts = [
+            ("krl.arctech.strike.mode", &self.strike.mode),
+            ("krl.arctech.strike.set", &self.strike.set),
+            ("krl.arctech.weld.mode", &self.weld.mode),
+            ("krl.arctech.weld.set", &self.weld.set),
+            ("krl.arctech.crater.mode", &self.crater.mode),
+            ("krl.arctech.crater.set", &self.crater.set),
+        ];
+        // Strings of the package: braces and quotes would end the data set.
+        let legal = |b: u8| b.is_ascii_alphanumeric() || b" _-.+/".contains(&b);
+        let wrong = texts.iter().find(|(_, text)| text.is_empty() || text.len() > 32 || !text.bytes().all(legal));
+        wrong.map(|(key, text)| Broken::text(key, text, "1 to 32 letters, digits, blanks and _-.+/ only."))
+    }
+}

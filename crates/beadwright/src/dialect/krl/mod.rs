@@ -1,0 +1,21 @@
+//! KUKA KRL.
+
+mod arctech;
+mod arctech_section;
+mod read;
+mod section;
+mod write;
+
+pub use arctech_section::{ArcTech, ArcTechCrater, ArcTechStrike, ArcTechWeld, KrlArc};
+pub use section::Krl;
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "krl",
+    language: "KRL",
+    turns_table: true,
+    typical: read::typical,
+    read: read::read,
+};

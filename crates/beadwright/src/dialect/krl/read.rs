@@ -1,0 +1,431 @@
+//! KUKA KRL: motions in Cartesian places, named or written out, and the subprograms that a program calls.
+//!
+//! Places are those of `$BASE`. The arc is lit by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes of
+//! the options; a trigger at the end of a motion counts after that motion.
+
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
+use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Statements without bearing on place and metal.
+const HARMLESS: [&str; 26] = [
+    "DECL",
+    "INT",
+    "REAL",
+    "BOOL",
+    "CHAR",
+    "STRUC",
+    "ENUM",
+    "E6POS",
+    "E6AXIS",
+    "POS",
+    "FRAME",
+    "AXIS",
+    "SIGNAL",
+    "EXT",
+    "EXTFCT",
+    "INTERRUPT",
+    "GLOBAL",
+    "CONTINUE",
+    "SPLINE",
+    "ENDSPLINE",
+    "WAIT",
+    "BAS",
+    "BRAKE",
+    "ANOUT",
+    "ANIN",
+    "IMPORT",
+];
+
+/// Programs of the system that move nothing.
+const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
+
+/// Branches and loops, by their first words.
+const CONTROL: [&str; 11] =
+    ["IF", "ELSE", "FOR", "WHILE", "LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
+const CONTROL_REST: [&str; 8] = ["ENDIF", "ENDFOR", "ENDWHILE", "ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
+
+/// Motions with (circular, relative, point to point).
+const MOTIONS: [(&str, Motion); 14] = [
+    ("LIN", Motion::LIN),
+    ("SLIN", Motion::LIN),
+    ("PTP", Motion::PTP),
+    ("SPTP", Motion::PTP),
+    ("CIRC", Motion::CIRC),
+    ("SCIRC", Motion::CIRC),
+    ("SPL", Motion::LIN),
+    ("LIN_REL", Motion::LIN.relative()),
+    ("SLIN_REL", Motion::LIN.relative()),
+    ("SPL_REL", Motion::LIN.relative()),
+    ("PTP_REL", Motion::PTP.relative()),
+    ("SPTP_REL", Motion::PTP.relative()),
+    ("CIRC_REL", Motion::CIRC.relative()),
+    ("SCIRC_REL", Motion::CIRC.relative()),
+];
+
+#[derive(Clone, Copy, Default)]
+struct Motion {
+    circular: bool,
+    joint: bool,
+    relative: bool,
+}
+
+impl Motion {
+    const LIN: Self = Self { circular: false, joint: false, relative: false };
+    const PTP: Self = Self { circular: false, joint: true, relative: false };
+    const CIRC: Self = Self { circular: true, joint: false, relative: false };
+
+    const fn relative(self) -> Self {
+        Self { relative: true, ..self }
+    }
+}
+
+/// Where a motion goes.
+#[derive(Clone, Copy)]
+enum Target {
+    /// X, Y, Z, mm.
+    Place([Option<f64>; 3]),
+    /// Axis angles.
+    Axes,
+}
+
+/// A module: its text, where each program in it begins, and its data.
+struct Source {
+    /// None for the main file.
+    module: Option<String>,
+    text: Rc<str>,
+    /// Name in upper case, byte after the DEF line, number of the next line.
+    programs: Vec<(String, usize, usize)>,
+    targets: HashMap<String, Target>,
+    /// Weld speeds of ArcTech data sets, mm/s.
+    weld_speeds: HashMap<String, f64>,
+}
+
+/// Whether a line can only stand in KRL.
+pub(super) fn typical(line: &str) -> bool {
+    const FIRST: [&str; 9] = ["DEF", "DEFDAT", "DEFFCT", "LIN", "PTP", "SLIN", "SPTP", "$VEL", "$OUT"];
+    let marked = line.starts_with('&') || line.starts_with(";FOLD");
+    // `def name():` is URScript.
+    let script = line.starts_with("def ") && before_comment(line, '#').trim_end().ends_with(':');
+    (marked || begins_with(unscoped(line), &FIRST)) && !script
+}
+
+pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    let mut reader = Reader {
+        trace: Trace::new(),
+        module,
+        sources: Vec::new(),
+        on: Patterns::new(&options.arc.on),
+        off: Patterns::new(&options.arc.off),
+        speed: 0.0,
+        weld_speed: None,
+        later: None,
+    };
+    let main = reader.load(None, text.into())?;
+    // A fragment has no DEF and runs from its first line.
+    let start = match reader.sources[main].programs.first() {
+        Some(&(_, byte, line)) => (byte, line),
+        None if text.lines().any(|l| strip_word(l.trim_start(), "DEFDAT").is_some()) => {
+            return Err(ReadError::NoProgram("KRL"));
+        }
+        None => (0, 1),
+    };
+    reader.run(main, start, 0)?;
+    reader.trace.finish(super::DIALECT.language)
+}
+
+struct Reader<'a> {
+    trace: Trace,
+    module: &'a mut FindModule<'a>,
+    sources: Vec<Source>,
+    on: Patterns,
+    off: Patterns,
+    /// mm/s, 0 for unknown
+    speed: f64,
+    /// mm/s, of the ArcTech data in use
+    weld_speed: Option<f64>,
+    /// What the arc does after the next motion.
+    later: Option<bool>,
+}
+
+impl Reader<'_> {
+    /// Takes a module in, with its data file.
+    fn load(&mut self, module: Option<&str>, text: Rc<str>) -> Result<usize, ReadError> {
+        let programs = programs(&text);
+        let own = module.or(programs.first().map(|p| p.0.as_str())).map(|name| format!("{name}.dat"));
+        let data = own.as_ref().and_then(|name| (self.module)(name));
+        let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
+        let (targets, weld_speeds) = (HashMap::new(), HashMap::new());
+        let mut source = Source { module: self.trace.module.clone(), text, programs, targets, weld_speeds };
+        if let Some(data) = data {
+            self.trace.module = own;
+            for (i, line) in data.lines().enumerate() {
+                self.declaration(before_comment(line, ';').trim(), i + 1, &mut source)?;
+            }
+        }
+        self.trace.module = caller;
+        self.sources.push(source);
+        Ok(self.sources.len() - 1)
+    }
+
+    /// `DECL E6POS XP1={..}` and ArcTech data; other declarations are not needed.
+    fn declaration(&self, line: &str, number: usize, source: &mut Source) -> Result<(), ReadError> {
+        let Some((left, value)) = line.split_once('=') else { return Ok(()) };
+        let mut words = left.split_whitespace().rev();
+        let (Some(variable), Some(kind)) = (words.next(), words.next()) else { return Ok(()) };
+        let is = |name: &str| kind.eq_ignore_ascii_case(name);
+        if ["E6POS", "POS", "FRAME", "E6AXIS", "AXIS"].into_iter().any(is) {
+            let target = self.aggregate(value, number)?;
+            source.targets.insert(variable.to_ascii_uppercase(), target);
+        } else if is("stArcDat_T") {
+            let speed = value.split_once("Velocity").and_then(|(_, v)| number_before(v));
+            source.weld_speeds.extend(speed.map(|s| (variable.to_ascii_uppercase(), s * 1000.0)));
+        }
+        Ok(())
+    }
+
+    fn run(&mut self, source: usize, start: (usize, usize), depth: usize) -> Result<(), ReadError> {
+        let text = Rc::clone(&self.sources[source].text);
+        let caller = std::mem::replace(&mut self.trace.module, self.sources[source].module.clone());
+        for (i, raw) in text[start.0..].lines().enumerate() {
+            let line = before_comment(raw, ';').trim();
+            if strip_word(line, "END").is_some() || is_head(line).is_some() {
+                break;
+            }
+            if !line.is_empty() && !line.starts_with('&') {
+                self.statement(line, start.1 + i, source, depth)?;
+            }
+        }
+        self.trace.module = caller;
+        Ok(())
+    }
+
+    fn statement(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
+        let (word, rest) = name(line);
+        if let Some((_, motion)) = MOTIONS.iter().find(|(m, _)| m.eq_ignore_ascii_case(word)) {
+            return self.motion(*motion, rest, number, source);
+        }
+        let flat = compact(line);
+        if self.arc(&flat, line, number, source)? {
+            return Ok(());
+        }
+        if let Some(speed) = flat.strip_prefix("$VEL.CP=").or_else(|| bas_speed(&flat)) {
+            return self.set_speed(speed, number);
+        }
+        if let Some(rest) = strip_word(line, "WAIT").and_then(|r| strip_word(r, "SEC")) {
+            let seconds = words::number(rest);
+            self.trace.dwell += seconds.ok_or_else(|| self.trace.number_error(number, rest))?.max(0.0);
+            return Ok(());
+        }
+        self.other(line, &flat, number, source, depth)
+    }
+
+    /// Statements that move nothing themselves.
+    fn other(&mut self, line: &str, flat: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
+        let (word, rest) = name(line);
+        let is = |name: &&str| name.eq_ignore_ascii_case(word);
+        if line.starts_with('$') {
+            if flat.starts_with("$BASE=") {
+                self.trace.note("$BASE", "is not applied: places are those of the base", number);
+            } else if flat.starts_with("$OUT[") && flat.ends_with("=TRUE") {
+                self.trace.see(line);
+            }
+        } else if rest.starts_with('=') && rest[1..].trim_start().starts_with('{') {
+            let target = self.aggregate(&rest[1..], number)?;
+            self.sources[source].targets.insert(word.to_ascii_uppercase(), target);
+        } else if CONTROL.iter().any(is) {
+            self.trace.note(&word.to_ascii_uppercase(), "is not followed: its lines were read once", number);
+        } else if rest.starts_with('(') && !SYSTEM.iter().any(is) {
+            return self.call(word, rest, number, source, depth);
+        } else if rest.starts_with(['.', '[', '=']) {
+            if rest.starts_with('.') {
+                self.trace.note(word, "is changed in a part, which is not understood", number);
+            }
+        } else if !HARMLESS.iter().chain(&CONTROL_REST).chain(&SYSTEM).any(is) && !flat.starts_with("TRIGGERWHEN") {
+            self.trace.note(word, "is not understood and was left out", number);
+        }
+        Ok(())
+    }
+
+    /// Whether the statement switches the arc, and if so, does it.
+    fn arc(&mut self, flat: &str, line: &str, number: usize, source: usize) -> Result<bool, ReadError> {
+        let starts = |words: [&str; 2]| words.iter().any(|w| flat.starts_with(w));
+        let holds = |words: [&str; 2]| words.iter().any(|w| flat.contains(w));
+        let lit = self.on.matches(flat) || starts(["ARCON", "ARC_ON("]) || holds(["MAINNG(#ARCON", "MAINNG(#ARCSWI"]);
+        let ended = self.off.matches(flat) || starts(["ARCOFF", "ARC_OFF("]) || flat.contains("MAINNG(#ARCOFF");
+        if !lit && !ended {
+            return Ok(false);
+        }
+        let data = flat.split([',', ')']).find_map(|d| self.sources[source].weld_speeds.get(d));
+        self.weld_speed = data.copied().or(self.weld_speed);
+        // An inline form holds its motion: the arc is switched at its end.
+        let form = ["LIN", "PTP", "CIRC"].iter().find_map(|w| line.find(&format!(" {w} ")).map(|at| &line[at + 1..]));
+        let at_end = flat.starts_with("TRIGGERWHEN") && !flat.contains("DISTANCE=0");
+        if let Some(form) = form.filter(|_| starts(["ARCON", "ARCOFF"])) {
+            self.statement(form, number, source, 0)?;
+        } else if at_end || flat.contains("BEFOREMOVE") {
+            self.later = Some(lit);
+            return Ok(true);
+        }
+        self.trace.set_arc(lit, number);
+        Ok(true)
+    }
+
+    fn set_speed(&mut self, text: &str, number: usize) -> Result<(), ReadError> {
+        self.speed = match (words::number(text), self.weld_speed) {
+            (Some(speed), _) => speed * 1000.0,
+            (None, Some(speed)) if text.starts_with("GARC") => speed,
+            _ => {
+                self.trace.note("a speed", "is set to no plain number and was read as unknown", number);
+                0.0
+            }
+        };
+        Ok(())
+    }
+
+    fn motion(&mut self, motion: Motion, rest: &str, number: usize, source: usize) -> Result<(), ReadError> {
+        let pieces = arguments(rest);
+        let at = |i: usize| pieces.get(i).copied().unwrap_or_default();
+        let mut targets = [None; 2];
+        for (i, target) in targets.iter_mut().enumerate().take(if motion.circular { 2 } else { 1 }) {
+            let Some(found) = self.target(at(i), number, source)? else {
+                self.trace.note("a motion to a place that is computed or not declared", "was left out", number);
+                self.trace.forget();
+                return Ok(());
+            };
+            *target = Some(found);
+        }
+        let speed = with_speed(rest).unwrap_or(if motion.joint { 0.0 } else { self.speed });
+        let step = Step { speed, metal: self.trace.metal(), width: None, line: number };
+        match targets {
+            [Some(Target::Place(aux)), Some(Target::Place(end))] => self.circle(motion, [aux, end], &pieces, step),
+            [Some(Target::Place(to)), None] => self.trace.line(self.absolute(motion, to), step),
+            _ => {
+                let what = "a motion to axis angles";
+                self.trace.note(what, "goes to a place that is unknown here and was left out", number);
+                self.trace.forget();
+            }
+        }
+        if let Some(on) = self.later.take() {
+            self.trace.set_arc(on, number);
+        }
+        Ok(())
+    }
+
+    fn circle(&mut self, motion: Motion, ends: [[Option<f64>; 3]; 2], pieces: &[&str], step: Step) {
+        let start = self.trace.at;
+        let whole = |target: [Option<f64>; 3]| {
+            let target = self.absolute(motion, target);
+            DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(start[i])))
+        };
+        let [aux, end] = ends.map(whole);
+        let angle = pieces.iter().find_map(|p| strip_word(p, "CA")).and_then(number_before);
+        if angle.is_some_and(|a| a <= 0.0) {
+            self.trace.note("CA", "below 0 is not understood: the arc was read up to its end point", step.line);
+        }
+        self.trace.arc_over(aux, end, angle.filter(|a| *a > 0.0).map(f64::to_radians), step);
+    }
+
+    fn absolute(&self, motion: Motion, target: [Option<f64>; 3]) -> [Option<f64>; 3] {
+        let at = self.trace.at;
+        [0, 1, 2].map(|i| target[i].map(|v| if motion.relative { at[i] + v } else { v }))
+    }
+
+    /// A place written out or named; none when it is neither.
+    fn target(&self, text: &str, number: usize, source: usize) -> Result<Option<Target>, ReadError> {
+        if text.starts_with('{') {
+            return self.aggregate(text, number).map(Some);
+        }
+        let (name, rest) = name(text);
+        if rest.starts_with([':', '[', '.', '(']) {
+            return Ok(None);
+        }
+        let name = name.to_ascii_uppercase();
+        // Data of the main program may be global.
+        Ok([source, 0].iter().find_map(|&s| self.sources[s].targets.get(&name)).copied())
+    }
+
+    /// `{X 1.0,Y 2.0,..}` or `{A1 0.0,..}`, perhaps with its type before a colon.
+    fn aggregate(&self, text: &str, number: usize) -> Result<Target, ReadError> {
+        let inside = text.trim_start().trim_start_matches('{').split('}').next().unwrap_or_default();
+        let inside = inside.split_once(':').map_or(inside, |(_, fields)| fields);
+        let mut place = [None; 3];
+        for field in inside.split(',') {
+            let (axis, value) = name(field.trim());
+            let Some(i) = ["X", "Y", "Z"].iter().position(|a| a.eq_ignore_ascii_case(axis)) else {
+                if axis.len() == 2 && axis.starts_with(['A', 'a']) {
+                    return Ok(Target::Axes);
+                }
+                continue;
+            };
+            let value = words::number(value).ok_or_else(|| self.trace.number_error(number, field));
+            place[i] = Some(value?);
+        }
+        Ok(Target::Place(place))
+    }
+
+    fn call(&mut self, called: &str, rest: &str, line: usize, source: usize, depth: usize) -> Result<(), ReadError> {
+        self.trace.call(called, depth, line)?;
+        let find = |s: &Source| s.programs.iter().find(|p| p.0.eq_ignore_ascii_case(called)).map(|p| (p.1, p.2));
+        if let Some(start) = find(&self.sources[source]) {
+            return self.run(source, start, depth + 1);
+        }
+        let loaded = |s: &Source| s.module.as_deref().is_some_and(|m| m.eq_ignore_ascii_case(called));
+        let target = match self.sources.iter().position(loaded) {
+            Some(loaded) => loaded,
+            None => match (self.module)(called) {
+                Some(text) => self.load(Some(called), text.into())?,
+                // Calls with arguments are mostly those of a technology package.
+                None if compact(rest) != "()" => {
+                    self.trace.note(called, "is called with arguments, was not found and was left out", line);
+                    return Ok(());
+                }
+                None => {
+                    return Err(ReadError::MissingModule { place: self.trace.place(line), name: called.to_owned() });
+                }
+            },
+        };
+        let found = &self.sources[target];
+        let start = find(found).or(found.programs.first().map(|p| (p.1, p.2)));
+        self.run(target, start.unwrap_or((0, 1)), depth + 1)
+    }
+}
+
+/// The name in a line `DEF NAME( )` or `GLOBAL DEF ..`.
+fn is_head(line: &str) -> Option<&str> {
+    let line = strip_word(line, "GLOBAL").unwrap_or(line);
+    let rest = strip_word(line, "DEF").or_else(|| strip_word(line, "DEFFCT"))?;
+    // A function has a type before its name.
+    Some(rest.split('(').next().unwrap_or(rest).split_whitespace().next_back().unwrap_or_default())
+}
+
+/// Programs of a module: name, byte after the head, number of the next line.
+fn programs(text: &str) -> Vec<(String, usize, usize)> {
+    let mut found = Vec::new();
+    let mut byte = 0;
+    for (i, line) in text.split_inclusive('\n').enumerate() {
+        byte += line.len();
+        found.extend(is_head(line.trim()).map(|name| (name.to_ascii_uppercase(), byte, i + 2)));
+    }
+    found
+}
+
+/// The value of `BAS(#VEL_CP,..)` or `BAS(#CP_PARAMS,..)` in a compact statement.
+fn bas_speed(flat: &str) -> Option<&str> {
+    let value = flat.strip_prefix("BAS(#VEL_CP,").or_else(|| flat.strip_prefix("BAS(#CP_PARAMS,"))?;
+    Some(value.trim_end_matches(')'))
+}
+
+/// mm/s of `WITH $VEL.CP=0.1` behind a motion.
+fn with_speed(rest: &str) -> Option<f64> {
+    let flat = compact(rest.get(rest.find('$')?..)?);
+    number_before(flat.strip_prefix("$VEL.CP=")?).map(|v| v * 1000.0)
+}
+
+/// The number at the start of the text.
+fn number_before(text: &str) -> Option<f64> {
+    number(text.trim_start().split([',', '}', ' ', '$']).next()?)
+}

@@ -1,0 +1,117 @@
+//! KUKA KRL in profiles: the keys, and what their values can be.
+
+use super::write::KukaKrl;
+use super::arctech;
+use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::writing::{orientation, needs};
+use crate::program::ProgramSettings;
+use super::arctech_section::{ArcTech, KrlArc};
+use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use serde::{Deserialize, Serialize};
+
+/// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Krl {
+    /// Index into TOOL_DATA, 1 to 16.
+    pub tool: u32,
+    /// Index into BASE_DATA, 1 to 32.
+    pub base: u32,
+    /// Axis position before and after the program, as in an E6AXIS: `A1 0.0,A2 -90.0,…`, °.
+    pub home: String,
+    /// Orientation of the tool, A, B and C, °.
+    pub orientation: [f64; 3],
+    /// Speed of point-to-point moves, %.
+    pub ptp_speed: f64,
+    /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
+    pub blend: f64,
+    /// Moves in one module; longer layers are cut between passes; default 2000.
+    #[serde(default = "two_thousand")]
+    pub max_points: usize,
+    /// What switches the arc: `outputs`, the lines `arc_on` and `arc_off`, or `arctech`, the forms of ArcTech Basic; default
+    /// outputs.
+    #[serde(default)]
+    pub arc: KrlArc,
+    /// Data of ArcTech Basic; needed for `arc = "arctech"`.
+    pub arctech: Option<ArcTech>,
+    /// Lines at the beginning of the main program.
+    pub start: Vec<String>,
+    /// Lines at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Lines that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Lines that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Lines that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
+    /// where it changes. `$ANOUT[1] = …` stops at the point before; `TRIGGER WHEN DISTANCE=0 DELAY=0 DO $ANOUT[1] = …`
+    /// does not. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Lines that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move, as a TRIGGER does.
+    #[serde(default)]
+    pub crater: Vec<String>,
+    /// Lines at the end of the main program.
+    pub end: Vec<String>,
+}
+
+fn two_thousand() -> usize {
+    2000
+}
+
+impl Section for Krl {
+    fn limits(&self) -> Vec<Limit> {
+        let mut limits = limits! {
+            "krl.tool": self.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)", CONTROLLER;
+            "krl.base": self.base.into(), 1.0, 32.0, "(index into BASE_DATA)", CONTROLLER;
+            "krl.ptp_speed": self.ptp_speed, 1.0, 100.0, "%", CONTROLLER;
+            "krl.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
+            "krl.max_points": self.max_points as f64, 10.0, 50_000.0, "moves a module",
+                "the pendant cannot show longer modules";
+        };
+        limits.extend(self.orientation.map(|angle| limit("krl.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
+        limits.extend(self.arctech.iter().flat_map(|arctech| arctech.limits()));
+        limits
+    }
+
+    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+        let home = &self.home;
+        if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
+            return Some(Broken::text("krl.home", home, "an axis position such as \"A1 0.0,A2 -90.0,…\"."));
+        }
+        if self.arc == KrlArc::Arctech && self.arctech.is_none() {
+            let reason = "a table [krl.arctech] with the data of the package is needed.".to_owned();
+            return Some(Broken { key: "krl.arc".to_owned(), value: "\"arctech\"".to_owned(), reason });
+        }
+        self.arctech.as_ref().and_then(ArcTech::broken)
+    }
+
+    fn templates(&self) -> Templates<'_> {
+        vec![
+            ("krl.start", &self.start),
+            ("krl.layer_start", &self.layer_start),
+            ("krl.arc_on", &self.arc_on),
+            ("krl.arc_off", &self.arc_off),
+            ("krl.wire_feed", &self.wire_feed),
+            ("krl.crater", &self.crater),
+            ("krl.end", &self.end),
+        ]
+    }
+
+    fn dry_run(&mut self) {
+        self.arc = KrlArc::Outputs;
+    }
+
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+        match self.arc {
+            KrlArc::Arctech => arctech::check(job)?,
+            KrlArc::Outputs => {
+                needs::lines("krl", &self.templates(), "$ANOUT[1] = {{wire_feed_ratio}}", job)?;
+            }
+        }
+        let mut section = self.clone();
+        section.orientation = orientation::zyx(section.orientation, job.program.torch_angle);
+        Ok(Box::new(KukaKrl::new(job, section)))
+    }
+}

@@ -1,0 +1,294 @@
+//! KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on, `NAME.dat` holds the home position.
+//!
+//! One module a layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The
+//! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`. With `arc = "arctech"` the forms of
+//! ArcTech Basic switch it, whose data stand in a `.dat` beside each layer's module.
+
+use super::arctech::{Forms, Target};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
+use crate::number::{fixed, push_fixed};
+use super::arctech_section::KrlArc;
+use super::section::Krl;
+use crate::process::Process;
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+
+/// Module names may have this many characters.
+const MAX_NAME: usize = 24;
+
+/// Room for the number of a part of a layer: `_999`.
+const PART: usize = 4;
+
+/// Words that no module may be called.
+const RESERVED: [&str; 12] =
+    ["DEF", "DEFDAT", "DEFFCT", "END", "LOOP", "FOR", "WHILE", "REPEAT", "SWITCH", "WAIT", "HALT", "EXIT"];
+
+/// Writes KRL.
+pub(super) struct KukaKrl {
+    name: String,
+    comment: String,
+    krl: Krl,
+    process: Process,
+    values: Values,
+    travel_speed: f64,
+    /// Angle of the turn table, E1, °.
+    table: Option<f64>,
+    digits: usize,
+    /// Speed set last in the module, mm/s.
+    speed: f64,
+}
+
+impl KukaKrl {
+    /// Begins the program of a part; its name becomes the module's name.
+    pub(super) fn new(job: &Job<'_>, krl: Krl) -> Self {
+        let name = module_name(&job.part);
+        let comment = job.comment();
+        let values = Values::new(&name, job);
+        let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
+        let table = job.program.table_angle;
+        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0 }
+    }
+
+    fn layer_name(&self, index: usize) -> String {
+        format!("{}_L{:0digits$}", self.name, index + 1, digits = self.digits)
+    }
+
+    /// The module of a part of a layer, counted from 0, with its data and its call.
+    fn module(&mut self, program: &LayerProgram, part: usize, moves: &[Instruction]) -> Vec<Chunk> {
+        let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
+        let module = format!("{}{more}", self.layer_name(program.index));
+        self.speed = 0.0;
+        let mut text = self.head(&module);
+        text.reserve(moves.len() * 70);
+        text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
+        if part == 0 {
+            self.lines(&mut text, &self.krl.layer_start);
+        }
+        let mut forms = self.forms();
+        for i in 0..moves.len() {
+            match &mut forms {
+                Some(forms) => self.with_forms(&mut text, forms, moves, i),
+                None => self.instruction(&mut text, moves[i]),
+            }
+        }
+        text.push_str("END\r\n");
+        let data = forms.map(|forms| Chunk {
+            file: format!("{module}.dat"),
+            text: format!(
+                "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {module}\r\n{}ENDDAT\r\n",
+                self.comment,
+                forms.declarations()
+            ),
+        });
+        let main = Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") };
+        [main, Chunk { file: format!("{module}.src"), text }].into_iter().chain(data).collect()
+    }
+
+    fn head(&self, module: &str) -> String {
+        format!("&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEF {module}( )\r\n", self.comment)
+    }
+
+    fn lines(&self, text: &mut String, template: &[String]) {
+        for line in self.values.expand(template) {
+            text.push_str(&line);
+            text.push_str("\r\n");
+        }
+    }
+
+    fn set_speed(&mut self, text: &mut String, speed: f64) {
+        if speed != self.speed {
+            self.speed = speed;
+            text.push_str("$VEL.CP = ");
+            push_fixed(text, speed / 1000.0, 6);
+            text.push_str("\r\n");
+        }
+    }
+
+    fn forms(&self) -> Option<Forms> {
+        let arctech = self.krl.arctech.as_ref().filter(|_| self.krl.arc == KrlArc::Arctech)?;
+        Some(Forms::new(arctech, &self.krl, &self.process, self.travel_speed))
+    }
+
+    /// One of a layer's instructions where the forms of ArcTech switch the arc: a form moves to its point itself.
+    fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
+        let next_speed = all[i + 1..].iter().find_map(|next| match next {
+            Instruction::Weld { speed, .. } => Some(*speed),
+            _ => None,
+        });
+        match (all[i], next_speed) {
+            // ARCON goes there.
+            (Instruction::Travel { .. }, Some(_)) if matches!(all[i + 1], Instruction::ArcOn { .. }) => {}
+            (Instruction::ArcOn { pass, kind }, Some(speed)) => {
+                self.values.set("pass", pass);
+                text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
+                if let Some(&Instruction::Travel { to }) = i.checked_sub(1).and_then(|before| all.get(before)) {
+                    forms.on(text, &self.aggregate(to), speed);
+                }
+                self.go_on(text, speed);
+            }
+            (Instruction::Weld { to, circle, speed, last }, next) => {
+                let (via, to) = (circle.map(|c| self.aggregate(c.via)), self.aggregate(to));
+                let target = Target { via: via.as_deref(), to: &to };
+                match next.filter(|_| !last) {
+                    None => forms.off(text, target),
+                    Some(next) if krl_speed(next) != krl_speed(speed) => {
+                        forms.switch(text, target, next);
+                        self.go_on(text, next);
+                    }
+                    Some(_) => self.instruction(text, all[i]),
+                }
+            }
+            (Instruction::ArcOff { .. }, _) => self.speed = 0.0,
+            (other, _) => self.instruction(text, other),
+        }
+    }
+
+    /// Sets the speed of the plain motions behind a form, which has set it for the forms only.
+    fn go_on(&mut self, text: &mut String, speed: f64) {
+        self.speed = 0.0;
+        self.set_speed(text, speed);
+    }
+
+    fn aggregate(&self, to: DVec3) -> String {
+        let mut text = String::new();
+        self.pose(&mut text, to);
+        text
+    }
+
+    fn lin(&self, text: &mut String, to: DVec3, blend: bool) {
+        text.push_str("LIN ");
+        self.pose(text, to);
+        self.end_move(text, blend);
+    }
+
+    /// `via` lies on the arc, less than half a turn from start and end.
+    fn circ(&self, text: &mut String, via: DVec3, to: DVec3, blend: bool) {
+        text.push_str("CIRC ");
+        self.pose(text, via);
+        text.push(',');
+        self.pose(text, to);
+        self.end_move(text, blend);
+    }
+
+    fn end_move(&self, text: &mut String, blend: bool) {
+        text.push_str(if blend && self.krl.blend > 0.0 { " C_DIS\r\n" } else { "\r\n" });
+    }
+
+    fn pose(&self, text: &mut String, to: DVec3) {
+        text.push_str("{X ");
+        push_fixed(text, to.x, 3);
+        text.push_str(",Y ");
+        push_fixed(text, to.y, 3);
+        text.push_str(",Z ");
+        push_fixed(text, to.z, 3);
+        for (axis, angle) in [",A ", ",B ", ",C "].into_iter().zip(self.krl.orientation) {
+            text.push_str(axis);
+            push_fixed(text, angle, 4);
+        }
+        if let Some(angle) = self.table {
+            text.push_str(",E1 ");
+            push_fixed(text, angle, 4);
+        }
+        text.push('}');
+    }
+
+    fn instruction(&mut self, text: &mut String, instruction: Instruction) {
+        match instruction {
+            Instruction::Travel { to } => {
+                self.set_speed(text, self.travel_speed);
+                self.lin(text, to, false);
+            }
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
+                self.lines(text, &self.krl.arc_on);
+            }
+            Instruction::Weld { to, circle, speed, last } => {
+                self.set_speed(text, speed);
+                match circle {
+                    Some(circle) => self.circ(text, circle.via, to, !last),
+                    None => self.lin(text, to, !last),
+                }
+            }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+                self.lines(text, &self.krl.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+                    self.lines(text, crater_lines(&self.krl.crater, &self.krl.wire_feed));
+                }
+                wait(text, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(text, seconds),
+            Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
+        }
+    }
+}
+
+impl Writer for KukaKrl {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // Room for "_L" and the number, and for that of a part.
+        self.name.truncate(MAX_NAME - 2 - self.digits - PART);
+        let (name, krl) = (&self.name, &self.krl);
+        let data = format!(
+            "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}\r\nDECL E6AXIS XHOME={{{}}}\r\nENDDAT\r\n",
+            self.comment, krl.home
+        );
+        let mut text = self.head(name);
+        text.push_str(";FOLD INI;%{PE}\r\n  GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )\r\n");
+        text.push_str("  INTERRUPT ON 3\r\n  BAS(#INITMOV,0)\r\n;ENDFOLD (INI)\r\n");
+        text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = BASE_DATA[{}]\r\n", krl.tool, krl.base));
+        text.push_str(&format!("BAS(#VEL_PTP,{})\r\n", fixed(krl.ptp_speed, 0)));
+        text.push_str(&format!("$APO.CDIS = {}\r\n", fixed(krl.blend, 3)));
+        text.push_str(&format!("$VEL.CP = {}\r\n", fixed(self.travel_speed / 1000.0, 6)));
+        self.lines(&mut text, &self.krl.start);
+        text.push_str("PTP XHOME\r\n");
+        vec![
+            Chunk { file: format!("{}.dat", self.name), text: data },
+            Chunk { file: format!("{}.src", self.name), text },
+        ]
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        self.values.set("layer", program.index + 1);
+        let parts = split::passes(&program.instructions, self.krl.max_points);
+        parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        self.speed = 0.0;
+        if let Some(leave) = leave {
+            self.instruction(&mut text, leave);
+        }
+        self.lines(&mut text, &self.krl.end);
+        text.push_str("PTP XHOME\r\nEND\r\n");
+        vec![Chunk { file: format!("{}.src", self.name), text }]
+    }
+}
+
+fn wait(text: &mut String, seconds: f64) {
+    text.push_str(&format!("WAIT SEC {}\r\n", fixed(seconds, 3)));
+}
+
+/// A speed as it is written, millionths of a m/s.
+fn krl_speed(speed: f64) -> i64 {
+    (speed * 1000.0).round() as i64
+}
+
+/// A legal module name: letters, digits and `_`, not beginning with a digit, no keyword, at most 24 characters.
+fn module_name(part: &str) -> String {
+    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let mut name: String = part.chars().map(legal).collect();
+    if name.is_empty() || name.starts_with(|c: char| c.is_ascii_digit()) || RESERVED.contains(&name.as_str()) {
+        name.insert_str(0, "P_");
+    }
+    name.truncate(MAX_NAME);
+    name
+}

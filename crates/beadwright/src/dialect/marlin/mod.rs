@@ -1,0 +1,18 @@
+//! Printers' G-code.
+
+mod section;
+mod write;
+
+pub use section::Marlin;
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "marlin",
+    language: "G-code",
+    turns_table: false,
+    // A printer's file is G-code too.
+    typical: |_| false,
+    read: super::gcode::DIALECT.read,
+};

@@ -1,0 +1,149 @@
+//! Dialects: the languages of controllers. A neutral program is written in one of them, and programs in any of them are
+//! read back.
+//!
+//! A dialect is a folder and a line in the table below. The folder holds
+//!
+//! | file | what it is |
+//! | --- | --- |
+//! | `mod.rs` | the row [`DIALECT`](krl::DIALECT), and how the [section](Section) meets the writer |
+//! | `section.rs` | the keys of the profile, with their limits |
+//! | `write.rs` | the [writer](writing::Writer) |
+//! | `read.rs` | the reader |
+//!
+//! [`writing`] and [`reading`] hold what the dialects share.
+
+pub mod reading;
+pub mod writing;
+
+pub use reading::read;
+pub use writing::{Chunk, DialectError, Job, PLACEHOLDERS, Writer, write, writer};
+
+use crate::limit::{Broken, Limit};
+use crate::program::ProgramSettings;
+use crate::template;
+use reading::{ArcCodes, FindModule, Options, ReadError, ReadProgram};
+use serde::{Deserialize, Serialize};
+
+/// A language of controllers.
+#[derive(Debug)]
+pub struct Dialect {
+    /// The name people type.
+    pub name: &'static str,
+    /// The language as people write it; dialects of one language are read alike.
+    pub language: &'static str,
+    /// Whether it can write a turn table.
+    pub turns_table: bool,
+    /// Whether a line, trimmed, can only stand in a program of this dialect; never for one that another one reads.
+    typical: fn(&str) -> bool,
+    /// Reads a program.
+    read: fn(&str, &mut FindModule<'_>, &Options) -> Result<ReadProgram, ReadError>,
+}
+
+/// Keys and lines of the templates in a section.
+pub type Templates<'a> = Vec<(&'static str, &'a Vec<String>)>;
+
+/// What a profile says of a dialect.
+pub trait Section {
+    /// What the numbers can be.
+    fn limits(&self) -> Vec<Limit>;
+
+    /// The first value that a controller would refuse, or that does not fit the other settings of programs.
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken>;
+
+    /// Keys and lines of the templates.
+    fn templates(&self) -> Templates<'_>;
+
+    /// Takes out what would switch the arc in a dry run, beside the templates.
+    fn dry_run(&mut self) {}
+
+    /// Begins a program.
+    ///
+    /// # Errors
+    /// [`DialectError`] for a job that asks for more than the dialect can write, or than the section tells.
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError>;
+}
+
+/// The table: for each dialect its folder, its section, and what the section is for.
+macro_rules! dialects {
+    ($($(#[$doc:meta])* $name:ident: $section:ident,)*) => {
+        $(pub mod $name;)*
+
+        /// The dialects.
+        pub const ALL: &[&Dialect] = &[$(&$name::DIALECT),*];
+
+        /// The sections that a profile has.
+        #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        pub struct Sections {
+            $($(#[$doc])* pub $name: Option<$name::$section>,)*
+        }
+
+        impl Sections {
+            /// The section of a dialect.
+            pub fn get(&self, name: &str) -> Option<&dyn Section> {
+                match name {
+                    $(stringify!($name) => self.$name.as_ref().map(|section| section as &dyn Section),)*
+                    _ => None,
+                }
+            }
+
+            /// The sections that are there.
+            pub fn iter(&self) -> impl Iterator<Item = &dyn Section> {
+                ALL.iter().filter_map(|dialect| self.get(dialect.name))
+            }
+
+            /// Takes out what would switch the arc in a dry run.
+            pub(crate) fn dry_run(&mut self) {
+                $(self.$name.iter_mut().for_each(|section| section.dry_run());)*
+            }
+        }
+    };
+}
+
+dialects! {
+    /// KUKA KRL; needed for the post `krl`.
+    krl: Krl,
+    /// CNC G-code; needed for the post `gcode`.
+    gcode: Gcode,
+    /// Printers' G-code; needed for the post `marlin`.
+    marlin: Marlin,
+    /// ABB RAPID; needed for the post `rapid`.
+    rapid: Rapid,
+    /// FANUC TP; needed for the post `fanuc`.
+    fanuc: Fanuc,
+    /// Yaskawa INFORM; needed for the post `inform`.
+    inform: Inform,
+    /// URScript; needed for the post `urscript`.
+    urscript: Urscript,
+}
+
+impl Sections {
+    /// What lights and ends the arc in the templates: the last line that lights it and the first that ends it, since gas and
+    /// delays lie before and behind. Lines with placeholders are no codes.
+    pub fn arc_codes(&self) -> ArcCodes {
+        let lines_of = |name: &str| {
+            let template = move |(key, lines): (&str, &Vec<String>)| {
+                let plain = lines.iter().filter(|line| !template::has_placeholder(line));
+                // Readers have the sign that ends a statement cut off.
+                let codes: Vec<String> = plain.map(|l| l.trim_end().trim_end_matches(';').to_owned()).collect();
+                key.ends_with(name).then_some(codes)
+            };
+            self.iter().flat_map(|section| section.templates()).filter_map(template).collect::<Vec<_>>()
+        };
+        ArcCodes {
+            on: lines_of(".arc_on").into_iter().filter_map(|codes| codes.last().cloned()).collect(),
+            off: lines_of(".arc_off").into_iter().filter_map(|codes| codes.first().cloned()).collect(),
+        }
+    }
+}
+
+/// The names of the dialects.
+pub fn names() -> Vec<&'static str> {
+    ALL.iter().map(|dialect| dialect.name).collect()
+}
+
+/// The dialect of that name.
+pub fn find(name: &str) -> Option<&'static Dialect> {
+    ALL.iter().find(|dialect| dialect.name == name).copied()
+}

@@ -1,0 +1,120 @@
+//! Data of RAPID as literals: frames, speeds, zones, seams and welds.
+
+use crate::number::{fixed, push_fixed};
+use super::section::{Rapid, WireFeedUnit};
+use crate::process::Process;
+use glam::DVec3;
+
+/// Six external axes that are not there.
+const NO_AXES: &str = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]";
+
+/// The external axes of a target: the angle of a turn table (°) in the first place, if there is one.
+pub(super) fn external_axes(table: Option<f64>) -> String {
+    table.map_or(NO_AXES.to_owned(), |angle| NO_AXES.replacen("9E+09", &fixed(angle, 4), 1))
+}
+
+/// Numbers with `decimals` between brackets.
+fn list(values: &[f64], decimals: usize) -> String {
+    let texts: Vec<String> = values.iter().map(|&v| fixed(v, decimals)).collect();
+    format!("[{}]", texts.join(","))
+}
+
+/// A unit quaternion with 7 decimals; the profile's is within 0.1 % of one.
+pub(super) fn quaternion(q: &[f64]) -> String {
+    let norm = q.iter().map(|v| v * v).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+    let unit: Vec<f64> = q.iter().map(|v| v / norm).collect();
+    list(&unit, 7)
+}
+
+/// A frame: place and quaternion.
+fn pose(frame: &[f64; 7]) -> String {
+    format!("[{},{}]", list(&frame[..3], 3), quaternion(&frame[3..]))
+}
+
+/// A robtarget; its configuration is unknown here, which `ConfL \Off` allows.
+pub(super) fn push_target(text: &mut String, to: DVec3, orientation: &str, axes: &str) {
+    text.push_str("[[");
+    push_fixed(text, to.x, 3);
+    text.push(',');
+    push_fixed(text, to.y, 3);
+    text.push(',');
+    push_fixed(text, to.z, 3);
+    text.push_str("],");
+    text.push_str(orientation);
+    text.push_str(",[0,0,0,0],");
+    text.push_str(axes);
+    text.push(']');
+}
+
+/// Speeddata of a tool speed, mm/s.
+pub(super) fn speed(tool_speed: f64, rapid: &Rapid) -> String {
+    format!("[{},{},5000,1000]", fixed(tool_speed, 3), fixed(rapid.orientation_speed, 3))
+}
+
+/// Zonedata of a corner path's radius, mm, in the proportions of `z1`.
+fn zone(radius: f64) -> String {
+    let (r, tenth) = (fixed(radius, 3), fixed(radius / 10.0, 3));
+    format!("[FALSE,{r},{r},{r},{tenth},{r},{tenth}]")
+}
+
+/// Arcdata with a part of the process's wire feed.
+fn arc(process: &Process, rapid: &Rapid, part: f64) -> String {
+    let feed = part * process.wire_feed_speed;
+    let feed = match rapid.wire_feed_unit {
+        WireFeedUnit::MetresPerMinute => feed,
+        WireFeedUnit::MillimetresPerSecond => feed * 1000.0 / 60.0,
+    };
+    let numbers = [rapid.voltage, feed, rapid.control, process.current.unwrap_or(0.0)];
+    let [voltage, feed, control, current] = numbers.map(|v| fixed(v, 3));
+    format!("[{},{},{voltage},{feed},{control},{current},0,0,0]", rapid.schedule, rapid.mode)
+}
+
+/// Seamdata.
+fn seam(process: &Process, rapid: &Rapid) -> String {
+    let seam = &rapid.seam;
+    let time = |seconds: f64| fixed(seconds, 3);
+    let main = arc(process, rapid, 1.0);
+    [
+        time(seam.purge_time),
+        time(process.gas_preflow),
+        main.clone(),
+        time(process.arc_start_delay),
+        seam.scrape_start.to_string(),
+        fixed(seam.heat_speed, 3),
+        time(seam.heat_time),
+        fixed(seam.heat_distance, 3),
+        arc(process, rapid, seam.heat_feed),
+        time(seam.cool_time),
+        time(seam.fill_time),
+        arc(process, rapid, seam.fill_feed),
+        time(seam.burnback_time),
+        time(seam.rollback_time),
+        main,
+        time(process.gas_postflow),
+    ]
+    .join(",")
+}
+
+/// Welddata of a deposition speed, mm/s, and a part of the wire feed. The parts for tuning are 0, as in ABB's examples.
+pub(super) fn weld(speed: f64, feed: f64, process: &Process, rapid: &Rapid) -> String {
+    format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed))
+}
+
+/// The data of the main module: tool, part, home, speeds, zone and seam, one declaration each.
+pub(super) fn declarations(process: &Process, travel_speed: f64, rapid: &Rapid, arc: bool) -> Vec<String> {
+    let load = format!("[{},{},[1,0,0,0],0,0,0]", fixed(rapid.tool_load[0], 3), list(&rapid.tool_load[1..], 3));
+    let tool =
+        rapid.tool_frame.as_ref().map(|f| format!("TASK PERS tooldata {}:=[TRUE,{},{load}];", rapid.tool, pose(f)));
+    let wobj = rapid
+        .part_frame
+        .as_ref()
+        .map(|f| format!("TASK PERS wobjdata {}:=[FALSE,TRUE,\"\",{},[[0,0,0],[1,0,0,0]]];", rapid.wobj, pose(f)));
+    let seam = arc.then(|| format!("TASK PERS seamdata smBead:=[{}];", seam(process, rapid)));
+    let zone = (rapid.zone > 0.0).then(|| format!("CONST zonedata zBead:={};", zone(rapid.zone)));
+    let always = [
+        format!("CONST jointtarget jHome:=[{},{NO_AXES}];", list(&rapid.home, 3)),
+        format!("CONST speeddata vHome:={};", speed(rapid.home_speed, rapid)),
+        format!("CONST speeddata vTravel:={};", speed(travel_speed, rapid)),
+    ];
+    tool.into_iter().chain(wobj).chain(always).chain(zone).chain(seam).collect()
+}

@@ -1,0 +1,21 @@
+//! ABB RAPID.
+
+mod data;
+mod module;
+mod names;
+mod read;
+mod section;
+mod write;
+
+pub use section::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "rapid",
+    language: "RAPID",
+    turns_table: true,
+    typical: read::typical,
+    read: read::read,
+};

@@ -1,0 +1,211 @@
+//! A RAPID module: its statements, procedures and data.
+
+use crate::dialect::reading::words::{name, number, strip_word};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Lines that are statements although no `;` ends them.
+const LINES: [&str; 21] = [
+    "MODULE",
+    "ENDMODULE",
+    "PROC",
+    "ENDPROC",
+    "FUNC",
+    "ENDFUNC",
+    "TRAP",
+    "ENDTRAP",
+    "ELSE",
+    "ENDIF",
+    "ENDFOR",
+    "ENDWHILE",
+    "TEST",
+    "ENDTEST",
+    "CASE",
+    "DEFAULT",
+    "RECORD",
+    "ENDRECORD",
+    "ERROR",
+    "UNDO",
+    "BACKWARD",
+];
+
+/// Data kinds whose values matter.
+const KINDS: [&str; 4] = ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA"];
+
+/// A value of named data.
+#[derive(Clone, Copy)]
+pub(super) enum Value {
+    /// Position, mm.
+    Target(DVec3),
+    /// Speed, mm/s.
+    Speed(f64),
+    /// Times for which the torch stands at the start and at the end of a seam, s.
+    Seam([f64; 2]),
+}
+
+/// A module.
+pub(super) struct Module {
+    /// Name it was asked for by; none for the main file.
+    pub(super) name: Option<String>,
+    /// The text with blanks for comments.
+    text: String,
+    /// Range in the text and line, from 1.
+    statements: Vec<(Range<usize>, usize)>,
+    /// Name in upper case and statements.
+    procs: Vec<(String, Range<usize>)>,
+    data: HashMap<String, Value>,
+}
+
+impl Module {
+    pub(super) fn new(name: Option<&str>, text: &str) -> Self {
+        let text = without_comments(text);
+        let statements = statements(&text);
+        let procs = procs(&text, &statements);
+        Self { name: name.map(str::to_owned), text, statements, procs, data: HashMap::new() }
+    }
+
+    pub(super) fn proc(&self, name: &str) -> Option<usize> {
+        self.procs.iter().position(|p| p.0.eq_ignore_ascii_case(name))
+    }
+
+    pub(super) fn first_proc(&self) -> Option<usize> {
+        (!self.procs.is_empty()).then_some(0)
+    }
+
+    /// Statements of a procedure with their lines.
+    pub(super) fn body(&self, proc: usize) -> impl Iterator<Item = (&str, usize)> {
+        self.statements[self.procs[proc].1.clone()].iter().map(|(range, line)| (&self.text[range.clone()], *line))
+    }
+
+    /// Line, kind, name and value of all data that matter, also those within procedures.
+    pub(super) fn declarations(&self) -> Vec<(usize, &'static str, String, String)> {
+        let declaration = |(range, line): &(Range<usize>, usize)| {
+            let (left, value) = self.text[range.clone()].split_once(":=")?;
+            let mut words = left.split_whitespace().rev();
+            let (variable, kind) = (words.next()?, words.next()?);
+            let kind = KINDS.into_iter().find(|k| k.eq_ignore_ascii_case(kind))?;
+            Some((*line, kind, variable.to_owned(), value.trim().to_owned()))
+        };
+        self.statements.iter().filter_map(declaration).collect()
+    }
+
+    pub(super) fn set(&mut self, variable: &str, value: Value) {
+        self.data.insert(variable.to_ascii_uppercase(), value);
+    }
+
+    pub(super) fn get(&self, variable: &str) -> Option<Value> {
+        self.data.get(&variable.to_ascii_uppercase()).copied()
+    }
+}
+
+/// Blanks for `! ..` up to the line's end, so that places stay where they are.
+fn without_comments(text: &str) -> String {
+    let (mut quoted, mut comment) = (false, false);
+    let blank = |b: u8| {
+        match b {
+            b'\n' => (quoted, comment) = (false, false),
+            b'"' if !comment => quoted = !quoted,
+            b'!' if !quoted => comment = true,
+            _ => {}
+        }
+        if comment { b' ' } else { b }
+    };
+    String::from_utf8_lossy(&text.bytes().map(blank).collect::<Vec<u8>>()).into_owned()
+}
+
+/// Cuts at `;` outside quotes, and at the end of lines that begin or end a block.
+fn statements(text: &str) -> Vec<(Range<usize>, usize)> {
+    let mut found = Vec::new();
+    let (mut line, mut start, mut quoted) = (1, None, false);
+    for (i, b) in text.bytes().enumerate() {
+        let ends = match b {
+            b'"' => {
+                quoted = !quoted;
+                false
+            }
+            b';' => !quoted,
+            b'\n' => {
+                quoted = false;
+                start.is_some_and(|(from, _)| stands_alone(&text[from..i]))
+            }
+            _ => false,
+        };
+        if ends {
+            found.extend(start.take().map(|(from, line)| (trimmed(text, from..i), line)));
+        } else if !b.is_ascii_whitespace() && b != b';' && start.is_none() {
+            start = Some((i, line));
+        }
+        line += usize::from(b == b'\n');
+    }
+    found.extend(start.map(|(from, line)| (trimmed(text, from..text.len()), line)));
+    found
+}
+
+fn trimmed(text: &str, range: Range<usize>) -> Range<usize> {
+    range.start..range.start + text[range.clone()].trim_end().len()
+}
+
+fn stands_alone(text: &str) -> bool {
+    let text = text.trim_end();
+    let text = strip_word(text, "LOCAL").unwrap_or(text);
+    let (word, _) = name(text);
+    let closed = text.matches('(').count() == text.matches(')').count();
+    let ends = |last: &str| text.len() > last.len() && text.to_ascii_uppercase().ends_with(last);
+    match word.to_ascii_uppercase().as_str() {
+        "" => text.starts_with('%'),
+        "IF" | "ELSEIF" => ends("THEN"),
+        "FOR" | "WHILE" => ends("DO"),
+        "VERSION" | "LANGUAGE" => true,
+        word => closed && LINES.contains(&word),
+    }
+}
+
+fn procs(text: &str, statements: &[(Range<usize>, usize)]) -> Vec<(String, Range<usize>)> {
+    let mut procs: Vec<(String, Range<usize>)> = Vec::new();
+    let mut open = None;
+    for (i, (range, _)) in statements.iter().enumerate() {
+        let statement = &text[range.clone()];
+        let statement = strip_word(statement, "LOCAL").unwrap_or(statement);
+        if let Some(head) = strip_word(statement, "PROC") {
+            open = Some((name(head).0.to_ascii_uppercase(), i + 1));
+        } else if strip_word(statement, "ENDPROC").is_some() {
+            procs.extend(open.take().map(|(name, from)| (name, from..i)));
+        }
+    }
+    procs
+}
+
+/// The first number of an aggregate.
+pub(super) fn first_number(text: &str) -> Option<f64> {
+    number(text.trim_start().trim_start_matches('[').split([',', ']']).next()?)
+}
+
+/// The times for which the torch stands at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
+/// drawn back, gas), s; none where the seamdata have other parts than those of RobotWare Arc 6.
+pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
+    const PARTS: usize = 48;
+    let numbers = text.split([',', '[', ']']).filter(|part| !part.trim().is_empty()).map(number);
+    let parts: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let sum = |places: &[usize]| places.iter().map(|&i| parts[i].max(0.0)).sum();
+    // Preflow and delay of the move; filling, burn-back, roll-back and postflow. Nine parts each are arcdata.
+    (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
+}
+
+/// The first three numbers of an aggregate, or the text that is none.
+pub(super) fn three_numbers(text: &str) -> Result<[f64; 3], &str> {
+    let inside = text.trim_start_matches(|c: char| c == '[' || c.is_whitespace());
+    let mut fields = inside.split([',', ']']);
+    let mut next = || {
+        let field = fields.next().unwrap_or_default();
+        number(field).ok_or(if field.trim().is_empty() { text } else { field })
+    };
+    Ok([next()?, next()?, next()?])
+}
+
+/// The file's name without folder and extension, from the last string of a `Load`.
+pub(super) fn stem(text: &str) -> Option<&str> {
+    let path = text.rsplit('"').nth(1)?;
+    let file = path.rsplit(['/', '\\', ':']).next()?;
+    Some(file.rsplit_once('.').map_or(file, |(stem, _)| stem))
+}

@@ -1,0 +1,389 @@
+//! ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
+//!
+//! Places are those of the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the
+//! codes of the options. A weld instruction lays metal at the speed of its welddata; the times of seamdata are waits.
+
+use super::module::{Module, Value};
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
+use super::module;
+use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
+use glam::DVec3;
+use std::rc::Rc;
+
+/// Instructions without bearing on place and metal.
+const HARMLESS: [&str; 50] = [
+    "ConfL",
+    "ConfJ",
+    "SingArea",
+    "AccSet",
+    "VelSet",
+    "PathAccLim",
+    "WorldAccLim",
+    "TPWrite",
+    "TPErase",
+    "TPReadFK",
+    "Set",
+    "Reset",
+    "SetDO",
+    "SetGO",
+    "SetAO",
+    "PulseDO",
+    "InvertDO",
+    "WaitDI",
+    "WaitDO",
+    "WaitUntil",
+    "WaitRob",
+    "ClkReset",
+    "ClkStart",
+    "ClkStop",
+    "Stop",
+    "Break",
+    "ActUnit",
+    "DeactUnit",
+    "GripLoad",
+    "ErrWrite",
+    "Open",
+    "Close",
+    "Write",
+    "VAR",
+    "CONST",
+    "PERS",
+    "TASK",
+    "LOCAL",
+    "ENDIF",
+    "ENDFOR",
+    "ENDWHILE",
+    "ENDTEST",
+    "CASE",
+    "DEFAULT",
+    "RECORD",
+    "ENDRECORD",
+    "EOffsOff",
+    "PDispOff",
+    "MotionSup",
+    "ISleep",
+];
+
+/// Branches and loops.
+const CONTROL: [&str; 9] = ["IF", "ELSEIF", "ELSE", "FOR", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
+
+/// Where handlers begin: they run on errors only.
+const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
+
+/// How an instruction moves.
+#[derive(Clone, Copy, PartialEq)]
+enum Weld {
+    /// As the arc is.
+    No,
+    /// Moves without metal, then lights the arc.
+    Start,
+    /// Lays metal.
+    Seam,
+    /// Lays metal, then ends the arc.
+    End,
+}
+
+/// Instruction, whether it goes round, and its seam.
+const MOTIONS: [(&str, bool, Weld); 10] = [
+    ("MoveL", false, Weld::No),
+    ("MoveJ", false, Weld::No),
+    ("MoveC", true, Weld::No),
+    ("ArcL", false, Weld::Seam),
+    ("ArcLStart", false, Weld::Start),
+    ("ArcLEnd", false, Weld::End),
+    ("ArcC", true, Weld::Seam),
+    ("ArcCStart", true, Weld::Start),
+    ("ArcCEnd", true, Weld::End),
+    ("ArcMoveL", false, Weld::No),
+];
+
+/// Whether a line can only stand in RAPID.
+pub(super) fn typical(line: &str) -> bool {
+    const FIRST: [&str; 9] =
+        ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
+    // In URScript a bracket follows the word.
+    let called = line.trim_start_matches(|c: char| c.is_ascii_alphanumeric()).starts_with('(');
+    begins_with(unscoped(line), &FIRST) && !called
+}
+
+pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    let mut reader = Reader {
+        trace: Trace::new(),
+        module,
+        modules: Vec::new(),
+        on: Patterns::new(&options.arc.on),
+        off: Patterns::new(&options.arc.off),
+    };
+    let main = reader.load(None, text)?;
+    let entry = main.proc("main").or_else(|| main.first_proc()).ok_or(ReadError::NoProgram("RAPID"))?;
+    reader.run(&main, entry, 0)?;
+    reader.trace.finish(super::DIALECT.language)
+}
+
+struct Reader<'a> {
+    trace: Trace,
+    module: &'a mut FindModule<'a>,
+    /// Loaded modules, the main one first.
+    modules: Vec<Rc<Module>>,
+    on: Patterns,
+    off: Patterns,
+}
+
+impl Reader<'_> {
+    /// Takes a module in and evaluates its data.
+    fn load(&mut self, name: Option<&str>, text: &str) -> Result<Rc<Module>, ReadError> {
+        let mut module = Module::new(name, text);
+        let caller = std::mem::replace(&mut self.trace.module, name.map(str::to_owned));
+        for (line, kind, variable, value) in module.declarations() {
+            let found = match kind {
+                "ROBTARGET" => self.target(&value, &module, line)?.map(Value::Target),
+                "SEAMDATA" => module::seam_times(&value).map(Value::Seam),
+                "SPEEDDATA" => module::first_number(&value).map(Value::Speed),
+                _ => module::first_number(&value).map(Value::Speed),
+            };
+            match found {
+                Some(found) => module.set(&variable, found),
+                None => self.trace.note(&variable, "has a value that is not understood", line),
+            }
+        }
+        self.trace.module = caller;
+        let module = Rc::new(module);
+        self.modules.push(Rc::clone(&module));
+        Ok(module)
+    }
+
+    fn run(&mut self, module: &Rc<Module>, proc: usize, depth: usize) -> Result<(), ReadError> {
+        let caller = std::mem::replace(&mut self.trace.module, module.name.clone());
+        for (text, line) in module.body(proc) {
+            let (word, _) = name(text);
+            if HANDLERS.iter().any(|h| h.eq_ignore_ascii_case(word)) {
+                break;
+            }
+            self.statement(text, line, module, depth)?;
+        }
+        self.trace.module = caller;
+        Ok(())
+    }
+
+    fn statement(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
+        let (word, rest) = name(text);
+        let is = |name: &str| name.eq_ignore_ascii_case(word);
+        if let Some(&(_, round, weld)) = MOTIONS.iter().find(|m| is(m.0)) {
+            return self.motion(round, weld, is("MoveJ"), text, line, module);
+        }
+        let flat = compact(text);
+        if self.on.matches(&flat) {
+            self.trace.set_arc(true, line);
+        } else if self.off.matches(&flat) {
+            self.trace.set_arc(false, line);
+        } else if is("WaitTime") {
+            let seconds = arguments(rest).into_iter().rfind(|p| !p.starts_with('\\')).unwrap_or_default();
+            let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
+            self.trace.dwell += wait.max(0.0);
+        } else if is("MoveAbsJ") || is("MoveExtJ") {
+            self.trace.note(word, "goes to a place that is unknown here and was left out", line);
+            self.trace.forget();
+        } else if is("Load") || is("StartLoad") {
+            self.load_file(text, line)?;
+        } else if is("UnLoad") {
+            let file = module::stem(text).unwrap_or_default();
+            self.modules.retain(|m| !m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(file)));
+        } else if CONTROL.iter().any(|c| is(c)) {
+            return self.control(text, line, module, depth);
+        } else {
+            return self.other(text, &flat, line, module, depth);
+        }
+        Ok(())
+    }
+
+    /// `IF a THEN` on its own line needs nothing more; `IF a MoveL ..;` and `IF a THEN MoveL ..;` hold a statement.
+    fn control(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
+        let word = name(text).0.to_ascii_uppercase();
+        self.trace.note(&word, "is not followed: its lines were read once", line);
+        let upper = text.to_ascii_uppercase();
+        let inner = ["THEN", " MOVE", " ARC", " SETDO"].iter().find_map(|w| {
+            let at = upper.find(w)?;
+            Some(if *w == "THEN" { &text[at + 4..] } else { &text[at..] })
+        });
+        match inner.map(str::trim).filter(|s| !s.is_empty() && word.contains("IF")) {
+            Some(inner) => self.statement(inner, line, module, depth),
+            None => Ok(()),
+        }
+    }
+
+    /// Assignments, calls, and what is left.
+    fn other(
+        &mut self,
+        text: &str,
+        flat: &str,
+        line: usize,
+        module: &Rc<Module>,
+        depth: usize,
+    ) -> Result<(), ReadError> {
+        let (word, rest) = name(text);
+        if let Some(late) = text.strip_prefix('%') {
+            let called = late.trim_end_matches('%').trim_matches('"');
+            if let Some((of, called)) = called.rsplit_once(':') {
+                self.find_module(of, line)?;
+                return self.call(called, line, module, depth);
+            }
+            return self.call(called, line, module, depth);
+        }
+        if HARMLESS.iter().any(|h| h.eq_ignore_ascii_case(word)) || word.is_empty() {
+            let lights = flat.starts_with("SETDO") && flat.ends_with(",1");
+            if lights || (flat.starts_with("SET") && !flat.contains(',')) {
+                self.trace.see(text);
+            }
+            return Ok(());
+        }
+        if rest.starts_with(":=") || rest.starts_with(['.', '{']) {
+            self.trace.note("an assignment", "is not followed", line);
+            return Ok(());
+        }
+        // With arguments it may as well be an instruction of an option.
+        if rest.is_empty() || self.find(word, module).is_some() {
+            return self.call(word, line, module, depth);
+        }
+        self.trace.note(word, "is not understood and was left out", line);
+        Ok(())
+    }
+
+    fn load_file(&mut self, text: &str, line: usize) -> Result<(), ReadError> {
+        let Some(file) = module::stem(text) else {
+            self.trace.note("Load", "names its file by a variable, which is not followed", line);
+            return Ok(());
+        };
+        let missing = || ReadError::MissingModule { place: self.trace.place(line), name: file.to_owned() };
+        let found = (self.module)(file).ok_or_else(missing)?;
+        self.load(Some(file), &found).map(|_| ())
+    }
+
+    /// Takes in a module that a call names and that nothing has loaded, as a `.pgf` would.
+    fn find_module(&mut self, name: &str, line: usize) -> Result<(), ReadError> {
+        let known = |m: &Rc<Module>| m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(name));
+        if !self.modules.iter().any(known)
+            && let Some(text) = (self.module)(name)
+        {
+            self.trace.call(name, 0, line)?;
+            self.load(Some(name), &text)?;
+        }
+        Ok(())
+    }
+
+    /// The procedure in the module itself or in the last module loaded that has it.
+    fn find(&self, called: &str, module: &Rc<Module>) -> Option<(Rc<Module>, usize)> {
+        let all = std::iter::once(module).chain(self.modules.iter().rev());
+        all.into_iter().find_map(|m| m.proc(called).map(|p| (Rc::clone(m), p)))
+    }
+
+    fn call(&mut self, called: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
+        self.trace.call(called, depth, line)?;
+        if self.find(called, module).is_none()
+            && let Some(text) = (self.module)(called)
+        {
+            self.load(Some(called), &text)?;
+        }
+        match self.find(called, module) {
+            Some((module, proc)) => self.run(&module, proc, depth + 1),
+            None => Err(ReadError::MissingModule { place: self.trace.place(line), name: called.to_owned() }),
+        }
+    }
+
+    fn motion(
+        &mut self,
+        round: bool,
+        mut weld: Weld,
+        joint: bool,
+        text: &str,
+        line: usize,
+        module: &Module,
+    ) -> Result<(), ReadError> {
+        let (_, rest) = name(text);
+        let (option, _) = name(rest.trim_start_matches('\\'));
+        // Older RobotWare: ArcL\On and ArcL\Off.
+        if weld == Weld::Seam && rest.starts_with('\\') {
+            weld = if option.eq_ignore_ascii_case("On") { Weld::Start } else { weld };
+            weld = if option.eq_ignore_ascii_case("Off") { Weld::End } else { weld };
+        }
+        let pieces: Vec<&str> = arguments(rest).into_iter().map(strip_option).filter(|p| !p.is_empty()).collect();
+        let at = |i: usize| pieces.get(i).copied().unwrap_or_default();
+        let speed_at = if round { 2 } else { 1 };
+        let speed = self.speed(at(speed_at), rest, module);
+        let welding = matches!(weld, Weld::Seam | Weld::End);
+        let speed = if welding { self.speed(at(speed_at + 2), "", module).or(speed) } else { speed };
+        if speed.is_none() && !joint {
+            self.trace.note("a speed", "is not understood and was read as unknown", line);
+        }
+        let metal = match weld {
+            Weld::No => self.trace.metal(),
+            Weld::Start => Metal::Off,
+            Weld::Seam | Weld::End => Metal::Arc,
+        };
+        let step = Step { speed: speed.unwrap_or(0.0), metal, width: None, line };
+        match (self.target(at(0), module, line)?, round.then(|| self.target(at(1), module, line)).transpose()?) {
+            (Some(to), None) => self.trace.line(to.to_array().map(Some), step),
+            (Some(aux), Some(Some(end))) => self.trace.arc_over(aux, end, None, step),
+            _ => {
+                self.trace.note("a motion to a place that is computed or not declared", "was left out", line);
+                self.trace.forget();
+            }
+        }
+        if let Some(Value::Seam([start, end])) = self.value(at(speed_at + 1), module) {
+            self.trace.dwell += match weld {
+                Weld::Start => start,
+                Weld::End => end,
+                Weld::No | Weld::Seam => 0.0,
+            };
+        }
+        if weld != Weld::No {
+            self.trace.set_arc(matches!(weld, Weld::Start | Weld::Seam), line);
+        }
+        Ok(())
+    }
+
+    /// mm/s of a speeddata or welddata: predefined, named, or written out; `\V:=` overrides it.
+    fn speed(&self, text: &str, options: &str, module: &Module) -> Option<f64> {
+        if let Some((_, v)) = options.split_once("\\V:=") {
+            return number(v.split([',', '\\']).next()?);
+        }
+        if text.starts_with('[') {
+            return module::first_number(text);
+        }
+        match self.value(text, module) {
+            Some(Value::Speed(speed)) => Some(speed),
+            Some(Value::Target(_) | Value::Seam(_)) => None,
+            None => number(text.strip_prefix(['v', 'V'])?),
+        }
+    }
+
+    fn value(&self, variable: &str, module: &Module) -> Option<Value> {
+        module.get(variable).or_else(|| self.modules.iter().rev().find_map(|m| m.get(variable)))
+    }
+
+    /// `[[x,y,z],..]`, a name, or `Offs(place,x,y,z)`; none when it is something else.
+    fn target(&self, text: &str, module: &Module, line: usize) -> Result<Option<DVec3>, ReadError> {
+        if text.starts_with('[') {
+            let numbers = module::three_numbers(text).map_err(|bad| self.trace.number_error(line, bad))?;
+            return Ok(Some(DVec3::from_array(numbers)));
+        }
+        if let Some(inside) = strip_word(text, "Offs").and_then(|r| r.strip_prefix('(')?.strip_suffix(')')) {
+            let pieces = arguments(inside);
+            let [base, by @ ..] = &pieces[..] else { return Ok(None) };
+            let mut offset = [0.0; 3];
+            for (value, text) in offset.iter_mut().zip(by) {
+                *value = number(text).ok_or_else(|| self.trace.number_error(line, text))?;
+            }
+            return Ok(self.target(base, module, line)?.map(|p| p + DVec3::from_array(offset)));
+        }
+        match self.value(text, module) {
+            Some(Value::Target(to)) => Ok(Some(to)),
+            Some(Value::Speed(_) | Value::Seam(_)) | None => Ok(None),
+        }
+    }
+}
+
+/// An argument without the optional ones behind it, as in `weld1\Weave:=wv`.
+fn strip_option(piece: &str) -> &str {
+    piece.split('\\').next().unwrap_or_default().trim()
+}

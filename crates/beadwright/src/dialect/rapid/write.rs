@@ -1,0 +1,338 @@
+//! ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on a layer
+//! each, and `NAME.pgf` lists the modules to be loaded.
+//!
+//! With RobotWare Arc a pass is `ArcLStart … fine`, `ArcL … zBead`, `ArcLEnd … fine`; without it plain `MoveL` between
+//! the lines that the profile gives. While welding the speed is that of the welddata: speeds are rounded to the nominal
+//! one plus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
+
+
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
+use crate::number::fixed;
+use super::{data, names};
+use super::section::{Rapid, RapidArc, RapidModules};
+use crate::process::Process;
+use crate::program::{Instruction, LayerProgram};
+use crate::weld::retract_time;
+use glam::DVec3;
+
+/// Writes RAPID.
+pub(super) struct AbbRapid {
+    name: String,
+    comment: String,
+    rapid: Rapid,
+    process: Process,
+    values: Values,
+    travel_speed: f64,
+    orientation: String,
+    /// External axes of all targets.
+    axes: String,
+    digits: usize,
+}
+
+/// What the data of a weld tell, thousandths of a mm/s: the speed, and the pace at which the nominal wire feed would lay
+/// the metal, where the wire comes otherwise.
+type Datum = (u64, Option<u64>);
+
+/// The data of a layer in order of appearance: the place is the number less one.
+type Speeds = Vec<Datum>;
+
+impl AbbRapid {
+    /// Begins the program of a part; its name becomes the module's name.
+    pub(super) fn new(job: &Job<'_>, rapid: Rapid) -> Self {
+        let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
+        let comment = job.comment();
+        let values = Values::new(&name, job);
+        let rapid = with_ends(rapid, job);
+        let orientation = data::quaternion(&rapid.orientation);
+        let axes = data::external_axes(job.program.table_angle);
+        let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
+        Self { name, comment, rapid, process, values, travel_speed, orientation, axes, digits: 3 }
+    }
+
+    fn numbered(&self, prefix: &str, index: usize) -> String {
+        format!("{prefix}{:0digits$}", index + 1, digits = self.digits)
+    }
+
+    fn with_arc(&self) -> bool {
+        self.rapid.arc == RapidArc::Instructions
+    }
+
+    /// The module of a part of a layer, counted from 0, with what runs it.
+    fn module(
+        &mut self,
+        program: &LayerProgram,
+        part: usize,
+        moves: &[Instruction],
+        speeds: &Speeds,
+        feed: &mut f64,
+    ) -> Vec<Chunk> {
+        let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
+        let named = |prefix: &str| format!("{}{more}", self.numbered(prefix, program.index));
+        let (module, routine) = (named(&format!("{}_L", self.name)), named("Layer"));
+        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
+        text.reserve(moves.len() * 150);
+        let z = fixed(program.z, 3);
+        self.declare(&mut text, speeds);
+        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
+        if part == 0 {
+            self.lines(&mut text, &self.rapid.layer_start);
+        }
+        self.instructions(&mut text, moves, speeds, feed);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        let listed = self.rapid.modules == RapidModules::Call;
+        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
+        let run = self.main(self.run(&module, &routine));
+        [run, Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
+    }
+
+    fn main(&self, text: String) -> Chunk {
+        Chunk { file: format!("{}.mod", self.name), text }
+    }
+
+    fn pgf(&self, text: String) -> Option<Chunk> {
+        self.rapid.pgf.then(|| Chunk { file: format!("{}.pgf", self.name), text })
+    }
+
+    fn lines(&self, text: &mut String, template: &[String]) {
+        self.values.expand(template).for_each(|line| statement(text, &line));
+    }
+
+    /// The speed as it is written, thousandths of a mm/s: the nominal one plus whole steps.
+    fn rounded(&self, speed: f64) -> u64 {
+        let (nominal, step) = (self.process.deposition_speed, self.rapid.speed_step);
+        let near = nominal + ((speed - nominal) / step).round() * step;
+        let written = if near >= 1e-3 { near } else { speed };
+        (written * 1000.0).round().max(1.0) as u64
+    }
+
+    /// The data for a speed and a part of the nominal wire feed; plain moves have no wire.
+    fn datum(&self, speed: f64, feed: f64) -> Datum {
+        let pace = self.process.deposition_speed / feed;
+        (self.rounded(speed), (self.with_arc() && feed != 1.0).then(|| self.rounded(pace)))
+    }
+
+    fn speeds(&self, program: &LayerProgram) -> Speeds {
+        let (mut speeds, mut feed) = (Speeds::new(), 1.0);
+        for instruction in &program.instructions {
+            match *instruction {
+                Instruction::WireFeed { ratio } => feed = ratio,
+                Instruction::Weld { speed, .. } => {
+                    let datum = self.datum(speed, feed);
+                    if !speeds.contains(&datum) {
+                        speeds.push(datum);
+                    }
+                }
+                _ => {}
+            }
+        }
+        speeds
+    }
+
+    fn declare(&self, text: &mut String, speeds: &Speeds) {
+        for (i, &(speed, pace)) in speeds.iter().enumerate() {
+            let speed = speed as f64 / 1000.0;
+            let declaration = if self.with_arc() {
+                let feed = pace.map_or(1.0, |pace| self.process.deposition_speed * 1000.0 / pace as f64);
+                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &self.process, &self.rapid))
+            } else {
+                format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
+            };
+            text.push_str(&format!("  {declaration}\r\n"));
+        }
+    }
+
+    /// Number of the data for a speed and a wire feed, from 1.
+    fn number(&self, speeds: &Speeds, speed: f64, feed: f64) -> usize {
+        let wanted = self.datum(speed, feed);
+        speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
+    }
+
+    /// `word target,between,zone,tool\WObj:=wobj;`
+    fn motion(&self, text: &mut String, word: &str, to: DVec3, between: &str, blend: bool) {
+        self.motion_over(text, word, None, to, between, blend);
+    }
+
+    /// The same with the target on an arc in front: `word via,target,…;`
+    fn motion_over(&self, text: &mut String, word: &str, via: Option<DVec3>, to: DVec3, between: &str, blend: bool) {
+        let zone = if blend && self.rapid.zone > 0.0 { "zBead" } else { "fine" };
+        text.push_str("    ");
+        text.push_str(word);
+        text.push(' ');
+        if let Some(via) = via {
+            data::push_target(text, via, &self.orientation, &self.axes);
+            text.push(',');
+        }
+        data::push_target(text, to, &self.orientation, &self.axes);
+        text.push_str(&format!(",{between},{zone},{}\\WObj:={};\r\n", self.rapid.tool, self.rapid.wobj));
+    }
+
+    /// The torch goes home.
+    fn home(&self, text: &mut String) {
+        statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
+    }
+
+    /// `feed` is the part of the nominal wire feed that was set last.
+    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
+        for (i, &instruction) in all.iter().enumerate() {
+            match (instruction, all.get(i + 1)) {
+                // ArcLStart itself goes there.
+                (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
+                (Instruction::Travel { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
+                (Instruction::ArcOn { pass, kind }, next) => {
+                    self.values.set("pass", pass);
+                    statement(text, &format!("! pass {pass} {}", kind.name()));
+                    let before = i.checked_sub(1).and_then(|before| all.get(before));
+                    let first = next.and_then(|next| match *next {
+                        Instruction::Weld { speed, .. } => Some(self.number(speeds, speed, *feed)),
+                        _ => None,
+                    });
+                    self.arc_on(text, before, first);
+                }
+                (Instruction::WireFeed { ratio }, _) => {
+                    *feed = ratio;
+                    self.wire_feed(text, ratio);
+                }
+                (Instruction::Weld { to, circle, speed, last }, _) => {
+                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, *feed), last);
+                }
+                // The seamdata fill it.
+                (Instruction::Crater { .. }, _) if self.with_arc() => {}
+                (Instruction::Crater { seconds, ratio }, _) => {
+                    if let Some(ratio) = ratio {
+                        self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+                        self.switch(text, crater_lines(&self.rapid.crater, &self.rapid.wire_feed));
+                    }
+                    wait(text, seconds);
+                }
+                (Instruction::Dwell { seconds }, _) => wait(text, seconds),
+                (Instruction::ArcOff { .. }, _) => self.arc_off(text),
+            }
+        }
+    }
+
+    /// Lights the arc where the travel before ended, with the data of the first piece.
+    fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
+        if !self.with_arc() {
+            self.switch(text, &self.rapid.arc_on);
+        } else if let (Some(&Instruction::Travel { to }), Some(number)) = (before, first) {
+            let between = format!("vTravel,smBead,wd{number}");
+            self.motion(text, "ArcLStart", to, &between, false);
+        }
+    }
+
+    fn weld(&self, text: &mut String, via: Option<DVec3>, to: DVec3, number: usize, last: bool) {
+        let (word, between) = match (self.with_arc(), via.is_some(), last) {
+            (true, false, false) => ("ArcL", format!("vTravel,smBead,wd{number}")),
+            (true, false, true) => ("ArcLEnd", format!("vTravel,smBead,wd{number}")),
+            (true, true, false) => ("ArcC", format!("vTravel,smBead,wd{number}")),
+            (true, true, true) => ("ArcCEnd", format!("vTravel,smBead,wd{number}")),
+            (false, false, _) => ("MoveL", format!("vd{number}")),
+            (false, true, _) => ("MoveC", format!("vd{number}")),
+        };
+        self.motion_over(text, word, via, to, &between, !last);
+    }
+
+    fn arc_off(&self, text: &mut String) {
+        if !self.with_arc() {
+            self.switch(text, &self.rapid.arc_off);
+        } else if self.process.arc_end_delay > 0.0 {
+            statement(text, &format!("WaitTime \\InPos,{};", fixed(self.process.arc_end_delay, 3)));
+        }
+    }
+
+    /// The welddata hold the wire feed; without them lines of the profile set it.
+    fn wire_feed(&mut self, text: &mut String, ratio: f64) {
+        if !self.with_arc() {
+            self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
+            self.lines(text, &self.rapid.wire_feed);
+        }
+    }
+
+    /// Lines that switch the arc, once the torch stands still: RAPID runs ahead of the robot.
+    fn switch(&self, text: &mut String, template: &[String]) {
+        statement(text, "WaitTime \\InPos,0;");
+        self.lines(text, template);
+    }
+
+    /// The lines of `main` that run a layer.
+    fn run(&self, module: &str, routine: &str) -> String {
+        let mut text = String::new();
+        let file = format!("{}/{module}.mod", self.rapid.folder);
+        let load = self.rapid.modules == RapidModules::Load;
+        if load {
+            statement(&mut text, &format!("Load \\Dynamic,\"{file}\";"));
+        }
+        statement(&mut text, &format!("%\"{module}:{routine}\"%;"));
+        if load {
+            statement(&mut text, &format!("UnLoad \"{file}\";"));
+        }
+        text
+    }
+}
+
+impl Writer for AbbRapid {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // Room for "_L" and the number, and for that of a part: "_999".
+        self.name.truncate(names::MAX_NAME - 2 - self.digits - 4);
+        let mut text = format!("MODULE {}\r\n", self.name);
+        text.push_str(&format!("  ! {}\r\n", self.comment));
+        for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
+            text.push_str(&format!("  {line}\r\n"));
+        }
+        text.push_str("  PROC main()\r\n");
+        statement(&mut text, "ConfL \\Off;");
+        statement(&mut text, "SingArea \\Wrist;");
+        self.home(&mut text);
+        self.lines(&mut text, &self.rapid.start);
+        let head = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\" ?>\r\n<Program>\r\n";
+        let list = self.pgf(format!("{head}  <Module>{}.mod</Module>\r\n", self.name));
+        [self.main(text)].into_iter().chain(list).collect()
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        self.values.set("layer", program.index + 1);
+        let speeds = self.speeds(program);
+        let parts = split::passes(&program.instructions, self.rapid.max_points);
+        let mut feed = 1.0;
+        let module = |(part, moves)| self.module(program, part, moves, &speeds, &mut feed);
+        parts.into_iter().enumerate().flat_map(module).collect()
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        if let Some(Instruction::Travel { to }) = leave {
+            self.motion(&mut text, "MoveL", to, "vTravel", false);
+        }
+        self.lines(&mut text, &self.rapid.end);
+        self.home(&mut text);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
+    }
+}
+
+fn wait(text: &mut String, seconds: f64) {
+    statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
+}
+
+/// Crater and wire at the end of a seam as the section `start_stop` wants them, where it does.
+fn with_ends(mut rapid: Rapid, job: &Job<'_>) -> Rapid {
+    let ends = &job.weld.ends;
+    if ends.crater_fill_time > 0.0 {
+        (rapid.seam.fill_time, rapid.seam.fill_feed) = (ends.crater_fill_time, ends.crater_power);
+    }
+    if ends.wire_retract > 0.0 {
+        rapid.seam.rollback_time = retract_time(ends, &job.weld.process);
+    }
+    rapid
+}
+
+/// A statement of a routine on its own line.
+fn statement(text: &mut String, line: &str) {
+    text.push_str("    ");
+    text.push_str(line);
+    text.push_str("\r\n");
+}

@@ -1,0 +1,179 @@
+//! Programs read back, ours and anyone's, as moves with and without metal: G-code, KRL, RAPID, FANUC TP, INFORM, URScript.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `words` | numbers, names and patterns of the robots' languages |
+//! | `trace` | the moves as they come: places, flattened arcs, notes |
+//! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
+//!
+//! Programs are read from top to bottom and calls are followed, but nothing is computed: branches and loops are read
+//! once, variables and expressions are not evaluated. Whatever is not understood ends in [`ReadProgram::notes`].
+
+mod layers;
+pub(super) mod trace;
+pub(super) mod words;
+
+pub use layers::{ReadLayer, ReadPass, ReadTotals};
+pub use trace::CHORD_MM;
+
+use super::{ALL, Dialect};
+use glam::DVec3;
+use std::fmt;
+
+/// What a move lays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Metal {
+    /// Nothing.
+    Off,
+    /// A bead: the arc is on.
+    Arc,
+    /// This volume along the move, mm³.
+    Volume(f64),
+}
+
+impl Metal {
+    /// Whether the move deposits.
+    pub fn is_laid(self) -> bool {
+        self != Self::Off
+    }
+}
+
+/// One straight move of a program; arcs are flattened to chords within [`CHORD_MM`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Move {
+    /// Where it ends, mm. It begins where the move before ends; the first one only tells where the program begins.
+    pub to: DVec3,
+    /// Speed, mm/s; 0 where the program does not tell it (rapids, point-to-point moves).
+    pub speed: f64,
+    /// What it lays.
+    pub metal: Metal,
+    /// Bead width where the program says it, mm.
+    pub width: Option<f64>,
+    /// Line of the file or module that holds the move, from 1.
+    pub line: usize,
+}
+
+/// A program read back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadProgram {
+    /// Its language, such as KRL.
+    pub language: &'static str,
+    /// All moves in order.
+    pub moves: Vec<Move>,
+    /// Sum of all waits, s.
+    pub dwell: f64,
+    /// What was not understood or had to be assumed, one sentence each with count and first line.
+    pub notes: Vec<String>,
+}
+
+/// Codes that light and end the arc, besides those that a dialect knows by itself.
+///
+/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`, `SetDO doArc,1`
+/// or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ArcCodes {
+    /// Light the arc.
+    pub on: Vec<String>,
+    /// End it.
+    pub off: Vec<String>,
+}
+
+/// How to read a program.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// More codes that switch the arc.
+    pub arc: ArcCodes,
+    /// Diameter of a printer's filament, mm. Without it the program's comments tell, or else it is 1.75 mm.
+    pub filament_diameter: Option<f64>,
+    /// Whether `V=` in INFORM counts cm/min, as controllers can be set to, and not mm/s; jobs do not tell.
+    pub inform_cm_per_min: bool,
+}
+
+/// A line of the program, or of one of its modules.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Line from 1.
+    pub line: usize,
+    /// Name of the module; none for the main file.
+    pub module: Option<String>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.module {
+            Some(module) => write!(f, "line {} of {module}", self.line),
+            None => write!(f, "line {}", self.line),
+        }
+    }
+}
+
+/// Why a program cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ReadError {
+    /// No dialect fits.
+    #[error(
+        "this is neither G-code, KRL, RAPID, FANUC TP, INFORM nor URScript: no line begins with a word such as G1, with DEF, MODULE, /PROG, /JOB or def. Give the main program itself, as text."
+    )]
+    UnknownDialect,
+    /// A number is expected.
+    #[error(
+        "{place}: \"{text}\" is not a number. Variables and expressions are not read: write the program out with plain numbers."
+    )]
+    Number {
+        /// Where.
+        place: Place,
+        /// What stands there.
+        text: String,
+    },
+    /// A called program is not there.
+    #[error(
+        "{place} calls {name}, which is not in the program and was not found beside it. Put its file there, or take the call out if nothing moves in it."
+    )]
+    MissingModule {
+        /// Where it is called.
+        place: Place,
+        /// Its name as written.
+        name: String,
+    },
+    /// Calls nest without end.
+    #[error(
+        "{place}: calls nest deeper than {limit} or are too many, at the call of {name}. Does it call itself?",
+        limit = trace::MAX_DEPTH
+    )]
+    TooDeep {
+        /// Where it is called.
+        place: Place,
+        /// What is called.
+        name: String,
+    },
+    /// The file declares data and holds nothing to run.
+    #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]
+    NoProgram(&'static str),
+    /// No metal.
+    #[error(
+        "no move with the arc on was found: say which codes light and end the arc with --arc-on and --arc-off.{hint}"
+    )]
+    NoDeposition {
+        /// Switching codes that the program has, as a sentence, or nothing.
+        hint: String,
+    },
+}
+
+/// Finds the text of another module by its name as the program writes it: a KRL subprogram (`PART_L001`), its data
+/// (`PART_L001.dat`), a RAPID module or procedure (`L001`), a FANUC program, a job.
+pub type FindModule<'a> = dyn FnMut(&str) -> Option<String> + 'a;
+
+/// Reads a program, whatever its language; `module` finds the text of others that it calls.
+///
+/// # Errors
+/// [`ReadError`] when the dialect is unknown, a number is malformed, a called module is missing or no move lays
+/// metal.
+pub fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    (recognise(text).ok_or(ReadError::UnknownDialect)?.read)(text, module, options)
+}
+
+/// The dialect of a program, if it is one of those that can be read: the first line that is typical of one decides.
+pub fn recognise(text: &str) -> Option<&'static Dialect> {
+    let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    lines.filter_map(|line| ALL.iter().find(|dialect| (dialect.typical)(line))).next().copied()
+}

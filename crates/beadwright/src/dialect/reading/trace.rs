@@ -1,0 +1,253 @@
+//! The moves of a program as a reader meets them: places that may be unknown, arcs, notes.
+
+use super::{Metal, Move, Place, ReadError, ReadProgram};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Chords lie this close to their arc, mm.
+pub const CHORD_MM: f64 = 0.01;
+
+/// Calls nest no deeper.
+pub(in crate::dialect) const MAX_DEPTH: usize = 32;
+
+/// No program makes more calls.
+const MAX_CALLS: usize = 1_000_000;
+
+/// No arc has more chords.
+const MAX_CHORDS: f64 = 100_000.0;
+
+/// Different notes; the rest is counted together.
+const MAX_NOTES: usize = 60;
+
+/// Codes named when no arc was found.
+const MAX_SEEN: usize = 8;
+
+/// All of a move but its end.
+#[derive(Clone, Copy)]
+pub(in crate::dialect) struct Step {
+    /// mm/s, 0 for unknown.
+    pub(in crate::dialect) speed: f64,
+    pub(in crate::dialect) metal: Metal,
+    /// mm
+    pub(in crate::dialect) width: Option<f64>,
+    pub(in crate::dialect) line: usize,
+}
+
+/// An arc `centre + u cos t + v sin t + rise t/sweep`, t from 0 to `sweep`.
+pub(in crate::dialect) struct Curve {
+    pub(in crate::dialect) centre: DVec3,
+    pub(in crate::dialect) u: DVec3,
+    pub(in crate::dialect) v: DVec3,
+    /// Radians, above 0.
+    pub(in crate::dialect) sweep: f64,
+    pub(in crate::dialect) rise: DVec3,
+}
+
+impl Curve {
+    /// From `start` over `aux` to `end`; none when they lie on one line.
+    fn through(start: DVec3, aux: DVec3, end: DVec3) -> Option<Self> {
+        let (a, b) = (aux - start, end - start);
+        let normal = a.cross(b);
+        let size = normal.length_squared();
+        if size <= 1e-12 * a.length_squared() * b.length_squared() {
+            return None;
+        }
+        let to_centre = (normal.cross(a) * b.length_squared() + b.cross(normal) * a.length_squared()) / (2.0 * size);
+        let (centre, u) = (start + to_centre, -to_centre);
+        let v = normal.normalize().cross(u);
+        let sweep = (end - centre).dot(v).atan2((end - centre).dot(u)).rem_euclid(TAU);
+        Some(Self { centre, u, v, sweep, rise: DVec3::ZERO })
+    }
+
+    pub(in crate::dialect) fn point(&self, part: f64) -> DVec3 {
+        let (sin, cos) = (self.sweep * part).sin_cos();
+        self.centre + self.u * cos + self.v * sin + self.rise * part
+    }
+
+    fn chords(&self) -> usize {
+        let step = 2.0 * (1.0 - CHORD_MM / self.u.length().max(CHORD_MM)).acos();
+        (self.sweep / step).ceil().clamp(1.0, MAX_CHORDS) as usize
+    }
+}
+
+struct Note {
+    what: String,
+    fate: &'static str,
+    count: usize,
+    first: Place,
+}
+
+/// Moves, waits and notes in the making.
+pub(in crate::dialect) struct Trace {
+    /// Last place; axes that are not `known` hold what they had last.
+    pub(in crate::dialect) at: DVec3,
+    pub(in crate::dialect) known: [bool; 3],
+    pub(in crate::dialect) arc: bool,
+    pub(in crate::dialect) dwell: f64,
+    /// The module being read; none for the main file.
+    pub(in crate::dialect) module: Option<String>,
+    moves: Vec<Move>,
+    notes: Vec<Note>,
+    seen: Vec<String>,
+    calls: usize,
+}
+
+impl Trace {
+    pub(in crate::dialect) fn new() -> Self {
+        Self {
+            at: DVec3::ZERO,
+            known: [false; 3],
+            arc: false,
+            dwell: 0.0,
+            module: None,
+            moves: Vec::new(),
+            notes: Vec::new(),
+            seen: Vec::new(),
+            calls: 0,
+        }
+    }
+
+    pub(in crate::dialect) fn place(&self, line: usize) -> Place {
+        Place { line, module: self.module.clone() }
+    }
+
+    pub(in crate::dialect) fn number_error(&self, line: usize, text: &str) -> ReadError {
+        ReadError::Number { place: self.place(line), text: text.trim().chars().take(60).collect() }
+    }
+
+    /// Notes `what` and what became of it.
+    pub(in crate::dialect) fn note(&mut self, what: &str, fate: &'static str, line: usize) {
+        let full = self.notes.len() >= MAX_NOTES;
+        let (what, fate) = match self.notes.iter_mut().find(|n| n.fate == fate && n.what == what) {
+            Some(note) => return note.count += 1,
+            None if full => ("more", "was left out"),
+            None => (what, fate),
+        };
+        if let Some(note) = self.notes.iter_mut().find(|n| n.fate == fate && n.what == what) {
+            note.count += 1;
+        } else {
+            self.notes.push(Note { what: what.to_owned(), fate, count: 1, first: self.place(line) });
+        }
+    }
+
+    /// Remembers a code that might switch the arc.
+    pub(in crate::dialect) fn see(&mut self, code: &str) {
+        if self.seen.len() < MAX_SEEN && self.seen.iter().all(|s| s != code) {
+            self.seen.push(code.to_owned());
+        }
+    }
+
+    pub(in crate::dialect) fn set_arc(&mut self, on: bool, line: usize) {
+        // Lit anew on the spot: two passes, not one.
+        if let Some(last) = self.moves.last().filter(|m| on && !self.arc && m.metal.is_laid()) {
+            self.push(last.to, Step { speed: 0.0, metal: Metal::Off, width: None, line });
+        }
+        self.arc = on;
+    }
+
+    /// `Arc` or `Off` as it is now.
+    pub(in crate::dialect) fn metal(&self) -> Metal {
+        if self.arc { Metal::Arc } else { Metal::Off }
+    }
+
+    /// The place is not known any more.
+    pub(in crate::dialect) fn forget(&mut self) {
+        self.known = [false; 3];
+    }
+
+    /// A straight move; axes without a value stand still.
+    pub(in crate::dialect) fn line(&mut self, target: [Option<f64>; 3], mut step: Step) {
+        let to = DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(self.at[i])));
+        let reached = [0, 1, 2].map(|i| self.known[i] || target[i].is_some());
+        if step.metal.is_laid() && self.known != [true; 3] {
+            if reached == [true; 3] {
+                self.note("a deposited move from an unknown place", "was read as a move without metal", step.line);
+                step.metal = Metal::Off;
+            } else {
+                self.settle(step.line);
+            }
+        }
+        self.known = [0, 1, 2].map(|i| self.known[i] || target[i].is_some());
+        self.at = to;
+        if self.known == [true; 3] && self.moves.last().is_none_or(|m| m.to != to) {
+            self.push(to, step);
+        }
+    }
+
+    /// Takes unknown axes as they are, since metal is laid from here.
+    pub(in crate::dialect) fn settle(&mut self, line: usize) {
+        if self.known != [true; 3] {
+            self.note(
+                "a deposited move",
+                "begins where the program tells no full place: what is missing was taken as 0 or as it was last",
+                line,
+            );
+            self.known = [true; 3];
+            self.push(self.at, Step { speed: 0.0, metal: Metal::Off, width: None, line });
+        }
+    }
+
+    /// An arc over `aux` to `end`, through an angle in radians if that is given.
+    pub(in crate::dialect) fn arc_over(&mut self, aux: DVec3, end: DVec3, angle: Option<f64>, step: Step) {
+        if self.known != [true; 3] {
+            self.line(end.to_array().map(Some), step);
+            return;
+        }
+        match Curve::through(self.at, aux, end) {
+            Some(mut curve) => {
+                curve.sweep = angle.unwrap_or(curve.sweep);
+                let end = if angle.is_some() { curve.point(1.0) } else { end };
+                self.curve(&curve, end, step);
+            }
+            None => {
+                self.line(aux.to_array().map(Some), step);
+                self.line(end.to_array().map(Some), step);
+            }
+        }
+    }
+
+    /// An arc from the current place in chords; the last one ends at `end`. The volume is spread evenly.
+    pub(in crate::dialect) fn curve(&mut self, curve: &Curve, end: DVec3, mut step: Step) {
+        let chords = curve.chords();
+        if let Metal::Volume(volume) = step.metal {
+            step.metal = Metal::Volume(volume / chords as f64);
+        }
+        for i in 1..chords {
+            self.push(curve.point(i as f64 / chords as f64), step);
+        }
+        self.push(end, step);
+        self.at = end;
+    }
+
+    fn push(&mut self, to: DVec3, step: Step) {
+        let Step { speed, metal, width, line } = step;
+        self.moves.push(Move { to, speed, metal, width: width.filter(|_| metal.is_laid()), line });
+    }
+
+    /// Counts a call; `depth` is that of the caller.
+    pub(in crate::dialect) fn call(&mut self, name: &str, depth: usize, line: usize) -> Result<(), ReadError> {
+        self.calls += 1;
+        if depth >= MAX_DEPTH || self.calls > MAX_CALLS {
+            return Err(ReadError::TooDeep { place: self.place(line), name: name.to_owned() });
+        }
+        Ok(())
+    }
+
+    /// The program, if it lays anything.
+    pub(in crate::dialect) fn finish(self, language: &'static str) -> Result<ReadProgram, ReadError> {
+        if !self.moves.iter().any(|m| m.metal.is_laid()) {
+            let hint = if self.seen.is_empty() {
+                String::new()
+            } else {
+                format!(" The program has: {}.", self.seen.join("; "))
+            };
+            return Err(ReadError::NoDeposition { hint });
+        }
+        let sentence = |n: &Note| {
+            let times = if n.count == 1 { "once, in".to_owned() } else { format!("{} times, first in", n.count) };
+            format!("{} {} ({times} {}).", n.what, n.fate, n.first)
+        };
+        let notes = self.notes.iter().map(sentence).collect();
+        Ok(ReadProgram { language, moves: self.moves, dwell: self.dwell, notes })
+    }
+}

@@ -1,0 +1,18 @@
+//! URScript of Universal Robots.
+
+mod read;
+mod section;
+mod write;
+
+pub use section::Urscript;
+
+use super::Dialect;
+
+/// The row in the table of dialects.
+pub const DIALECT: Dialect = Dialect {
+    name: "urscript",
+    language: "URScript",
+    turns_table: false,
+    typical: read::typical,
+    read: read::read,
+};

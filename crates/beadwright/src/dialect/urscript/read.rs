@@ -1,0 +1,243 @@
+//! URScript: movej, movel, movep and movec to poses, written out or named, and the functions that a program calls.
+//!
+//! Places are those of the frame in `pose_trans`, in mm. The arc is switched by the codes of the options, such as
+//! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; a file that only defines a program
+//! runs that.
+
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
+use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Statements without bearing on place and metal, by the beginning of their names.
+const HARMLESS: [&str; 18] = [
+    "set_",
+    "textmsg",
+    "popup",
+    "sync",
+    "stopl",
+    "stopj",
+    "modbus_",
+    "socket_",
+    "rtde_",
+    "enable_",
+    "disable_",
+    "write_",
+    "zero_",
+    "force_mode",
+    "end_force_mode",
+    "freedrive",
+    "halt",
+    "return",
+];
+
+/// Branches, loops and other blocks that `end` closes.
+const BLOCKS: [&str; 4] = ["if", "while", "thread", "sec"];
+
+/// Statements with their lines.
+type Body = Vec<(usize, String)>;
+
+/// A value of a variable.
+#[derive(Clone)]
+enum Value {
+    /// Frame, if any, and place, mm.
+    Pose(String, DVec3),
+    Number(f64),
+}
+
+/// Whether a line can only stand in URScript.
+pub(super) fn typical(line: &str) -> bool {
+    // Calls: in RAPID no bracket follows a move.
+    const CALLS: [&str; 5] = ["movel(", "movej(", "movep(", "movec(", "set_tcp("];
+    let function = line.starts_with("def ") && before_comment(line, '#').trim_end().ends_with(':');
+    function || CALLS.iter().any(|call| line.starts_with(call))
+}
+
+pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) -> Result<ReadProgram, ReadError> {
+    let (functions, top, first) = functions(text);
+    let mut reader = Reader {
+        trace: Trace::new(),
+        functions,
+        values: HashMap::new(),
+        frame: None,
+        on: Patterns::new(&options.arc.on),
+        off: Patterns::new(&options.arc.off),
+    };
+    let called = |(_, line): &(usize, String)| reader.functions.contains_key(name(line).0);
+    let defines_only = !top.iter().any(called) && !top.iter().any(|(_, line)| line.starts_with("move"));
+    reader.run(&top, 0)?;
+    if let Some(first) = first.filter(|_| defines_only) {
+        reader.call(&first, 1, 0)?;
+    }
+    reader.trace.finish(super::DIALECT.language)
+}
+
+/// The functions by name, the lines outside of them, and the name of the first function.
+fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
+    let (mut found, mut top, mut first) = (HashMap::new(), Body::new(), None);
+    // Functions that are open, each with the other blocks open in it.
+    let mut open: Vec<(String, Body, usize)> = Vec::new();
+    for (i, raw) in text.lines().enumerate() {
+        let line = before_comment(raw, '#').trim();
+        if let Some(head) = strip_word(line, "def") {
+            first = first.or_else(|| Some(name(head).0.to_owned()));
+            open.push((name(head).0.to_owned(), Body::new(), 0));
+            continue;
+        }
+        if line == "end" && open.last().is_some_and(|(_, _, blocks)| *blocks == 0) {
+            found.extend(open.pop().map(|(name, body, _)| (name, Rc::new(body))));
+            continue;
+        }
+        if let Some((_, _, blocks)) = open.last_mut() {
+            *blocks += usize::from(BLOCKS.iter().any(|b| strip_word(line, b).is_some()));
+            *blocks -= usize::from(line == "end");
+        }
+        let body = open.last_mut().map_or(&mut top, |(_, body, _)| body);
+        if !line.is_empty() && line != "end" {
+            body.push((i + 1, line.to_owned()));
+        }
+    }
+    // A file cut short runs as far as it goes.
+    found.extend(open.into_iter().map(|(name, body, _)| (name, Rc::new(body))));
+    (found, top, first)
+}
+
+struct Reader {
+    trace: Trace,
+    functions: HashMap<String, Rc<Body>>,
+    values: HashMap<String, Value>,
+    /// Frame of the first pose; empty for the base.
+    frame: Option<String>,
+    on: Patterns,
+    off: Patterns,
+}
+
+impl Reader {
+    fn run(&mut self, body: &Body, depth: usize) -> Result<(), ReadError> {
+        body.iter().try_for_each(|(line, text)| self.statement(text, *line, depth))
+    }
+
+    fn call(&mut self, function: &str, line: usize, depth: usize) -> Result<(), ReadError> {
+        self.trace.call(function, depth, line)?;
+        match self.functions.get(function).cloned() {
+            Some(body) => self.run(&body, depth + 1),
+            None => Ok(()),
+        }
+    }
+
+    fn statement(&mut self, text: &str, line: usize, depth: usize) -> Result<(), ReadError> {
+        let (word, rest) = name(text);
+        if ["movel", "movep", "movej", "movec"].contains(&word) {
+            return self.motion(word, inside(rest), line);
+        }
+        let flat = compact(text);
+        if self.on.matches(&flat) {
+            self.trace.set_arc(true, line);
+        } else if self.off.matches(&flat) {
+            self.trace.set_arc(false, line);
+        } else if word == "sleep" {
+            let seconds = inside(rest);
+            let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
+            self.trace.dwell += wait.max(0.0);
+        } else if ["if", "elif", "else", "while", "thread", "sec", "run", "join", "kill"].contains(&word) {
+            self.trace.note(word, "is not followed: its lines were read once", line);
+        } else if rest.starts_with('(') && self.functions.contains_key(word) {
+            return self.call(word, line, depth);
+        } else if flat.contains("DIGITAL_OUT(") && flat.ends_with(",TRUE)") {
+            self.trace.see(text);
+        } else if let Some((left, value)) = text.split_once('=').filter(|_| !rest.starts_with('(')) {
+            return self.assign(left, value.trim(), line);
+        } else if !HARMLESS.iter().any(|h| word.starts_with(h)) {
+            self.trace.note(word, "is not understood and was left out", line);
+        }
+        Ok(())
+    }
+
+    /// `global part_frame = p[..]` and the like; what is no pose and no number is forgotten.
+    fn assign(&mut self, left: &str, value: &str, line: usize) -> Result<(), ReadError> {
+        let Some(variable) = left.split_whitespace().next_back() else { return Ok(()) };
+        let value = match number(value) {
+            Some(number) => Some(Value::Number(number)),
+            None => self.pose(value, line)?.map(|(frame, place)| Value::Pose(frame, place)),
+        };
+        match value {
+            Some(value) => self.values.insert(variable.to_owned(), value),
+            None => self.values.remove(variable),
+        };
+        Ok(())
+    }
+
+    /// Frame and place, mm, of `p[x,y,z,..]`, `pose_trans(frame, pose)` or a name; none for what is computed.
+    fn pose(&self, text: &str, line: usize) -> Result<Option<(String, DVec3)>, ReadError> {
+        if let Some(numbers) = text.strip_prefix("p[") {
+            let mut fields = numbers.trim_end_matches(']').split(',');
+            let mut place = [0.0; 3];
+            for axis in &mut place {
+                let field = fields.next().unwrap_or_default();
+                let wrong = if field.trim().is_empty() { text } else { field };
+                *axis = 1e3 * number(field).ok_or_else(|| self.trace.number_error(line, wrong))?;
+            }
+            return Ok(Some((String::new(), DVec3::from_array(place))));
+        }
+        if let Some(rest) = strip_word(text, "pose_trans") {
+            let [frame, pose] = arguments(inside(rest))[..] else { return Ok(None) };
+            // Frames within frames are not composed.
+            let found = self.pose(pose, line)?.filter(|(inner, _)| inner.is_empty());
+            return Ok(found.map(|(_, place)| (compact(frame), place)));
+        }
+        Ok(match self.values.get(text) {
+            Some(Value::Pose(frame, place)) => Some((frame.clone(), *place)),
+            Some(Value::Number(_)) | None => None,
+        })
+    }
+
+    fn number(&self, text: &str) -> Option<f64> {
+        number(text).or_else(|| match self.values.get(text.trim()) {
+            Some(Value::Number(number)) => Some(*number),
+            Some(Value::Pose(..)) | None => None,
+        })
+    }
+
+    fn motion(&mut self, word: &str, inside: &str, line: usize) -> Result<(), ReadError> {
+        let pieces = arguments(inside);
+        let poses = if word == "movec" { 2 } else { 1 };
+        let mut places = Vec::with_capacity(poses);
+        for piece in pieces.iter().take(poses) {
+            places.push(self.pose(piece, line)?);
+        }
+        let speed = self.speed(&pieces, poses).filter(|_| word != "movej");
+        if speed.is_none() && word != "movej" {
+            self.trace.note("a speed", "is not told by a plain v= and was read as unknown", line);
+        }
+        let speed = speed.unwrap_or(0.0) * 1e3;
+        let step = Step { speed, metal: self.trace.metal(), width: None, line };
+        for (frame, _) in places.iter().flatten() {
+            if self.frame.get_or_insert_with(|| frame.clone()) != frame {
+                self.trace.note("a pose in another frame", "was read as if it were in the first", line);
+            }
+        }
+        match places[..] {
+            [Some((_, to))] => self.trace.line(to.to_array().map(Some), step),
+            [Some((_, via)), Some((_, to))] => self.trace.arc_over(via, to, None, step),
+            _ => {
+                self.trace.note("a motion to a place that is unknown here", "was left out", line);
+                self.trace.forget();
+            }
+        }
+        Ok(())
+    }
+
+    /// m/s of `v=..`, or of the second number behind the poses.
+    fn speed(&self, pieces: &[&str], poses: usize) -> Option<f64> {
+        let named = pieces.iter().find_map(|p| Some(p.strip_prefix('v')?.trim_start().strip_prefix('=')?.trim()));
+        self.number(named.or_else(|| pieces.get(poses + 1).copied().filter(|p| !p.contains('=')))?)
+    }
+}
+
+/// What stands between the first bracket and the last.
+fn inside(text: &str) -> &str {
+    let text = text.strip_prefix('(').unwrap_or(text);
+    text.rsplit_once(')').map_or(text, |(inside, _)| inside)
+}

@@ -1,0 +1,90 @@
+//! The section `[urscript]`: a Universal Robots cell, and what its values can be.
+
+use super::write::UniversalScript;
+use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::writing::{orientation, needs};
+use crate::program::ProgramSettings;
+use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use serde::{Deserialize, Serialize};
+
+/// URScript. Templates are statements with `{{placeholders}}`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Urscript {
+    /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; left out where the installation has it.
+    pub tool_frame: Option<[f64; 6]>,
+    /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
+    pub part_frame: [f64; 6],
+    /// Axis position before and after the program, °.
+    pub home: [f64; 6],
+    /// Speed to and from it, °/s.
+    pub home_speed: f64,
+    /// Orientation of the tool in the part's frame: rotation vector, rad; `[3.141593, 0, 0]` is straight down.
+    pub orientation: [f64; 3],
+    /// Acceleration of the tool, mm/s².
+    pub acceleration: f64,
+    /// Blending radius along a pass, mm; less where points lie closer than twice that; 0 for exact stops.
+    pub blend: f64,
+    /// Statements at the beginning of the program.
+    pub start: Vec<String>,
+    /// Statements at the beginning of every layer.
+    pub layer_start: Vec<String>,
+    /// Statements that light the arc, at the start point of a pass.
+    pub arc_on: Vec<String>,
+    /// Statements that end the arc, at the end point of a pass.
+    pub arc_off: Vec<String>,
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
+    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
+    /// default none.
+    #[serde(default)]
+    pub wire_feed: Vec<String>,
+    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
+    /// where those act only with the next move.
+    #[serde(default)]
+    pub crater: Vec<String>,
+    /// Statements at the end of the program.
+    pub end: Vec<String>,
+}
+
+impl Section for Urscript {
+    fn limits(&self) -> Vec<Limit> {
+        let mut limits = limits! {
+            "urscript.home_speed": self.home_speed, 0.1, 180.0, "°/s", CONTROLLER;
+            "urscript.acceleration": self.acceleration, 1.0, 20_000.0, "mm/s²", CONTROLLER;
+            "urscript.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
+        };
+        limits.extend(self.home.map(|axis| limit("urscript.home", axis, (-363.0, 363.0), "°", CONTROLLER)));
+        limits.extend(self.orientation.map(|angle| limit("urscript.orientation", angle, (-6.284, 6.284), "rad", CONTROLLER)));
+        let frames = [("urscript.tool_frame", self.tool_frame), ("urscript.part_frame", Some(self.part_frame))];
+        for (key, frame) in frames.iter().filter_map(|(key, frame)| Some((*key, (*frame)?))) {
+            limits.extend(frame[..3].iter().map(|&v| limit(key, v, (-1e4, 1e4), "mm", CONTROLLER)));
+            limits.extend(frame[3..].iter().map(|&v| limit(key, v, (-6.284, 6.284), "rad", CONTROLLER)));
+        }
+        limits
+    }
+
+    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+        None
+    }
+
+    fn templates(&self) -> Templates<'_> {
+        vec![
+            ("urscript.start", &self.start),
+            ("urscript.layer_start", &self.layer_start),
+            ("urscript.arc_on", &self.arc_on),
+            ("urscript.arc_off", &self.arc_off),
+            ("urscript.wire_feed", &self.wire_feed),
+            ("urscript.crater", &self.crater),
+            ("urscript.end", &self.end),
+        ]
+    }
+
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+        let example = "set_standard_analog_out(0, {{wire_feed_ratio}})";
+        needs::lines("urscript", &self.templates(), example, job)?;
+        let mut section = self.clone();
+        section.orientation = orientation::vector(section.orientation, job.program.torch_angle);
+        Ok(Box::new(UniversalScript::new(job, section)))
+    }
+}

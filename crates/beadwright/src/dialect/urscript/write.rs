@@ -1,0 +1,223 @@
+//! URScript of Universal Robots: `NAME.script`, one function a layer and a program that calls them.
+//!
+//! Lengths are metres and angles radians there. Poses are those of the part, moved into the robot's base by
+//! `pose_trans`. Moves of a pass are blended, by less than half of the shorter one of two; where the arc switches they
+//! are not. Lines end as on the controller, which is a Linux: with a line feed alone.
+
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, upper_name};
+use crate::number::{fixed, push_fixed};
+use super::section::Urscript;
+use crate::program::{Instruction, LayerProgram};
+use glam::DVec3;
+
+/// Words that no program may be called.
+const RESERVED: [&str; 20] = [
+    "and",
+    "break",
+    "continue",
+    "def",
+    "elif",
+    "else",
+    "end",
+    "false",
+    "global",
+    "halt",
+    "if",
+    "local",
+    "not",
+    "or",
+    "return",
+    "sec",
+    "thread",
+    "true",
+    "while",
+    "part_frame",
+];
+
+/// Part of the shorter of two moves by which they are blended at most.
+const BLEND_PART: f64 = 0.45;
+
+/// Smaller blends are left out, mm.
+const MIN_BLEND: f64 = 0.01;
+
+/// Writes URScript.
+pub(super) struct UniversalScript {
+    name: String,
+    comment: String,
+    urscript: Urscript,
+    values: Values,
+    travel_speed: f64,
+    wire_feed_speed: f64,
+    digits: usize,
+    /// Names of the layers' functions.
+    layers: Vec<String>,
+    at: Option<DVec3>,
+}
+
+impl UniversalScript {
+    /// Begins the program of a part; its name becomes the program's name.
+    pub(super) fn new(job: &Job<'_>, urscript: Urscript) -> Self {
+        let mut name = upper_name(&job.part).to_lowercase();
+        if RESERVED.contains(&name.as_str()) || name.starts_with("layer_") {
+            name.insert_str(0, "p_");
+        }
+        let comment = job.comment();
+        let values = Values::new(&name, job);
+        let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
+        let layers = Vec::new();
+        Self { name, comment, urscript, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None }
+    }
+
+    fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
+        for line in self.values.expand(template) {
+            text.push_str(&format!("{indent}{line}\n"));
+        }
+    }
+
+    fn home(&self, text: &mut String) {
+        let axes = self.urscript.home.map(|axis| fixed(axis.to_radians(), 6)).join(",");
+        let speed = fixed(self.urscript.home_speed.to_radians(), 6);
+        text.push_str(&format!("  movej([{axes}], a=1.400000, v={speed})\n"));
+    }
+
+    fn pose(&self, text: &mut String, to: DVec3) {
+        text.push_str("pose_trans(part_frame, ");
+        push_frame(text, to, &self.urscript.orientation);
+        text.push(')');
+    }
+
+    fn motion(&self, text: &mut String, indent: &str, via: Option<DVec3>, to: DVec3, speed: f64, blend: f64) {
+        text.push_str(indent);
+        text.push_str(if via.is_some() { "movec(" } else { "movel(" });
+        if let Some(via) = via {
+            self.pose(text, via);
+            text.push_str(", ");
+        }
+        self.pose(text, to);
+        text.push_str(", a=");
+        push_fixed(text, self.urscript.acceleration / 1000.0, 6);
+        text.push_str(", v=");
+        push_fixed(text, (speed / 1000.0).max(1e-6), 6);
+        if blend >= MIN_BLEND {
+            text.push_str(", r=");
+            // Rounded down: it must stay under half of the shorter move.
+            push_fixed(text, (blend * 1000.0).floor() / 1e6, 6);
+        }
+        text.push_str(if via.is_some() { ", mode=1)\n" } else { ")\n" });
+    }
+
+    /// The blend at the end of a move, mm; `next` is the move behind it, if one follows without a stop.
+    fn blend(&self, to: DVec3, next: Option<&Instruction>) -> f64 {
+        let before = self.at.map_or(0.0, |at| at.distance(to));
+        match next {
+            Some(Instruction::Weld { to: next, .. }) => {
+                self.urscript.blend.min(BLEND_PART * before.min(to.distance(*next)))
+            }
+            _ => 0.0,
+        }
+    }
+
+    fn instruction(&mut self, text: &mut String, indent: &str, instruction: Instruction, next: Option<&Instruction>) {
+        match instruction {
+            Instruction::Travel { to } => {
+                self.motion(text, indent, None, to, self.travel_speed, 0.0);
+                self.at = Some(to);
+            }
+            Instruction::ArcOn { pass, kind } => {
+                self.values.set("pass", pass);
+                text.push_str(&format!("{indent}# pass {pass} {}\n", kind.name()));
+                self.lines(text, indent, &self.urscript.arc_on);
+            }
+            Instruction::Weld { to, circle, speed, last } => {
+                let blend = if last { 0.0 } else { self.blend(to, next) };
+                self.motion(text, indent, circle.map(|c| c.via), to, speed, blend);
+                self.at = Some(to);
+            }
+            Instruction::WireFeed { ratio } => {
+                self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                self.lines(text, indent, &self.urscript.wire_feed);
+            }
+            Instruction::Crater { seconds, ratio } => {
+                if let Some(ratio) = ratio {
+                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
+                    self.lines(text, indent, crater_lines(&self.urscript.crater, &self.urscript.wire_feed));
+                }
+                wait(text, indent, seconds);
+            }
+            Instruction::Dwell { seconds } => wait(text, indent, seconds),
+            Instruction::ArcOff { .. } => self.lines(text, indent, &self.urscript.arc_off),
+        }
+    }
+
+    fn chunk(&self, text: String) -> Vec<Chunk> {
+        vec![Chunk { file: format!("{}.script", self.name), text }]
+    }
+}
+
+impl Writer for UniversalScript {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        let mut text = format!("def {}():\n  # {}\n", self.name, self.comment);
+        if let Some(frame) = &self.urscript.tool_frame {
+            text.push_str(&format!("  set_tcp({})\n", frame_text(frame)));
+        }
+        text.push_str(&format!("  global part_frame = {}\n", frame_text(&self.urscript.part_frame)));
+        self.chunk(text)
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let name = format!("layer_{:0digits$}", program.index + 1, digits = self.digits);
+        self.values.set("layer", program.index + 1);
+        let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
+        text.reserve(program.instructions.len() * 120);
+        self.lines(&mut text, "    ", &self.urscript.layer_start);
+        for (i, &instruction) in program.instructions.iter().enumerate() {
+            let behind = program.instructions[i + 1..].iter();
+            let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
+            self.instruction(&mut text, "    ", instruction, next);
+        }
+        text.push_str("  end\n");
+        self.layers.push(name);
+        self.chunk(text)
+    }
+
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+        let mut text = String::new();
+        self.home(&mut text);
+        self.lines(&mut text, "  ", &self.urscript.start);
+        self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
+        if let Some(leave) = leave {
+            self.instruction(&mut text, "  ", leave, None);
+        }
+        self.lines(&mut text, "  ", &self.urscript.end);
+        self.home(&mut text);
+        // A program file runs what it defines.
+        text.push_str(&format!("end\n{}()\n", self.name));
+        self.chunk(text)
+    }
+}
+
+fn wait(text: &mut String, indent: &str, seconds: f64) {
+    text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
+}
+
+/// `p[x,y,z,rx,ry,rz]` of a place in mm, in metres and radians.
+fn push_frame(text: &mut String, place: DVec3, rotation: &[f64]) {
+    text.push_str("p[");
+    for (i, value) in place.to_array().iter().map(|v| v / 1000.0).chain(rotation.iter().copied()).enumerate() {
+        if i > 0 {
+            text.push(',');
+        }
+        push_fixed(text, value, 6);
+    }
+    text.push(']');
+}
+
+fn frame_text(frame: &[f64; 6]) -> String {
+    let mut text = String::new();
+    push_frame(&mut text, DVec3::new(frame[0], frame[1], frame[2]), &frame[3..]);
+    text
+}

@@ -1,0 +1,190 @@
+//! Writing a program: what all dialects share.
+//!
+//! A writer does no I/O: it hands out [`Chunk`]s, text to be appended to a named file, layer by layer.
+
+pub(super) mod needs;
+pub(super) mod orientation;
+mod placeholders;
+pub(super) mod split;
+
+pub use placeholders::PLACEHOLDERS;
+pub(super) use placeholders::Values;
+
+use super::{ALL, Sections, find, names};
+use crate::bead::Bead;
+use crate::layer::Layer;
+use crate::program::{Instruction, LayerProgram, ProgramSettings, Programmer};
+use crate::weld::WeldSettings;
+use std::borrow::Borrow;
+use std::collections::BTreeMap;
+
+/// Text to be appended to a file of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Chunk {
+    /// File name without a folder.
+    pub file: String,
+    /// ASCII text with the line ends of the controller.
+    pub text: String,
+}
+
+/// Writes a program in one dialect.
+pub trait Writer: Send {
+    /// What comes before the first layer of `layers`.
+    fn begin(&mut self, layers: usize) -> Vec<Chunk>;
+
+    /// One layer.
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
+
+    /// What comes after the last layer; `leave` takes the torch away.
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
+}
+
+/// What is to be written: all that a dialect needs to know besides the layers.
+#[derive(Debug, Clone)]
+pub struct Job<'a> {
+    /// Name of the part; files and modules are called after it.
+    pub part: String,
+    /// Name of the profile, for comments.
+    pub profile: String,
+    /// What the profile says of the dialects.
+    pub sections: &'a Sections,
+    /// The nominal bead.
+    pub bead: Bead,
+    /// Thickness of a layer, mm.
+    pub layer_height: f64,
+    /// Diameter of the wire, mm.
+    pub wire_diameter: f64,
+    /// Arc, wire, speeds, and how passes begin and end.
+    pub weld: WeldSettings,
+    /// How paths become moves.
+    pub program: &'a ProgramSettings,
+    /// Whether the program only moves: arc, gas and wire never on.
+    pub dry_run: bool,
+}
+
+impl Job<'_> {
+    /// Makes the instructions of the layers.
+    pub fn programmer(&self) -> Programmer {
+        Programmer::of(&self.weld, self.program, self.dry_run)
+    }
+
+    /// A comment for the head of files.
+    pub(super) fn comment(&self) -> String {
+        format!("{}, {}", ascii(&self.part), ascii(&self.profile))
+    }
+}
+
+/// Why a program cannot be written in a dialect.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DialectError {
+    /// No such dialect.
+    #[error("there is no post \"{0}\". The posts are {known}.", known = names().join(", "))]
+    Unknown(String),
+    /// The profile lacks the section of the dialect.
+    #[error("profile \"{profile}\" has no [{dialect}] section, which the post \"{dialect}\" needs.")]
+    NoSection {
+        /// Name of the profile.
+        profile: String,
+        /// Name of the dialect, and of its section.
+        dialect: &'static str,
+    },
+    /// The profile lacks a key of the dialect that its other keys need.
+    #[error("profile \"{profile}\" has no {key} that {why} needs. {remedy}")]
+    NoKey {
+        /// Name of the profile.
+        profile: String,
+        /// Full key, such as `krl.wire_feed`.
+        key: String,
+        /// What needs it.
+        why: String,
+        /// What to write, or what to do without.
+        remedy: String,
+    },
+    /// The dialect cannot do what the profile asks for.
+    #[error("the post \"{dialect}\" cannot write {what}. {remedy}")]
+    Cannot {
+        /// Name of the dialect.
+        dialect: &'static str,
+        /// What it cannot.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The profile has a turn table that the dialect does not write.
+    #[error(
+        "the post \"{0}\" does not write the turn table of program.table_angle; {others} do. Take the key out, and turn the table by hand.",
+        others = with_table().join(" and ")
+    )]
+    NoTable(&'static str),
+}
+
+fn with_table() -> Vec<&'static str> {
+    ALL.iter().filter(|dialect| dialect.turns_table).map(|dialect| dialect.name).collect()
+}
+
+/// Begins a program in the dialect of that name.
+///
+/// # Errors
+/// [`DialectError`] when there is none, the profile lacks its section, or the job asks for more than it can write.
+pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+    let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
+    let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
+    let section = job.sections.get(name).ok_or_else(missing)?;
+    if job.program.table_angle.is_some() && !dialect.turns_table {
+        return Err(DialectError::NoTable(dialect.name));
+    }
+    section.writer(job)
+}
+
+/// The whole program of some layers in one dialect: the text of each file by its name. Long programs are better written
+/// layer by layer.
+///
+/// # Errors
+/// [`DialectError`].
+pub fn write<L: Borrow<Layer>>(
+    name: &str,
+    layers: &[L],
+    job: &Job<'_>,
+) -> Result<BTreeMap<String, String>, DialectError> {
+    let mut writer = writer(name, job)?;
+    let mut programmer = job.programmer();
+    let mut chunks = writer.begin(layers.len());
+    layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
+    chunks.extend(writer.end(programmer.leave()));
+    let mut files = BTreeMap::<String, String>::new();
+    for chunk in chunks {
+        files.entry(chunk.file).or_default().push_str(&chunk.text);
+    }
+    Ok(files)
+}
+
+/// Lines that set the wire feed in a crater: those of the profile, or those that set it anywhere.
+pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
+    if crater.is_empty() { wire_feed } else { crater }
+}
+
+/// A wait in pieces of what a controller takes at once, s.
+pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
+    let count = (seconds / most).ceil().max(1.0);
+    (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
+}
+
+/// Printable ASCII for comments; other characters become `_`.
+pub(super) fn ascii(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect()
+}
+
+/// A name of upper-case letters, digits and `_`, a letter first.
+pub(super) fn upper_name(part: &str) -> String {
+    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let mut name: String = part.chars().map(legal).collect();
+    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        name.insert_str(0, "P_");
+    }
+    name
+}
+
+/// Whether a text can be the extension of a file's name.
+pub(super) fn is_extension(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric())
+}

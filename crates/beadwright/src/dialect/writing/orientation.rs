@@ -1,0 +1,90 @@
+//! The tool's orientation turned about the torch's own axis, in the way each robot writes it.
+//!
+//! The tool's z axis runs along the wire out of the torch. A torch angle turns counter-clockwise seen from behind the torch,
+//! where z points away: for a torch straight down that is counter-clockwise seen from above, as `robot` counts it. An angle
+//! of 0 leaves the numbers of the profile as they are, to the last digit.
+
+use glam::{DMat3, DQuat, DVec3, EulerRot};
+
+/// Euler angles A, B, C (°) about z, the new y and the new x, turned by `angle` (°).
+pub(in crate::dialect) fn zyx(angles: [f64; 3], angle: f64) -> [f64; 3] {
+    if angle == 0.0 {
+        return angles;
+    }
+    let [a, b, c] = angles.map(f64::to_radians);
+    euler(&DMat3::from_quat(turned(DQuat::from_euler(EulerRot::ZYX, a, b, c), angle)))
+}
+
+/// The same angles in the order of FANUC (W, P, R) and Yaskawa (Rx, Ry, Rz).
+pub(in crate::dialect) fn xyz([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
+    let [z, y, x] = zyx([z, y, x], angle);
+    [x, y, z]
+}
+
+/// A quaternion w, x, y, z, turned by `angle` (°).
+pub(in crate::dialect) fn quaternion([w, x, y, z]: [f64; 4], angle: f64) -> [f64; 4] {
+    if angle == 0.0 {
+        return [w, x, y, z];
+    }
+    let q = turned(DQuat::from_xyzw(x, y, z, w).normalize(), angle);
+    [q.w, q.x, q.y, q.z]
+}
+
+/// A rotation vector (rad), turned by `angle` (°).
+pub(in crate::dialect) fn vector(vector: [f64; 3], angle: f64) -> [f64; 3] {
+    if angle == 0.0 {
+        return vector;
+    }
+    let q = turned(DQuat::from_scaled_axis(DVec3::from(vector)), angle);
+    // Of the two ways round, the shorter.
+    let q = if q.w < 0.0 { -q } else { q };
+    q.to_scaled_axis().to_array()
+}
+
+fn turned(orientation: DQuat, angle: f64) -> DQuat {
+    (orientation * DQuat::from_rotation_z(-angle.to_radians())).normalize()
+}
+
+/// A, B, C of a rotation, °. Where B is ±90°, A and C turn about one axis, and A is 0.
+fn euler(m: &DMat3) -> [f64; 3] {
+    let level = m.x_axis.x.hypot(m.x_axis.y);
+    let b = (-m.x_axis.z).atan2(level);
+    let (a, c) = if level > 1e-9 {
+        (m.x_axis.y.atan2(m.x_axis.x), m.y_axis.z.atan2(m.z_axis.z))
+    } else {
+        (0.0, (-m.z_axis.y).atan2(m.y_axis.y))
+    };
+    // What rounds to -180° is 180°.
+    let degrees = |v: f64| if v.to_degrees() < -179.999_95 { v.to_degrees() + 360.0 } else { v.to_degrees() };
+    [a, b, c].map(degrees)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{quaternion, vector, xyz, zyx};
+    use std::f64::consts::PI;
+
+    fn near<const N: usize>(a: [f64; N], b: [f64; N]) {
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9), "{a:?} is not {b:?}");
+    }
+
+    #[test]
+    fn a_torch_straight_down_turns_about_the_vertical() {
+        near(zyx([0.0, 0.0, 180.0], 100.0), [100.0, 0.0, 180.0]);
+        near(zyx([30.0, 0.0, 180.0], 100.0), [130.0, 0.0, 180.0]);
+        near(xyz([180.0, 0.0, 0.0], -90.0), [180.0, 0.0, -90.0]);
+        let half = 0.5_f64.sqrt();
+        near(quaternion([0.0, 1.0, 0.0, 0.0], 90.0), [0.0, half, half, 0.0]);
+        near(vector([PI, 0.0, 0.0], 90.0).map(|v| v.abs()), [PI * half, PI * half, 0.0]);
+    }
+
+    #[test]
+    fn a_level_torch_turns_about_itself() {
+        // z lies along the part's x before and after.
+        near(zyx([0.0, 90.0, 0.0], 40.0), [-90.0, 50.0, -90.0]);
+        // A whole turn is none; at B = 90 A and C are one turn.
+        near(zyx([25.0, 90.0, 40.0], 360.0), [0.0, 90.0, 15.0]);
+        near(zyx([10.0, 20.0, 30.0], 360.0), [10.0, 20.0, 30.0]);
+        near(vector([0.1, 0.2, 0.3], -360.0), [0.1, 0.2, 0.3]);
+    }
+}

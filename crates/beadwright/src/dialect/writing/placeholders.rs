@@ -1,0 +1,76 @@
+//! The placeholders of templates, and their values.
+
+use super::Job;
+use crate::number::fixed;
+use crate::template;
+use crate::weld::retract_time;
+
+/// A placeholder's name, and its value at the beginning of a program.
+pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
+
+/// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program goes on.
+pub const PLACEHOLDERS: [Placeholder; 21] = [
+    ("program", |job| job.part.clone()),
+    ("layer", |_| String::new()),
+    ("pass", |_| String::new()),
+    ("wire_feed_speed", |job| job.weld.process.wire_feed_speed.to_string()),
+    ("deposition_speed", |job| job.weld.process.deposition_speed.to_string()),
+    ("arc_start_delay", |job| job.weld.process.arc_start_delay.to_string()),
+    ("arc_end_delay", |job| job.weld.process.arc_end_delay.to_string()),
+    ("gas_preflow", |job| job.weld.process.gas_preflow.to_string()),
+    ("gas_postflow", |job| job.weld.process.gas_postflow.to_string()),
+    ("gas_flow", |job| job.weld.process.gas_flow.to_string()),
+    ("arc_start_delay_ms", |job| milliseconds(job.weld.process.arc_start_delay)),
+    ("arc_end_delay_ms", |job| milliseconds(job.weld.process.arc_end_delay)),
+    ("gas_preflow_ms", |job| milliseconds(job.weld.process.gas_preflow)),
+    ("gas_postflow_ms", |job| milliseconds(job.weld.process.gas_postflow)),
+    ("dwell", |_| "0".to_owned()),
+    ("dwell_ms", |_| "0".to_owned()),
+    ("wire_feed", |job| fixed(job.weld.process.wire_feed_speed, 3)),
+    ("wire_feed_ratio", |_| fixed(1.0, 4)),
+    ("wire_retract", |job| job.weld.ends.wire_retract.to_string()),
+    ("wire_retract_time", |job| ((retract(job) * 100.0).round() / 100.0).to_string()),
+    ("wire_retract_time_ms", |job| milliseconds(retract(job))),
+];
+
+fn milliseconds(seconds: f64) -> String {
+    (seconds * 1000.0).round().to_string()
+}
+
+fn retract(job: &Job<'_>) -> f64 {
+    retract_time(&job.weld.ends, &job.weld.process)
+}
+
+/// The values of the placeholders as a program goes on.
+pub(in crate::dialect) struct Values(Vec<(&'static str, String)>);
+
+impl Values {
+    /// Those at the beginning; `program` is the name of the program in the dialect.
+    pub(in crate::dialect) fn new(program: &str, job: &Job<'_>) -> Self {
+        let mut values = Self(PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect());
+        values.set("program", program);
+        values
+    }
+
+    /// The wait of a template.
+    pub(in crate::dialect) fn set_dwell(&mut self, seconds: f64) {
+        self.set("dwell", fixed(seconds, 3));
+        self.set("dwell_ms", fixed(seconds * 1000.0, 0));
+    }
+
+    /// The wire feed, of the nominal one.
+    pub(in crate::dialect) fn set_wire_feed(&mut self, ratio: f64, nominal: f64) {
+        self.set("wire_feed_ratio", fixed(ratio, 4));
+        self.set("wire_feed", fixed(ratio * nominal, 3));
+    }
+
+    pub(in crate::dialect) fn set(&mut self, name: &str, value: impl ToString) {
+        for (_, v) in self.0.iter_mut().filter(|(known, _)| *known == name) {
+            *v = value.to_string();
+        }
+    }
+
+    pub(in crate::dialect) fn expand<'a>(&'a self, lines: &'a [String]) -> impl Iterator<Item = String> + 'a {
+        lines.iter().map(|line| template::expand(line, &self.0))
+    }
+}

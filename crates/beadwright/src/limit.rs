@@ -1,0 +1,102 @@
+//! What the values of a profile can be: a row for every number, with its range, unit and reason.
+
+/// What a number of a profile can be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Full key, such as `bead.width`.
+    pub key: &'static str,
+    /// The value, or one to begin with where it is left out.
+    pub value: f64,
+    /// Least value.
+    pub least: f64,
+    /// Greatest value.
+    pub greatest: f64,
+    /// The unit, and what the range depends on.
+    pub unit: &'static str,
+    /// Why, as part of a sentence.
+    pub reason: &'static str,
+}
+
+impl Limit {
+    /// Whether the value is possible; one that is no number is not.
+    pub fn holds(&self) -> bool {
+        (self.least..=self.greatest).contains(&self.value)
+    }
+}
+
+/// A section of the profile whose every key has a default: a row for each, with its default and, for numbers, least and
+/// greatest value, unit and reason.
+macro_rules! section {
+    ($(#[$about:meta])* $name:ident $key:literal {
+        $($(#[$doc:meta])*
+        $field:ident: $type:ty = $default:expr $(, $least:expr, $greatest:expr, $unit:expr, $reason:expr)?;)*
+    }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields, default)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        pub struct $name {
+            $($(#[$doc])* pub $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default),* }
+            }
+        }
+
+        impl $name {
+            /// What the numbers can be.
+            pub(crate) fn limits(&self) -> Vec<crate::limit::Limit> {
+                [$($({
+                    let (key, value) = (concat!($key, ".", stringify!($field)), self.$field.into());
+                    crate::limit::limit(key, value, ($least, $greatest), $unit, $reason)
+                },)?)*].to_vec()
+            }
+        }
+    };
+}
+pub(crate) use section;
+
+/// Rows of limits: key, value, least and greatest value, unit, reason.
+macro_rules! limits {
+    ($($key:literal: $value:expr, $least:expr, $greatest:expr, $unit:expr, $reason:expr;)*) => {
+        vec![$($crate::limit::limit($key, $value, ($least, $greatest), $unit, $reason)),*]
+    };
+}
+pub(crate) use limits;
+
+/// A row: key, value, least and greatest value, unit, reason.
+pub(crate) fn limit(
+    key: &'static str,
+    value: f64,
+    (least, greatest): (f64, f64),
+    unit: &'static str,
+    reason: &'static str,
+) -> Limit {
+    Limit { key, value, least, greatest, unit, reason }
+}
+
+/// The reason for the limits of most keys of a dialect.
+pub(crate) const CONTROLLER: &str = "the controller takes no other values, or no cell of the trade needs them";
+
+/// The least value of what must be above 0.
+pub(crate) const TINY: f64 = 1e-3;
+
+/// A value that cannot be.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Broken {
+    /// Full key.
+    pub key: String,
+    /// The value as it stands in the profile.
+    pub value: String,
+    /// What would be right.
+    pub reason: String,
+}
+
+impl Broken {
+    /// A text that cannot be.
+    pub(crate) fn text(key: &str, value: &str, reason: impl Into<String>) -> Self {
+        Self { key: key.to_owned(), value: format!("\"{value}\""), reason: reason.into() }
+    }
+}

@@ -1,0 +1,127 @@
+//! The process: wire, arc, speed, gas, moves without arc, and how passes begin and end; sections of a profile.
+
+mod start_stop;
+
+pub use start_stop::StartStop;
+
+use crate::limit::{Limit, TINY, limits};
+use serde::{Deserialize, Serialize};
+
+/// The wire.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Wire {
+    /// Material, for the report.
+    pub material: String,
+    /// Diameter, mm.
+    pub diameter: f64,
+    /// Density, g/cm³.
+    pub density: f64,
+}
+
+impl Wire {
+    /// What the numbers can be.
+    pub(crate) fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "wire.diameter": self.diameter, 0.1, 10.0, "mm",
+                "wires of 0.6 to 4 mm are sold, and filament of up to 3 mm";
+            "wire.density": self.density, 0.5, 25.0, "g/cm³", "plastics have about 1 g/cm³, tungsten 19";
+        }
+    }
+}
+
+/// Arc, wire feed, speed and gas.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Process {
+    /// Wire feed speed, m/min.
+    pub wire_feed_speed: f64,
+    /// Speed of the torch while the arc burns, mm/s.
+    pub deposition_speed: f64,
+    /// What changes where a bead is wider or narrower than nominal, or hotter: `speed` of the torch, or `wire-feed`;
+    /// default speed.
+    #[serde(default)]
+    pub follow: Follow,
+    /// Part of the wire that ends in the bead, 0 to 1.
+    pub efficiency: f64,
+    /// Arc current, A; optional, for the heat input.
+    pub current: Option<f64>,
+    /// Arc voltage, V; optional, for the heat input.
+    pub voltage: Option<f64>,
+    /// Wait after the arc is on before the torch moves, s.
+    pub arc_start_delay: f64,
+    /// Wait after the arc is off before the torch leaves, s.
+    pub arc_end_delay: f64,
+    /// Shielding gas, for the report.
+    pub gas: String,
+    /// Gas flow, L/min.
+    pub gas_flow: f64,
+    /// Gas before the arc, s.
+    pub gas_preflow: f64,
+    /// Gas after the arc, s.
+    pub gas_postflow: f64,
+    /// Contact tip to work distance, mm.
+    pub ctwd: f64,
+}
+
+impl Process {
+    /// What the numbers can be.
+    pub(crate) fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "process.wire_feed_speed": self.wire_feed_speed, TINY, 100.0, "m/min", "wire feeders end at about 30 m/min";
+            "process.deposition_speed": self.deposition_speed, TINY, 2000.0, "mm/s",
+                "without speed there is no bead; printers end at some hundred mm/s";
+            "process.efficiency": self.efficiency, 0.01, 1.0, "of the wire",
+                "no more metal can be laid than wire is fed";
+            "process.arc_start_delay": self.arc_start_delay, 0.0, 60.0, "s",
+                "standing longer with the arc on burns through";
+            "process.arc_end_delay": self.arc_end_delay, 0.0, 60.0, "s",
+                "standing longer with the arc on burns through";
+            "process.gas_flow": self.gas_flow, 0.0, 200.0, "L/min",
+                "above 25 L/min the flow becomes turbulent and draws air in";
+            "process.gas_preflow": self.gas_preflow, 0.0, 60.0, "s",
+                "a minute covers the coldest start; more only costs gas";
+            "process.gas_postflow": self.gas_postflow, 0.0, 60.0, "s",
+                "a minute covers the coldest start; more only costs gas";
+            "process.ctwd": self.ctwd, 0.0, 100.0, "mm", "beyond 30 mm the gas no longer covers the arc";
+            "process.current": self.current.unwrap_or(1.0), TINY, 2000.0, "A",
+                "no power source of the trade gives more";
+            "process.voltage": self.voltage.unwrap_or(1.0), TINY, 500.0, "V", "no power source of the trade gives more";
+        }
+    }
+}
+
+/// What keeps the metal of a bead in balance where it is not the nominal one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Follow {
+    /// The torch goes slower or faster; the wire comes at its nominal speed.
+    #[default]
+    Speed,
+    /// The wire comes faster or slower; the torch goes at its nominal speed.
+    WireFeed,
+}
+
+/// Moves without arc.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Travel {
+    /// Speed, mm/s.
+    pub speed: f64,
+    /// Height of the move above the layer, mm.
+    pub clearance: f64,
+}
+
+impl Travel {
+    /// What the numbers can be.
+    pub(crate) fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "travel.speed": self.speed, TINY, 3000.0, "mm/s", "robots end at 2 to 3 m/s";
+            "travel.clearance": self.clearance, 0.0, 1000.0, "mm", "below 0 the torch would run into the part";
+        }
+    }
+}
