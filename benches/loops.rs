@@ -156,7 +156,7 @@ fn lifted(path: fill::Path, z: f64, profile: &Profile) -> Pass {
         kind: path.kind,
         closed: path.closed,
         points: path.points.iter().map(|p| p.extend(z)).collect(),
-        speed: path.width.map(|width| speed * law.pace(&bead, width)),
+        pace: path.width.map(|width| speed * law.pace(&bead, width)),
         width: path.width,
     }
 }

@@ -76,7 +76,7 @@ fn read_program(arguments: &Arguments) -> anyhow::Result<()> {
     let points = || passes().flat_map(|p| &p.points);
     let low = points().fold(DVec3::INFINITY, |a, b| a.min(*b));
     let high = points().fold(DVec3::NEG_INFINITY, |a, b| a.max(*b));
-    let speeds = || passes().flat_map(|p| p.segments()).map(|s| s.speed);
+    let speeds = || passes().flat_map(|p| p.segments()).map(|s| s.pace);
     let (slow, fast) = (speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max));
     let mut out = std::io::stdout().lock();
     if arguments.json {

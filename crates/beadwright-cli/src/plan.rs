@@ -131,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     );
     summary.notes.splice(0..0, note);
     let figures = files.judge.as_ref().map(|judge| *judge.total());
-    let names = files.finish(&summary, &profile, &model.repair())?;
+    let names = files.finish(&summary, &model.repair())?;
 
     let mut out = std::io::stdout().lock();
     if arguments.json {
@@ -168,7 +168,7 @@ impl Files {
     }
 
     /// Writes what comes last, and moves everything to its place.
-    fn finish(mut self, summary: &Summary, profile: &Profile, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
+    fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
         let leave = self.programmer.leave();
         self.each_post(|post| post.end(leave))?;
         self.output.append("plan.json", plan_file::tail())?;
@@ -176,7 +176,7 @@ impl Files {
         let mut names = self.output.names();
         names.push("report.html".to_owned());
         if let Some(report) = self.report.take() {
-            self.output.append("report.html", &report.finish(summary, profile, repair, &names))?;
+            self.output.append("report.html", &report.finish(summary, repair, &names))?;
         }
         self.output.commit()?;
         Ok(names)
@@ -187,7 +187,7 @@ impl Sink for Files {
     type Error = anyhow::Error;
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
-        self.report = Some(Report::new(header));
+        self.report = Some(Report::new(header, &self.profile));
         self.output.append("plan.json", &plan_file::head(header, &self.settings))?;
         self.each_post(|post| post.begin(header.layers))
     }

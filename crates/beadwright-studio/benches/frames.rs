@@ -9,8 +9,9 @@ use beadwright::plan::plan;
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use beadwright::weld::Torch;
 use beadwright::{example, model};
-use beadwright_studio::view3d::{LayerBeads, Pace, Scene, Style, View3d, headless, pick};
+use beadwright_studio::view3d::{LayerBeads, Scene, Style, View3d, headless, pick};
 use eframe::egui_wgpu::RenderState;
 use glam::{DVec2, DVec3};
 use std::error::Error;
@@ -40,15 +41,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let layers = plan("vase", &import.mesh, &profile, &Task::default())?.layers;
     println!("segments  build  upload  frame far  moving  near  pick longest  VmHWM MiB");
     for segments in wanted {
-        measure(&state, &layers, &Pace::of(&profile), segments)?;
+        measure(&state, &layers, &Torch::of(&profile.weld_settings()), segments)?;
     }
     Ok(())
 }
 
 /// Prints the figures for a part of that many segments.
-fn measure(state: &RenderState, layers: &[Layer], pace: &Pace, segments: usize) -> Result<(), Box<dyn Error>> {
+fn measure(state: &RenderState, layers: &[Layer], torch: &Torch, segments: usize) -> Result<(), Box<dyn Error>> {
     let clock = Instant::now();
-    let scene = batch(layers, pace, segments);
+    let scene = batch(layers, torch, segments);
     let build = clock.elapsed();
     let style = Style::default();
     let mut view = View3d::default();
@@ -83,11 +84,11 @@ fn measure(state: &RenderState, layers: &[Layer], pace: &Pace, segments: usize) 
 }
 
 /// The part many times side by side, as a batch on one plate: every layer holds all of them.
-fn batch(layers: &[Layer], pace: &Pace, segments: usize) -> Scene {
+fn batch(layers: &[Layer], torch: &Torch, segments: usize) -> Scene {
     let each: usize = layers.iter().flat_map(|layer| &layer.passes).map(|pass| pass.segments().count()).sum();
     let copies = segments.div_ceil(each.max(1));
     let (side, pitch) = ((copies as f64).sqrt().ceil() as usize, 120.0);
-    let (mut scene, mut torch) = (Scene::default(), None);
+    let (mut scene, mut torch) = (Scene::default(), torch.clone());
     for layer in layers {
         let copy = |i: usize| {
             let shift = DVec3::new((i % side) as f64, (i / side) as f64, 0.0) * pitch;
@@ -97,9 +98,7 @@ fn batch(layers: &[Layer], pace: &Pace, segments: usize) -> Scene {
             })
         };
         let all = Layer { passes: (0..copies).flat_map(copy).collect(), ..layer.clone() };
-        let beads = LayerBeads::of(&all, pace, torch);
-        torch = beads.end();
-        scene.set_layer(layer.index, Arc::new(beads));
+        scene.set_layer(layer.index, Arc::new(LayerBeads::of(&all, &mut torch)));
     }
     scene
 }

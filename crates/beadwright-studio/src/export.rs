@@ -67,11 +67,11 @@ pub fn paper(state: &PlanState, paper: Paper, files: &[String]) -> Result<String
         }
         Paper::Metrics => format!("{:#}\n", summary.json(Some(total))),
         Paper::Report => {
-            let mut report = Report::new(header);
+            let mut report = Report::new(header, profile);
             for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
                 report.layer(layer, Some(judgement));
             }
-            report.finish(summary, profile, &part.repair(), files)
+            report.finish(summary, &part.repair(), files)
         }
     })
 }

@@ -6,7 +6,7 @@
 use crate::jobs;
 use crate::project::{Project, Source};
 use crate::view2d::height;
-use crate::view3d::{LayerBeads, Pace};
+use crate::view3d::LayerBeads;
 use beadwright::check::{self, Finding};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge, Judgement};
@@ -17,6 +17,7 @@ use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Stage, Task};
+use beadwright::weld::Torch;
 use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
@@ -212,10 +213,10 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
     kept.mesh = mesh.clone().map(|mesh| (part.clone(), mesh));
     send(Event::Part(part.clone(), mesh, profile.clone()));
     if let Some(layer) = plan::preview(&part, &profile, request.layer, task)? {
-        let beads = Arc::new(LayerBeads::of(&layer, &Pace::of(&profile), None));
+        let beads = Arc::new(LayerBeads::of(&layer, &mut Torch::of(&profile.weld_settings())));
         send(Event::Preview(Arc::new(layer), beads));
     }
-    let mut layers = Layers { send, pace: Pace::of(&profile), layers: Vec::new(), torch: None };
+    let mut layers = Layers { send, layers: Vec::new(), torch: Torch::of(&profile.weld_settings()) };
     let mut summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
     let layers = layers.layers;
     summary.notes.splice(0..0, note);
@@ -248,9 +249,8 @@ fn errors(layer: &Layer, judgement: &Judgement) -> Arc<[f32]> {
 
 struct Layers<'a> {
     send: &'a (dyn Fn(Event) + Sync),
-    pace: Pace,
     layers: Vec<Arc<Layer>>,
-    torch: Option<glam::DVec3>,
+    torch: Torch,
 }
 
 impl Sink for Layers<'_> {
@@ -262,8 +262,7 @@ impl Sink for Layers<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        let beads = Arc::new(LayerBeads::of(&layer, &self.pace, self.torch));
-        self.torch = beads.end().or(self.torch);
+        let beads = Arc::new(LayerBeads::of(&layer, &mut self.torch));
         let layer = Arc::new(layer);
         self.layers.push(layer.clone());
         (self.send)(Event::Layer(layer, beads));

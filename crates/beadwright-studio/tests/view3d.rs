@@ -6,10 +6,12 @@ use beadwright::example;
 use beadwright::metrics::Metrics;
 use beadwright::model;
 use beadwright::plan::{Plan, plan};
+use beadwright::process::{Follow, StartStop};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use beadwright::weld::Torch;
 use beadwright_studio::view3d::{
-    Camera, Colour, LayerBeads, Pace, Pick, Scene, StandardView, Style, View3d, headless, palette, pick,
+    Camera, Colour, LayerBeads, Pick, Scene, StandardView, Style, View3d, headless, palette, pick,
 };
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
@@ -32,11 +34,9 @@ fn planned(name: &str, profile: &Profile) -> (Plan, Scene) {
     let plan = plan(name, &mesh, profile, &Task::default()).unwrap();
     let mut scene = Scene::default();
     scene.set_mesh(Some(Arc::new(mesh)));
-    let (pace, mut torch) = (Pace::of(profile), None);
+    let mut torch = Torch::of(&profile.weld_settings());
     for layer in &plan.layers {
-        let beads = LayerBeads::of(layer, &pace, torch);
-        torch = beads.end();
-        scene.set_layer(layer.index, Arc::new(beads));
+        scene.set_layer(layer.index, Arc::new(LayerBeads::of(layer, &mut torch)));
     }
     (plan, scene)
 }
@@ -61,14 +61,26 @@ fn random(count: usize, below: usize) -> impl Iterator<Item = usize> {
 fn the_clock_agrees_with_the_metrics() {
     let mut with_motion = profile();
     with_motion.motion = Some(beadwright::motion::Motion { acceleration: 300.0, corner_speed: 8.0 });
-    for profile in [profile(), with_motion] {
+    // Waits, craters, hot starts and overlaps count too, and so does who follows the width of the bead.
+    let mut with_ends = profile();
+    with_ends.process.follow = Follow::WireFeed;
+    with_ends.start_stop = StartStop {
+        end_overlap: 5.0,
+        lead_in_length: 8.0,
+        lead_in_power: 1.3,
+        crater_fill_time: 0.8,
+        wire_retract: 3.0,
+        interpass_time: 30.0,
+        ..StartStop::default()
+    };
+    for profile in [profile(), with_motion, with_ends] {
         let (plan, scene) = planned("plate", &profile);
         let expected = plan.summary.metrics.total_time_s;
         let seconds = scene.total_seconds();
         assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} s, not {expected} s");
         let mut one = Metrics::new(&profile);
         one.add(&plan.layers[0]);
-        let alone = LayerBeads::of(&plan.layers[0], &Pace::of(&profile), None).seconds();
+        let alone = LayerBeads::of(&plan.layers[0], &mut Torch::of(&profile.weld_settings())).seconds();
         assert!((alone / one.total_time_s - 1.0).abs() < 1e-9);
     }
 }

@@ -182,7 +182,7 @@ impl Totals {
         let nominal = plan::deposit_settings(profile).nominal;
         let mut metrics = Metrics::new(profile);
         layers.iter().for_each(|layer| metrics.add(layer));
-        let metal = |s: Segment| s.length() * nominal.bead_at(s.width, s.speed).area();
+        let metal = |s: Segment| s.length() * nominal.bead_at(s.width, s.pace).area();
         Self {
             arc_starts: totals.arc_starts,
             deposited_length_mm: totals.deposited_length_mm,

@@ -115,9 +115,9 @@ impl Metrics {
             self.deposited_volume_mm3 += welded.metal * self.rates.metal;
             self.travel_length_mm += approach.length;
             self.arc_time_s += welded.moving + welded.crater;
-            self.total_time_s += welded.moving + welded.crater + approach.moving + welded.delay;
+            self.total_time_s += approach.moving + welded.before + welded.moving + welded.crater + welded.after;
             self.shortest_arc_s = Some(self.shortest_arc_s.map_or(welded.moving, |least| least.min(welded.moving)));
-            self.start_stop_time_s += welded.delay + welded.crater;
+            self.start_stop_time_s += welded.before + welded.crater + welded.after;
             self.corner_time_s += welded.slowed;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;

@@ -1,5 +1,6 @@
-//! A pass in space: the path with the arc on, and the width and speed along it.
+//! A pass in space: the path with the arc on, and the width and pace along it.
 
+use crate::process::Process;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -101,8 +102,9 @@ pub struct Pass {
     pub points: Vec<DVec3>,
     /// Bead width, mm.
     pub width: Along,
-    /// Deposition speed, mm/s.
-    pub speed: Along,
+    /// Pace, mm/s: the speed at which the nominal wire feed lays the metal of a piece. [`Process::speed_at`] tells that of the
+    /// torch.
+    pub pace: Along,
 }
 
 /// One straight piece of a pass.
@@ -114,8 +116,8 @@ pub struct Segment {
     pub to: DVec3,
     /// Bead width, mm.
     pub width: f64,
-    /// Deposition speed, mm/s.
-    pub speed: f64,
+    /// Pace, mm/s.
+    pub pace: f64,
 }
 
 impl Segment {
@@ -124,9 +126,9 @@ impl Segment {
         self.from.distance(self.to)
     }
 
-    /// Time with the arc on, s.
-    pub fn seconds(&self) -> f64 {
-        self.length() / self.speed
+    /// Time for which the torch moves along it, s; without acceleration.
+    pub fn seconds(&self, process: &Process) -> f64 {
+        self.length() / process.speed_at(self.pace)
     }
 }
 
@@ -139,7 +141,7 @@ impl Pass {
             from,
             to,
             width: self.width.after(i),
-            speed: self.speed.after(i),
+            pace: self.pace.after(i),
         })
     }
 
@@ -168,8 +170,8 @@ impl Pass {
         pairs.filter(|(a, b)| a.dot(**b) < COS_30).count()
     }
 
-    /// Time with the arc on, s.
-    pub fn seconds(&self) -> f64 {
-        self.segments().map(|s| s.seconds()).sum()
+    /// Time for which the torch moves along it, s; without acceleration.
+    pub fn seconds(&self, process: &Process) -> f64 {
+        self.segments().map(|s| s.seconds(process)).sum()
     }
 }

@@ -20,10 +20,10 @@ const DECIMALS: usize = 4;
 /// The text before the first layer.
 pub fn head(header: &Header, settings: &DepositSettings) -> String {
     let Header { part, profile, strategy, .. } = header;
-    let Nominal { bead, speed, rise } = settings.nominal;
+    let Nominal { bead, pace, rise } = settings.nominal;
     let fields = json!({
         "part": part, "profile": profile, "strategy": strategy,
-        "bead": { "width": bead.width, "height": bead.height, "speed": speed, "rise": rise, "section": bead.section },
+        "bead": { "width": bead.width, "height": bead.height, "speed": pace, "rise": rise, "section": bead.section },
         "machining_allowance": settings.machining_allowance,
     });
     let fields = fields.to_string();
@@ -64,7 +64,7 @@ fn pass(text: &mut String, pass: &Pass) {
     text.push_str(",\"width\":");
     along(text, &pass.width);
     text.push_str(",\"speed\":");
-    along(text, &pass.speed);
+    along(text, &pass.pace);
     text.push('}');
 }
 
@@ -145,7 +145,7 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     }
     let settings = file.bead.map(|b| {
         let bead = Bead { width: b.width, height: b.height, section: b.section };
-        DepositSettings::new(Nominal { bead, speed: b.speed, rise: b.rise }, file.machining_allowance)
+        DepositSettings::new(Nominal { bead, pace: b.speed, rise: b.rise }, file.machining_allowance)
     });
     let layers = file.layers.into_iter().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
     let header = Header { part: file.part, profile: file.profile, strategy: file.strategy, layers: layers.len() };
@@ -239,7 +239,7 @@ impl FilePass {
             FileAlong::Each(values) if values.iter().all(|&v| v > 0.0) => Ok(Along::Each(values)),
             _ => Err("widths and speeds must be greater than 0"),
         };
-        let (width, speed) = (along(self.width)?, along(self.speed)?);
-        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, speed })
+        let (width, pace) = (along(self.width)?, along(self.speed)?);
+        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace })
     }
 }

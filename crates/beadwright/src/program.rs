@@ -186,7 +186,7 @@ impl Programmer {
         self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
         let [(start, _), (_, first), ..] = moves[..] else { return };
         let approach = self.torch.approach(start);
-        self.set_feed(self.torch.speed_and_feed(first).1, out);
+        self.set_feed(self.torch.feed_at(first), out);
         out.extend(approach.legs.into_iter().map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
         let pieces = match &self.fit {
@@ -195,7 +195,7 @@ impl Programmer {
         };
         let end = pieces.len();
         for (i, (to, pace, circle)) in (1..).zip(pieces) {
-            let (speed, feed) = self.torch.speed_and_feed(pace);
+            let (speed, feed) = (self.torch.speed_at(pace), self.torch.feed_at(pace));
             self.set_feed(feed, out);
             out.push(Instruction::Weld { to, circle, speed, last: i == end });
         }

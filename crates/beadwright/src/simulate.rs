@@ -32,7 +32,7 @@ const WIDTHS: (f64, f64) = (0.25, 4.0);
 fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64, width: Option<f64>) -> Option<Pass> {
     let nominal = &settings.nominal;
     let mut points = vec![*read.points.first()?];
-    let (mut widths, mut speeds) = (Vec::new(), Vec::new());
+    let (mut widths, mut paces) = (Vec::new(), Vec::new());
     for (i, pair) in read.points.windows(2).enumerate() {
         let length = pair[0].distance(pair[1]);
         if length < 1e-6 {
@@ -40,22 +40,22 @@ fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64
         }
         points.push(pair[1]);
         let of_volume = |volume: f64| nominal.bead.section.width_of(bead_height, volume / length);
-        let of_speed = |speed: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.speed / speed);
+        let of_speed = |speed: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.pace / speed);
         let told = read.volume[i].map(of_volume).or(read.width[i]);
         let own = told.or_else(|| Some(read.speed[i]).filter(|speed| *speed > 0.0).map(of_speed));
         let own = own.map(|own| own.clamp(WIDTHS.0 * nominal.bead.width, WIDTHS.1 * nominal.bead.width));
         widths.push(width.or(own).unwrap_or(nominal.bead.width));
-        speeds.push(match read.volume[i] {
-            Some(volume) => nominal.speed * nominal.bead.area() * length / volume.max(1e-9),
+        paces.push(match read.volume[i] {
+            Some(volume) => nominal.pace * nominal.bead.area() * length / volume.max(1e-9),
             None if read.speed[i] > 0.0 => read.speed[i],
-            None => nominal.speed,
+            None => nominal.pace,
         });
     }
     // The last point has no piece behind it.
     widths.push(*widths.last()?);
-    speeds.push(*speeds.last()?);
+    paces.push(*paces.last()?);
     let kind = crate::pass::PassKind::Infill;
-    Some(Pass { kind, closed: false, points, width: Along::Each(widths), speed: Along::Each(speeds) })
+    Some(Pass { kind, closed: false, points, width: Along::Each(widths), pace: Along::Each(paces) })
 }
 
 /// Where the part lies in the program's coordinates: nowhere else if the program's beads keep within the part, grown by

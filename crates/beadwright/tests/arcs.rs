@@ -157,7 +157,7 @@ fn propellers_take_a_third_of_the_moves_along_the_same_path() {
 
 /// The same paths at one speed: what fitting does to the paths alone.
 fn of_one_speed(mut plan: Plan) -> Plan {
-    plan.layers.iter_mut().flat_map(|l| &mut l.passes).for_each(|pass| pass.speed = Along::Same(8.0));
+    plan.layers.iter_mut().flat_map(|l| &mut l.passes).for_each(|pass| pass.pace = Along::Same(8.0));
     plan
 }
 

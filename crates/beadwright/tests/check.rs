@@ -1,11 +1,13 @@
 //! Checks: every seeded fault is found by the check that is there for it, and clean plans have no finding.
 #![allow(clippy::unwrap_used)]
 
+use beadwright::bead::Law;
 use beadwright::check::{self, CHECKS};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::pass::Along;
 use beadwright::plan;
+use beadwright::process::Follow;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::DVec3;
@@ -48,6 +50,34 @@ fn clean_plans_have_no_finding() {
     assert_eq!(found(&planned("tian", &profile, 18), &profile), [""; 0]);
 }
 
+#[test]
+fn the_torchs_speed_and_the_heat_are_judged_whatever_follows_the_width() {
+    let mut profile = profile("cmt-al2319-kuka", "loop");
+    // Beads of the gear are 0.8 to 1.3 widths wide.
+    let layers = planned("gear", &profile, 2);
+    let speed = profile.process.deposition_speed;
+    profile.check.min_speed = Some(0.95 * speed);
+    profile.check.max_speed = Some(1.05 * speed);
+    assert_eq!(found(&layers, &profile), ["speed-window"]);
+    profile.process.follow = Follow::WireFeed;
+    assert_eq!(found(&layers, &profile), [""; 0], "the torch keeps its speed, the wire follows");
+    (profile.process.current, profile.process.voltage) = (Some(150.0), Some(20.0));
+    profile.check.max_heat_input = Some(1.1 * profile.heat_input().unwrap());
+    assert_eq!(found(&layers, &profile), ["heat-input"], "wide beads are hotter by either");
+    profile.process.follow = Follow::Speed;
+    assert_eq!(found(&layers, &profile), ["heat-input", "speed-window"]);
+}
+
+#[test]
+fn wire_is_balanced_by_the_law_of_the_bead() {
+    let mut profile = profile("cmt-al2319-kuka", "loop");
+    profile.bead.law = Law::ConstantRatio;
+    let layers = planned("gear", &profile, 2);
+    assert!(!found(&layers, &profile).contains(&"wire-balance"));
+    profile.bead.law = Law::ConstantHeight;
+    assert!(found(&layers, &profile).contains(&"wire-balance"), "the widths ask for other paces");
+}
+
 /// A fault: what it is, how it comes into the plan or the profile, and the check that finds it.
 type Fault = (&'static str, fn(&mut Vec<Layer>, &mut Profile), &'static str);
 
@@ -81,7 +111,7 @@ const FAULTS: [Fault; 20] = [
             let z = l[0].z;
             across.closed = false;
             across.points = vec![DVec3::new(-45.0, 0.3, z), DVec3::new(45.0, 0.2, z)];
-            (across.width, across.speed) = (Along::Same(7.54), Along::Same(10.5));
+            (across.width, across.pace) = (Along::Same(7.54), Along::Same(10.5));
             l[0].passes.push(across);
         },
         "crossing",
@@ -95,11 +125,11 @@ const FAULTS: [Fault; 20] = [
         },
         "short-pass",
     ),
-    ("a speed of zero", |l, _| l[1].passes[0].speed = Along::Same(0.0), "speed-window"),
+    ("a speed of zero", |l, _| l[1].passes[0].pace = Along::Same(0.0), "speed-window"),
     ("a speed over the window", |_, p| p.check.max_speed = Some(5.0), "speed-window"),
     ("a bead three times as wide", |l, _| l[0].passes[0].width = Along::Same(22.0), "bead-width"),
     ("wire feed halved", |_, p| p.process.wire_feed_speed /= 2.0, "wire-balance"),
-    ("a speed that does not follow the width", |l, _| l[0].passes[0].speed = Along::Same(20.0), "wire-balance"),
+    ("a speed that does not follow the width", |l, _| l[0].passes[0].pace = Along::Same(20.0), "wire-balance"),
     (
         "too much heat",
         |_, p| {

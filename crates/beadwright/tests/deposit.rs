@@ -14,7 +14,7 @@ use planar::{Bounds, Polygon, Ring};
 use proptest::prelude::*;
 
 const BEAD: Bead = Bead { width: 5.0, height: 1.5, section: Section::Parabola };
-const NOMINAL: Nominal = Nominal { bead: BEAD, speed: 4.0, rise: 1.355 };
+const NOMINAL: Nominal = Nominal { bead: BEAD, pace: 4.0, rise: 1.355 };
 
 fn stroke(from: (f64, f64), to: (f64, f64)) -> Stroke {
     Stroke { from: from.into(), to: to.into(), bead: BEAD }
@@ -22,7 +22,7 @@ fn stroke(from: (f64, f64), to: (f64, f64)) -> Stroke {
 
 fn open_pass(points: &[(f64, f64)]) -> Pass {
     let points = points.iter().map(|&(x, y)| DVec3::new(x, y, 1.5)).collect();
-    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), speed: Along::Same(4.0) }
+    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(4.0) }
 }
 
 fn rectangle(low: (f64, f64), high: (f64, f64)) -> Polygon {
@@ -191,7 +191,7 @@ fn figures_of_parallel_beads_match_the_overlap_in_closed_form() {
 fn width_and_speed_change_the_bead_by_the_balance_of_metal() {
     let mut pass = open_pass(&[(0.0, 0.0), (50.0, 0.0)]);
     pass.width = Along::Same(6.0);
-    pass.speed = Along::Each(vec![2.0, 2.0]);
+    pass.pace = Along::Each(vec![2.0, 2.0]);
     let height = |pass: &Pass, p: (f64, f64)| {
         let strokes: Vec<_> = deposit::stroke::strokes(pass, &NOMINAL).collect();
         deposit::height_at(&strokes, p.into())
@@ -201,7 +201,7 @@ fn width_and_speed_change_the_bead_by_the_balance_of_metal() {
     assert_eq!(height(&pass, (25.0, 3.01)), 0.0);
     // A value holds on the way to the next point.
     pass.width = Along::Each(vec![5.0, 6.0]);
-    pass.speed = Along::Same(4.0);
+    pass.pace = Along::Same(4.0);
     assert!((height(&pass, (25.0, 0.0)) - 1.5).abs() < 1e-9);
 }
 

@@ -49,7 +49,7 @@ fn job() -> Vec<Layer> {
             closed,
             points: points.iter().map(|p| p.extend(z)).collect(),
             width: Along::Same(4.5),
-            speed,
+            pace: speed,
         };
         let line: Vec<DVec2> = straight.chain(bend).chain(tail).collect();
         let speeds = (0..line.len()).map(|i| if i < 28 { 8.0 } else { 6.0 }).collect();
@@ -212,7 +212,7 @@ fn arctech_switches_speeds_where_they_change() {
     profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let mut job = job();
     for pass in job.iter_mut().flat_map(|l| &mut l.passes) {
-        if let Along::Each(speeds) = &mut pass.speed {
+        if let Along::Each(speeds) = &mut pass.pace {
             speeds.iter_mut().for_each(|s| *s = s.max(7.0));
         }
     }

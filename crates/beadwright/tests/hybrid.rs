@@ -150,7 +150,7 @@ fn lifted(passes: impl IntoIterator<Item = Path>, speed: f64, width: f64) -> Vec
         kind: p.kind,
         closed: p.closed,
         points: p.points.into_iter().map(|q| q.extend(0.0)).collect(),
-        speed: p.width.map(|w| speed * width / w),
+        pace: p.width.map(|w| speed * width / w),
         width: p.width,
     };
     passes.into_iter().map(lift).collect()
@@ -199,7 +199,7 @@ fn widths_stay_in_the_window_and_beads_in_the_outline() {
             for segment in pass.segments() {
                 assert!((0.699 * w..=1.401 * w).contains(&segment.width), "{name}: {}", segment.width);
                 // Mass balance: the bead keeps its height.
-                assert!((segment.width * segment.speed / (w * profile.process.deposition_speed) - 1.0).abs() < 1e-9);
+                assert!((segment.width * segment.pace / (w * profile.process.deposition_speed) - 1.0).abs() < 1e-9);
                 assert!(region.contains(segment.from.truncate()), "{name}: {}", segment.from);
             }
         }

@@ -56,7 +56,7 @@ fn lifted(passes: &[Path], profile: &Profile) -> Vec<pass::Pass> {
         kind: path.kind,
         closed: path.closed,
         points: path.points.iter().map(|p| p.extend(2.0)).collect(),
-        speed: path.width.map(|width| speed * law.pace(&bead, width)),
+        pace: path.width.map(|width| speed * law.pace(&bead, width)),
         width: path.width.clone(),
     };
     passes.iter().map(lift).collect()
@@ -360,13 +360,13 @@ fn starts_stand_up_and_ends_sink() {
         kind: pass::PassKind::Contour,
         closed: false,
         points: vec![glam::DVec3::new(0.0, 0.0, 2.0), glam::DVec3::new(100.0, 0.0, 2.0)],
-        speed: pass::Along::Same(profile.process.deposition_speed),
+        pace: pass::Along::Same(profile.process.deposition_speed),
         width: pass::Along::Same(profile.bead.width),
     };
     let layer = Layer { passes: vec![line], ..Layer::default() };
     let metal = |profile: &Profile| {
         let bead = profile.bead();
-        let time = |s: pass::Segment| s.length() / s.speed;
+        let time = |s: pass::Segment| s.length() / s.pace;
         plan::welded(&layer, profile).passes[0].segments().map(time).sum::<f64>()
             * bead.area()
             * profile.process.deposition_speed

@@ -143,7 +143,7 @@ fn totals_are_the_sums_of_the_layers() {
         let length: f64 = passes().map(|p| p.length()).sum();
         assert_eq!(m.arc_starts, passes().count(), "{case}");
         assert!((m.deposited_length_mm - length).abs() < 1e-6 * length, "{case}");
-        let seconds: f64 = passes().map(|p| p.seconds()).sum();
+        let seconds: f64 = passes().map(|p| p.seconds(&profile.process)).sum();
         assert!((m.arc_time_s - seconds).abs() < 1e-6 * seconds, "{case}");
         let metal = seconds * profile.bead().area() * profile.process.deposition_speed;
         assert!((m.deposited_volume_mm3 - metal).abs() < 1e-9 * metal, "{case}");
@@ -181,7 +181,11 @@ fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
         assert!((length - pass.length()).abs() < 0.02 + 1e-4 * length, "{case}: {length} for {}", pass.length());
         // Dropping short moves may shift a change of speed by one of them; the time tells that nothing else did.
         let time: f64 = weld.points.windows(2).zip(&weld.speeds).map(|(w, s)| distance(w[0], w[1]) / s).sum();
-        assert!((time / pass.seconds() - 1.0).abs() < 0.01, "{case}: {time} s for {}", pass.seconds());
+        assert!(
+            (time / pass.seconds(&profile.process) - 1.0).abs() < 0.01,
+            "{case}: {time} s for {}",
+            pass.seconds(&profile.process)
+        );
     }
     // The last lift is not in the plan's totals.
     let travel = motion.travel - profile.travel.clearance;

@@ -38,14 +38,14 @@ fn job() -> Vec<Layer> {
             closed: true,
             points: points(&[[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [-0.0004, 20.0]]),
             width: Along::Same(4.5),
-            speed: Along::Same(8.0),
+            pace: Along::Same(8.0),
         };
         let line = Pass {
             kind: PassKind::Infill,
             closed: false,
             points: points(&[[5.0, 10.0], [10.0, 10.0], [10.005, 10.0], [15.0, 10.0], [20.0, 10.5], [25.0, 10.0]]),
             width: Along::Each(vec![4.5; 6]),
-            speed: Along::Each(vec![8.0, 7.95, 7.55, 7.14, 6.13, 6.13]),
+            pace: Along::Each(vec![8.0, 7.95, 7.55, 7.14, 6.13, 6.13]),
         };
         Layer {
             index,
@@ -130,7 +130,7 @@ fn every_layer_declares_the_few_speeds_that_it_uses() {
     assert!(!files["frame_L001.mod"].contains("wd2"));
     // A step too coarse for slow beads does not stop them.
     let mut slow = job();
-    slow[0].passes[1].speed = Along::Same(0.05);
+    slow[0].passes[1].pace = Along::Same(0.05);
     let motion = readers::rapid::run(&written("frame", &slow, 2, &profile()), "frame", "");
     assert!(motion.welds[1].speeds.iter().all(|s| *s == 0.05 || *s == 0.2), "{:?}", motion.welds[1].speeds);
 }

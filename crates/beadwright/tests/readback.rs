@@ -507,7 +507,7 @@ fn our_own_programs_read_back_as_planned() {
             );
             let (bead, law, nominal) = (profile.bead(), &profile.bead.law, profile.process.deposition_speed);
             // RAPID has speeds in steps of 0.2 mm/s.
-            let paces = |pass: &beadwright::pass::Pass| pass.segments().map(|s| s.speed).collect::<Vec<_>>();
+            let paces = |pass: &beadwright::pass::Pass| pass.segments().map(|s| s.pace).collect::<Vec<_>>();
             for (read, planned) in layers.iter().zip(&plan.layers) {
                 for (read, planned) in read.passes.iter().zip(&planned.passes) {
                     let paces = paces(planned);
@@ -516,7 +516,7 @@ fn our_own_programs_read_back_as_planned() {
                         "{part} {post}"
                     );
                     let law_says = |s: beadwright::pass::Segment| nominal * law.pace(&bead, s.width);
-                    assert!(planned.segments().all(|s| (s.speed - law_says(s)).abs() < 1e-9));
+                    assert!(planned.segments().all(|s| (s.pace - law_says(s)).abs() < 1e-9));
                 }
             }
             assert!(program.moves.iter().all(|m| !matches!(m.metal, Metal::Volume(_))));

@@ -83,8 +83,8 @@ fn every_dialect_of_a_hybrid_layer_reads_back_as_planned() {
     let planned: Vec<_> = plan.layers.iter().flat_map(|l| &l.passes).collect();
     let length: f64 = planned.iter().map(|p| p.length()).sum();
     let settings = plan::deposit_settings(&profile);
-    let metal: f64 = planned.iter().flat_map(|p| p.segments()).map(|s| s.from.distance(s.to) / s.speed).sum::<f64>()
-        * settings.nominal.speed
+    let metal: f64 = planned.iter().flat_map(|p| p.segments()).map(|s| s.from.distance(s.to) / s.pace).sum::<f64>()
+        * settings.nominal.pace
         * settings.nominal.bead.area();
     for arcs in [false, true] {
         (profile.program.arcs, profile.program.chord_tolerance) = (arcs, if arcs { 0.05 } else { 0.0 });

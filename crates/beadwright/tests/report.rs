@@ -9,6 +9,7 @@ use beadwright::model::RepairReport;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan};
 use beadwright::planar::{DVec2, Polygon, Ring};
+use beadwright::process::Process;
 use beadwright::profile::Profile;
 use beadwright::report::{Report, encode, svg};
 use beadwright::task::Task;
@@ -21,10 +22,14 @@ fn planned(part: &str) -> (Plan, Profile) {
     (plan::plan(part, &mesh, &profile, &Task::new()).unwrap(), profile)
 }
 
+fn process() -> Process {
+    Profile::built_in("cmt-al2319-kuka").unwrap().process
+}
+
 fn page(plan: &Plan, profile: &Profile) -> String {
-    let mut report = Report::new(&plan.header);
+    let mut report = Report::new(&plan.header, profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    report.finish(&plan.summary, profile, &RepairReport::default(), &["a&b.src".to_owned()])
+    report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()])
 }
 
 /// Kind, closed, points, width and speed.
@@ -78,7 +83,7 @@ fn decode(text: &str) -> Decoded {
 }
 
 fn check_round_trip(layer: &Layer) {
-    let decoded = decode(&encode::layer(layer, None));
+    let decoded = decode(&encode::layer(layer, &process(), None));
     let half = decoded.head[13] * 0.5 + 1e-9;
     let check = |points: &[DVec2], original: Vec<DVec2>| {
         assert_eq!(points.len(), original.len());
@@ -92,7 +97,7 @@ fn check_round_trip(layer: &Layer) {
     for ((kind, closed, points, along), pass) in decoded.passes.iter().zip(&layer.passes) {
         assert_eq!((*kind == 0, *closed), (pass.kind == PassKind::Contour, pass.closed));
         for (i, [width, speed]) in along.iter().enumerate() {
-            assert!((width - pass.width.after(i)).abs() < 1e-3 && (speed - pass.speed.after(i)).abs() < 1e-3);
+            assert!((width - pass.width.after(i)).abs() < 1e-3 && (speed - pass.pace.after(i)).abs() < 1e-3);
         }
         check(points, pass.points.iter().map(|p| p.truncate()).collect());
     }
@@ -108,7 +113,7 @@ fn square(size: f64) -> Layer {
     let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
     let pass = |kind, closed, points: &[DVec2]| {
         let points = points.iter().map(|p| p.extend(3.0)).collect();
-        Pass { kind, closed, points, width: Along::Same(7.54), speed: Along::Same(10.5) }
+        Pass { kind, closed, points, width: Along::Same(7.54), pace: Along::Same(10.5) }
     };
     let passes = vec![
         pass(PassKind::Contour, true, &corners),
@@ -140,13 +145,13 @@ fn layers_come_back_within_half_a_unit() {
 
 #[test]
 fn resolution_grows_with_the_layer_only() {
-    assert_eq!(decode(&encode::layer(&square(300.0), None)).head[13], 0.01);
-    assert!((decode(&encode::layer(&square(10_000.0), None)).head[13] - 0.3125).abs() < 1e-9);
+    assert_eq!(decode(&encode::layer(&square(300.0), &process(), None)).head[13], 0.01);
+    assert!((decode(&encode::layer(&square(10_000.0), &process(), None)).head[13] - 0.3125).abs() < 1e-9);
 }
 
 #[test]
 fn many_warnings_of_a_layer_are_told_in_part() {
-    let decoded = decode(&encode::layer(&square(50.0), None));
+    let decoded = decode(&encode::layer(&square(50.0), &process(), None));
     let told = decoded.warnings.as_array().unwrap();
     assert_eq!((decoded.head[8], told.len()), (100.0, 30));
     assert_eq!(told[0][2], "12.3 mm² narrower than a bead left empty");
@@ -160,7 +165,7 @@ fn layers_of_the_page_are_the_encoded_layers() {
     let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
     let layers = data["layers"].as_array().unwrap();
     assert_eq!(layers.len(), plan.layers.len());
-    layers.iter().zip(&plan.layers).for_each(|(text, layer)| assert_eq!(text, &encode::layer(layer, None)));
+    layers.iter().zip(&plan.layers).for_each(|(text, layer)| assert_eq!(text, &encode::layer(layer, &process(), None)));
     assert_eq!(html, page(&plan, &profile));
 }
 

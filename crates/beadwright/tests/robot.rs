@@ -31,8 +31,7 @@ fn place(x: f64, y: f64, z: f64, rotation: f64) -> PartPlace {
 /// One layer with one open pass through these points, 10 mm/s.
 fn track(points: &[[f64; 3]]) -> Track {
     let points: Vec<DVec3> = points.iter().map(|&p| p.into()).collect();
-    let pass =
-        Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), speed: Along::Same(10.0) };
+    let pass = Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(10.0) };
     let layer = Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
     // Travels 20 mm above at 100 mm/s.
     Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap())

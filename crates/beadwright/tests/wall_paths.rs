@@ -153,7 +153,7 @@ fn straight_plan(model: &pass::Pass) -> Vec<pass::Pass> {
         points: points.iter().map(|&p| DVec2::from(p).extend(0.0)).collect(),
         closed,
         width: model.width.map(|_| 4.5),
-        speed: model.speed.map(|_| 4.0),
+        pace: model.pace.map(|_| 4.0),
         ..model.clone()
     };
     vec![

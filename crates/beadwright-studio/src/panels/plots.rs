@@ -28,7 +28,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         (0..studio.plan.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
     curve(ui, studio.t("plot-starts"), x, planned(&|i| studio.plan.layers[i].passes.len() as f64));
-    let seconds = |i: usize| studio.plan.layers[i].passes.iter().map(|pass| pass.seconds()).sum();
+    let seconds = |i: usize| studio.plan.scene.layer(i).map_or(0.0, |beads| beads.seconds());
     curve(ui, studio.t("plot-time"), x, planned(&seconds));
     ui.separator();
     beads(studio, ui);

@@ -48,17 +48,19 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     let found = studio.plan.layer(layer).and_then(|layer| layer.passes.get(pass));
     let (Some(found), Some(profile)) = (found, &studio.plan.profile) else { return };
     let Some(segment) = found.segments().nth(piece) else { return };
-    let wire = profile.process.wire_feed_speed / 60.0 * found.seconds();
-    let heat = profile.heat_input().map(|heat| heat * profile.process.deposition_speed / segment.speed);
+    let process = &profile.process;
+    let metal: f64 = found.segments().map(|s| s.length() / s.pace).sum();
+    let wire = process.wire_feed_speed / 60.0 * metal;
+    let heat = process.heat_at(segment.pace);
     let values = [
         ("layer", format!("{}", layer + 1)),
         ("pass", format!("{}", pass + 1)),
         ("kind", studio.language().word("kind", found.kind.name())),
         ("length", format!("{:.2} mm", found.length())),
-        ("speed", format!("{:.2} mm/s", segment.speed)),
+        ("speed", format!("{:.2} mm/s", process.speed_at(segment.pace))),
         ("width", format!("{:.2} mm", segment.width)),
         ("wire", format!("{wire:.2} m")),
-        ("duration", format!("{:.1} s", found.seconds())),
+        ("duration", format!("{:.1} s", found.seconds(process))),
     ];
     Grid::new("chosen").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         let heat = heat.map(|heat| ("heat-input", format!("{heat:.0} J/mm")));

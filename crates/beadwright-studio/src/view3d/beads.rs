@@ -2,9 +2,9 @@
 //!
 //! All of it is plain data, made on a worker thread. Numbers are `f32` where only a picture needs them.
 
-use super::pace::{Pace, travel_legs};
 use beadwright::layer::Layer;
 use beadwright::pass::{Pass, PassKind};
+use beadwright::weld::{Torch, path};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -81,8 +81,8 @@ pub struct PassSpan {
     pub arc_start: f64,
     /// When the torch may leave.
     pub end: f64,
-    /// The travel to it: from the end of the pass before, up, across, down; `None` before the very first pass.
-    pub travel: Option<[DVec3; 4]>,
+    /// The travel to it: from where the torch stood, up, across, down; empty before the very first pass.
+    pub travel: Vec<DVec3>,
 }
 
 /// A layer's segments, passes and travels in print order.
@@ -104,7 +104,6 @@ pub struct LayerBeads {
     /// Lowest and highest corner of what every [`BLOCK`] segments fill, mm.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
     seconds: f64,
-    end: Option<DVec3>,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
@@ -115,8 +114,8 @@ pub(super) fn fresh_id() -> u64 {
 }
 
 impl LayerBeads {
-    /// A layer as it is run at `pace` when the torch comes from `from`, mm.
-    pub fn of(layer: &Layer, pace: &Pace, from: Option<DVec3>) -> Self {
+    /// A layer as the torch runs it, with the wait before it.
+    pub fn of(layer: &Layer, torch: &mut Torch) -> Self {
         let count = layer.passes.iter().map(|p| p.points.len()).sum();
         let mut beads = Self {
             id: fresh_id(),
@@ -130,38 +129,50 @@ impl LayerBeads {
             rough_segments: Vec::new(),
             boxes: Vec::new(),
             seconds: 0.0,
-            end: from,
         };
+        if let Some(pause) = (!layer.passes.is_empty()).then(|| torch.begin_layer()).flatten() {
+            beads.seconds = pause.moving + pause.seconds;
+        }
         for pass in &layer.passes {
-            beads.add(pass, layer.height, pace);
+            beads.add(pass, layer.height, torch);
         }
         beads.boxes = beads.beads.chunks(BLOCK).map(box_of).collect();
         beads
     }
 
-    fn add(&mut self, pass: &Pass, height: f64, pace: &Pace) {
+    fn add(&mut self, pass: &Pass, height: f64, torch: &mut Torch) {
         let first = self.beads.len();
-        let (start, end) = (pass.start(), pass.end());
-        let travel = self.end.zip(start).map(|(from, to)| travel_legs(from, to, pace.clearance));
-        let travel_start = self.seconds;
-        let arrival = travel_start + travel.map_or(0.0, |legs| pace.travel_seconds(&legs));
-        let arc_start = arrival + pace.before;
-        let (stretch, mut clock) = (pace.stretch(pass), arc_start);
-        for segment in pass.segments() {
-            clock += segment.seconds() * stretch;
-            let (from, to) = (segment.from.as_vec3().into(), segment.to.as_vec3().into());
-            self.beads.push(Bead { from, width: segment.width as f32, to, height: height as f32 });
-            self.speeds.push(segment.speed as f32);
-            self.ends.push(clock as f32);
+        let (travel_start, mut arrival, mut travel) = (self.seconds, self.seconds, Vec::new());
+        if let Some(start) = pass.start() {
+            let from = torch.at();
+            let approach = torch.approach(start);
+            arrival += approach.moving;
+            travel = from.into_iter().chain(approach.legs.into_iter().filter(|_| from.is_some())).collect();
         }
+        let mut arc_start = arrival;
         // A pass without a point takes its place in the numbering and nothing else.
-        self.seconds = if start.is_some() { clock + pace.after } else { travel_start };
+        if pass.start().is_some() {
+            let speed = |pace: f64| torch.speed_at(pace);
+            let even: f64 = pass.segments().map(|s| s.length() / speed(s.pace)).sum();
+            let speeds: Vec<f64> = pass.segments().map(|s| speed(s.pace)).collect();
+            let welded = torch.weld(&path(pass, torch.ends()));
+            arc_start += welded.before;
+            // Overlaps, slow starts and acceleration are spread evenly along the pass.
+            let (stretch, mut clock) = (if even > 0.0 { welded.moving / even } else { 1.0 }, arc_start);
+            for (segment, speed) in pass.segments().zip(speeds) {
+                clock += segment.length() / speed * stretch;
+                let (from, to) = (segment.from.as_vec3().into(), segment.to.as_vec3().into());
+                self.beads.push(Bead { from, width: segment.width as f32, to, height: height as f32 });
+                self.speeds.push(speed as f32);
+                self.ends.push(clock as f32);
+            }
+            self.seconds = arc_start + welded.moving + welded.crater + welded.after;
+        }
         let segments = first..self.beads.len();
         self.join(segments.clone());
         self.roughen(segments.clone());
         let kind = pass.kind;
         self.passes.push(PassSpan { kind, segments, travel_start, arrival, arc_start, end: self.seconds, travel });
-        self.end = end.or(self.end);
     }
 
     /// Mitres the gentle bends of a pass and rounds its ends and sharp corners.
@@ -198,11 +209,6 @@ impl LayerBeads {
         }
     }
 
-    /// Where the torch ends, mm.
-    pub fn end(&self) -> Option<DVec3> {
-        self.end
-    }
-
     /// The segments.
     pub fn beads(&self) -> &[Bead] {
         &self.beads
@@ -228,7 +234,7 @@ impl LayerBeads {
         self.seconds
     }
 
-    /// Deposition speed along a segment, mm/s.
+    /// Speed of the torch along a segment, mm/s.
     pub fn speed(&self, segment: usize) -> Option<f32> {
         self.speeds.get(segment).copied()
     }
@@ -246,7 +252,7 @@ impl LayerBeads {
         Some((before.map_or(pass.arc_start, |i| f64::from(self.ends[i])), end))
     }
 
-    /// Slowest and fastest deposition speed, mm/s.
+    /// Slowest and fastest speed of the torch, mm/s.
     pub(super) fn speed_range(&self) -> (f32, f32) {
         self.speeds.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
     }

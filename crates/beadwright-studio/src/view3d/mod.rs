@@ -6,7 +6,6 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `beads` | one layer as it is drawn and timed |
-//! | `pace` | how fast the torch goes between passes |
 //! | `scene` | the model and the layers that have come |
 //! | `style`, [`palette`] | what is shown, in which colours |
 //! | `camera` | where the eye is |
@@ -21,7 +20,6 @@ mod camera;
 mod gpu;
 mod headless;
 mod overlay;
-mod pace;
 pub mod palette;
 mod pick;
 mod scene;
@@ -31,7 +29,6 @@ mod widget;
 pub use beads::{Bead, LayerBeads, PassSpan};
 pub use camera::{Camera, StandardView};
 pub use headless::headless;
-pub use pace::Pace;
 pub use pick::{Pick, pick};
 pub use scene::{Position, Scene};
 pub use style::{Colour, Style};

@@ -1,7 +1,6 @@
 //! What there is to see: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
-use super::pace::along;
 use super::style::Colour;
 use beadwright::model::Mesh;
 use glam::{DVec2, DVec3};
@@ -196,11 +195,9 @@ fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> 
     let number = layer.passes().partition_point(|p| p.end <= seconds).min(layer.passes().len().checked_sub(1)?);
     let pass = layer.passes().get(number)?;
     let at = |segment: usize, point: DVec3, arc: bool| Some(Position { layer: index, segment, point, arc });
-    if seconds < pass.arrival
-        && let Some(legs) = pass.travel
-    {
+    if seconds < pass.arrival && !pass.travel.is_empty() {
         let part = (seconds - pass.travel_start) / (pass.arrival - pass.travel_start);
-        return at(pass.segments.start, along(&legs, part)?, false);
+        return at(pass.segments.start, along(&pass.travel, part)?, false);
     }
     let ends = &layer.ends[pass.segments.clone()];
     let segment = pass.segments.start + ends.partition_point(|&end| f64::from(end) <= seconds);
@@ -212,4 +209,18 @@ fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> 
     let ((begin, end), bead) = (layer.times(segment)?, layer.beads().get(segment)?);
     let part = if end > begin { ((seconds - begin) / (end - begin)).clamp(0.0, 1.0) } else { 1.0 };
     at(segment, bead.from().as_dvec3().lerp(bead.to().as_dvec3(), part), seconds >= pass.arc_start)
+}
+
+/// The point at a part (0 to 1) of the length of a polyline.
+fn along(points: &[DVec3], part: f64) -> Option<DVec3> {
+    let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let mut left = length * part.clamp(0.0, 1.0);
+    for leg in points.windows(2) {
+        let here = leg[0].distance(leg[1]);
+        if left <= here && here > 0.0 {
+            return Some(leg[0].lerp(leg[1], left / here));
+        }
+        left -= here;
+    }
+    points.last().copied()
 }

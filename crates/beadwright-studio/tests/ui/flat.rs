@@ -36,13 +36,13 @@ fn a_click_on_a_bead_shows_its_values() {
         let at = place(&harness, middle.x, middle.y);
         click_at(&mut harness, at);
         assert_eq!(harness.state_mut().view().chosen, Some((3, number, piece)));
-        let wire = profile.process.wire_feed_speed / 60.0 * pass.seconds();
+        let wire = profile.process.wire_feed_speed / 60.0 * pass.seconds(&profile.process);
         for value in [
             format!("{:.2} mm", pass.length()),
-            format!("{:.2} mm/s", segment.speed),
+            format!("{:.2} mm/s", segment.pace),
             format!("{:.2} mm", segment.width),
             format!("{wire:.2} m"),
-            format!("{:.1} s", pass.seconds()),
+            format!("{:.1} s", pass.seconds(&profile.process)),
             pass.kind.name().to_owned(),
         ] {
             assert!(sees(&harness, &value), "{value} is not on the screen");

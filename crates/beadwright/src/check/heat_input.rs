@@ -13,14 +13,20 @@ pub(super) const CHECK: Check = Check {
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (profile, limits) = (subject.profile, &subject.profile.check);
-    let hot = profile.heat_input().zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit);
-    let hot = hot.map(|(heat, limit)| {
-        Finding::of_plan(&CHECK, format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm."))
+    let process = &profile.process;
+    let over = |pace: f64| process.heat_at(pace).zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit);
+    let sentence = |(heat, limit)| format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm.");
+    let everywhere = over(process.deposition_speed).map(|found| Finding::of_plan(&CHECK, sentence(found)));
+    // Wider beads have more metal and more heat.
+    let wide = subject.passes().filter(|_| everywhere.is_none()).filter_map(|(layer, i, pass)| {
+        let (s, found) = pass.segments().find_map(|s| Some((s, over(s.pace)?)))?;
+        Some(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), sentence(found)))
     });
+    let hot: Vec<Finding> = everywhere.clone().into_iter().chain(wide).collect();
     let least = limits.min_layer_time.unwrap_or(0.0);
     let waits = &profile.start_stop;
     let time = |layer: &crate::layer::Layer| {
-        let welded = layer.passes.iter().map(crate::pass::Pass::seconds).sum::<f64>();
+        let welded = layer.passes.iter().map(|pass| pass.seconds(process)).sum::<f64>();
         (welded + waits.interpass_time).max(waits.min_layer_time)
     };
     let short = subject.layers.iter().filter(|layer| !layer.passes.is_empty() && time(layer) < least);

@@ -1,7 +1,7 @@
 //! Passes that are over before their arc is steady.
 
 use super::{Check, Finding, Subject};
-use crate::weld::speed_and_feed;
+use crate::pass::Pass;
 
 pub(super) const CHECK: Check = Check {
     name: "short-arc",
@@ -15,9 +15,7 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let soonest = subject.profile.soonest_arc_end();
     let process = &subject.profile.process;
-    let time = |pass: &crate::pass::Pass| {
-        pass.segments().map(|s| s.length() / speed_and_feed(s.speed, process).0).sum::<f64>()
-    };
+    let time = |pass: &Pass| pass.seconds(process);
     let short = subject.passes().filter(|(_, _, pass)| pass.points.len() > 1 && time(pass) < 0.999 * soonest);
     let text = |time: f64| format!("the torch is over it in {time:.2} s; its arc takes {soonest} s to start.");
     short.map(|(layer, i, pass)| Finding::of_pass(&CHECK, layer, i, pass.start(), text(time(pass)))).collect()

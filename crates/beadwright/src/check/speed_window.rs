@@ -12,14 +12,17 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let nominal = subject.profile.process.deposition_speed;
+    let process = &subject.profile.process;
+    let nominal = process.deposition_speed;
     let limits = &subject.profile.check;
     let (low, high) = (limits.min_speed.unwrap_or(0.25 * nominal), limits.max_speed.unwrap_or(4.0 * nominal));
     let mut findings = Vec::new();
     for (layer, i, pass) in subject.passes() {
-        // Written so that NaN is outside.
-        if let Some(s) = pass.segments().find(|s| !(s.speed >= low && s.speed <= high)) {
-            let text = format!("the deposition speed is {:.1} mm/s; the window is {low} to {high} mm/s.", s.speed);
+        // A range does not hold NaN.
+        let outside = |pace: f64| !(low..=high).contains(&process.speed_at(pace)) || !pace.is_finite();
+        if let Some(s) = pass.segments().find(|s| outside(s.pace)) {
+            let speed = process.speed_at(s.pace);
+            let text = format!("the deposition speed is {speed:.1} mm/s; the window is {low} to {high} mm/s.");
             findings.push(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), text));
         }
     }

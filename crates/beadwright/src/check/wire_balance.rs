@@ -2,6 +2,8 @@
 
 use super::{Check, Finding, Subject};
 use crate::bead::MassBalance;
+use crate::pass::Segment;
+use crate::process::Follow;
 
 pub(super) const CHECK: Check = Check {
     name: "wire-balance",
@@ -15,13 +17,22 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let profile = subject.profile;
     let nominal = profile.mass_balance().warning().map(|text| Finding::of_plan(&CHECK, text));
-    let metal = profile.bead.width * profile.process.deposition_speed;
-    let off = |width: f64, speed: f64| (width * speed / metal - 1.0).abs() > MassBalance::TOLERANCE;
+    let (bead, law, process) = (profile.bead(), &profile.bead.law, &profile.process);
+    let fitting = |width: f64| process.deposition_speed * law.pace(&bead, width);
+    let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
     let along = subject.passes().filter_map(|(layer, i, pass)| {
-        let s = pass.segments().find(|s| off(s.width, s.speed))?;
-        let fitting = metal / s.width;
-        let text =
-            format!("a bead {:.2} mm wide is laid at {:.2} mm/s; the wire fits {fitting:.2} mm/s.", s.width, s.speed);
+        let s = pass.segments().find(off)?;
+        let (width, fitting) = (s.width, fitting(s.width));
+        let text = match process.follow {
+            Follow::Speed => {
+                let speed = process.speed_at(s.pace);
+                format!("a bead {width:.2} mm wide is laid at {speed:.2} mm/s; the wire fits {fitting:.2} mm/s.")
+            }
+            Follow::WireFeed => {
+                let [feed, fitting] = [s.pace, fitting].map(|pace| 100.0 * process.feed_at(pace));
+                format!("a bead {width:.2} mm wide is laid with {feed:.0} % of the wire feed; it takes {fitting:.0} %.")
+            }
+        };
         Some(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), text))
     });
     nominal.into_iter().chain(along).collect()

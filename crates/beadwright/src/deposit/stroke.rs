@@ -25,23 +25,23 @@ pub struct Stroke {
     pub bead: Bead,
 }
 
-/// The bead that a profile promises, and the speed at which it does.
+/// The bead that a profile promises, and the pace at which it does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nominal {
     /// The single bead.
     pub bead: Bead,
-    /// Deposition speed, mm/s.
-    pub speed: f64,
+    /// Deposition speed of the process, mm/s.
+    pub pace: f64,
     /// Height of a closed layer of such beads, mm.
     pub rise: f64,
 }
 
 impl Nominal {
-    /// The bead of that width at that speed (mm/s) with the same wire feed: the metal per length is that of the
-    /// nominal bead times the ratio of the speeds.
-    pub fn bead_at(&self, width: f64, speed: f64) -> Bead {
+    /// The bead of that width at that pace (mm/s): the metal per length is that of the nominal bead times the ratio of
+    /// the paces.
+    pub fn bead_at(&self, width: f64, pace: f64) -> Bead {
         let section = self.bead.section;
-        let area = self.bead.area() * self.speed / speed;
+        let area = self.bead.area() * self.pace / pace;
         Bead { width, height: section.height_of(width, area), section }
     }
 }
@@ -49,7 +49,7 @@ impl Nominal {
 /// The pieces of a pass.
 pub fn strokes(pass: &Pass, nominal: &Nominal) -> impl Iterator<Item = Stroke> {
     pass.segments().map(|s| {
-        let bead = nominal.bead_at(s.width, s.speed);
+        let bead = nominal.bead_at(s.width, s.pace);
         Stroke { from: s.from.truncate(), to: s.to.truncate(), bead }
     })
 }

@@ -5,7 +5,6 @@ use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
 use crate::slice::Slice;
 use crate::warning::{Warning, WarningKind};
-use crate::weld;
 use glam::DVec2;
 use planar::{Bounds, Join, Polygon, Region};
 
@@ -74,7 +73,7 @@ fn arc_time(pass: &Path, profile: &Profile) -> f64 {
     let path = pass.path();
     let time = |(i, ends): (usize, &[DVec2])| {
         let pace = nominal * profile.bead.law.pace(&bead, pass.width.after(i));
-        ends[0].distance(ends[1]) / weld::speed_and_feed(pace, &profile.process).0
+        ends[0].distance(ends[1]) / profile.process.speed_at(pace)
     };
     path.windows(2).enumerate().map(time).sum()
 }

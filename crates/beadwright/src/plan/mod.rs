@@ -57,8 +57,8 @@ pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 
 /// The deposit model's settings for plans made with a profile.
 pub fn deposit_settings(profile: &Profile) -> DepositSettings {
-    let (bead, speed) = (profile.bead(), profile.process.deposition_speed);
-    let nominal = Nominal { bead, speed, rise: bead.rise(profile.stepover()) };
+    let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
+    let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
     DepositSettings::new(nominal, profile.fill.machining_allowance)
 }
 
@@ -388,13 +388,13 @@ impl<S: Sink> Emitter<'_, S> {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
         let (nominal, law) = (self.profile.bead(), &self.profile.bead.law);
-        let speed = self.profile.process.deposition_speed;
+        let pace = self.profile.process.deposition_speed;
         let lift = |path: Path| Pass {
             kind: path.kind,
             closed: path.closed,
             points: path.points.into_iter().map(|p| p.extend(z)).collect(),
             // The wire feed stays: a wider bead is laid more slowly.
-            speed: path.width.map(|width| speed * law.pace(&nominal, width)),
+            pace: path.width.map(|width| pace * law.pace(&nominal, width)),
             width: path.width,
         };
         let passes =

@@ -93,6 +93,31 @@ impl Process {
     }
 }
 
+impl Process {
+    /// Speed of the torch at a pace of the metal, mm/s.
+    pub fn speed_at(&self, pace: f64) -> f64 {
+        match self.follow {
+            Follow::Speed => pace,
+            Follow::WireFeed => self.deposition_speed,
+        }
+    }
+
+    /// Wire feed at a pace of the metal (mm/s), of the nominal one.
+    pub fn feed_at(&self, pace: f64) -> f64 {
+        match self.follow {
+            Follow::Speed => 1.0,
+            Follow::WireFeed => self.deposition_speed / pace,
+        }
+    }
+
+    /// Heat per length of bead at a pace of the metal, J/mm: current × voltage / pace. It grows with the metal whichever
+    /// of the two follows, since current follows the wire in the arcs that are used here (synergic lines, CMT). `None`
+    /// where current or voltage are not given.
+    pub fn heat_at(&self, pace: f64) -> Option<f64> {
+        Some(self.current? * self.voltage? / pace)
+    }
+}
+
 /// What keeps the metal of a bead in balance where it is not the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -180,9 +180,9 @@ impl Profile {
         MassBalance::new(self.bead(), wire_feed_speed, self.wire.diameter, efficiency, deposition_speed)
     }
 
-    /// Heat input, J/mm: current × voltage / speed; `None` where the profile gives no current or voltage.
+    /// Heat input of the nominal bead, J/mm; `None` where the profile gives no current or voltage.
     pub fn heat_input(&self) -> Option<f64> {
-        Some(self.process.current? * self.process.voltage? / self.process.deposition_speed)
+        self.process.heat_at(self.process.deposition_speed)
     }
 
     /// How slicing is done.

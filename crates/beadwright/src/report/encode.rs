@@ -21,6 +21,7 @@
 use crate::deposit::{Figures, Picture};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
+use crate::process::Process;
 use crate::warning::{Warning, WarningKind};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -44,11 +45,11 @@ const MOST_WARNINGS: usize = 30;
 
 /// One layer, and what the deposit model says of it, as base64. It knows nothing of other layers, so callers may encode
 /// several at a time.
-pub fn layer(layer: &Layer, figures: Option<&Figures>) -> String {
+pub fn layer(layer: &Layer, process: &Process, figures: Option<&Figures>) -> String {
     let bounds = Bounds::of(points(layer)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let resolution = (bounds.size().max_element() / SPAN).max(FINEST);
-    let bytes = head(layer, figures, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
-    STANDARD.encode(deflate(bytes, &body(layer, bounds.min, resolution)))
+    let bytes = head(layer, process, figures, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
+    STANDARD.encode(deflate(bytes, &body(layer, process, bounds.min, resolution)))
 }
 
 fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
@@ -56,7 +57,7 @@ fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
     rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()))
 }
 
-fn head(layer: &Layer, figures: Option<&Figures>, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
+fn head(layer: &Layer, process: &Process, figures: Option<&Figures>, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
     let size = bounds.size();
     let figures = figures.copied().unwrap_or_default();
     [
@@ -65,7 +66,7 @@ fn head(layer: &Layer, figures: Option<&Figures>, bounds: &Bounds, resolution: f
         layer.slice_area,
         layer.planned_area,
         layer.passes.iter().map(Pass::length).sum(),
-        layer.passes.iter().map(Pass::seconds).sum(),
+        layer.passes.iter().map(|pass| pass.seconds(process)).sum(),
         super::travels(layer).map(|(from, to)| from.distance(to)).sum(),
         layer.passes.len() as f64,
         layer.warnings.len() as f64,
@@ -89,8 +90,8 @@ pub fn map(picture: &Picture) -> String {
     STANDARD.encode(deflate(Vec::new(), &bytes))
 }
 
-fn body(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<u8> {
-    let table = table(layer);
+fn body(layer: &Layer, process: &Process, origin: DVec2, resolution: f64) -> Vec<u8> {
+    let table = table(layer, process);
     let mut bytes = Vec::with_capacity(4 * table.len() + 4 * points(layer).count() + 256);
     bytes.extend((table.len() as u32).to_le_bytes());
     bytes.extend(table.iter().flat_map(|v| v.to_le_bytes()));
@@ -103,7 +104,7 @@ fn body(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<u8> {
     bytes
 }
 
-fn table(layer: &Layer) -> Vec<u32> {
+fn table(layer: &Layer, process: &Process) -> Vec<u32> {
     let mut table = vec![layer.islands.len() as u32];
     for island in &layer.islands {
         table.push(island.rings().count() as u32);
@@ -111,11 +112,12 @@ fn table(layer: &Layer) -> Vec<u32> {
     }
     table.push(layer.passes.len() as u32);
     for pass in &layer.passes {
-        let varies = matches!((&pass.width, &pass.speed), (Along::Each(_), _) | (_, Along::Each(_)));
+        let varies = matches!((&pass.width, &pass.pace), (Along::Each(_), _) | (_, Along::Each(_)));
         let flags = if pass.closed { 256 } else { 0 } + if varies { 512 } else { 0 };
         table.extend([kind(pass.kind) + flags, pass.points.len() as u32]);
         for i in 0..if varies { pass.points.len() } else { 1 } {
-            table.extend([&pass.width, &pass.speed].map(|along| (along.after(i) * 1e3).round() as u32));
+            let values = [pass.width.after(i), process.speed_at(pass.pace.after(i))];
+            table.extend(values.map(|value| (value * 1e3).round() as u32));
         }
     }
     table

@@ -38,6 +38,7 @@ use serde_json::json;
 #[derive(Debug, Clone)]
 pub struct Report {
     header: Header,
+    profile: Profile,
     layers: Vec<String>,
     maps: Vec<String>,
     figures: Option<Figures>,
@@ -47,8 +48,15 @@ pub struct Report {
 
 impl Report {
     /// A report without layers yet.
-    pub fn new(header: &Header) -> Self {
-        Self { header: header.clone(), layers: Vec::new(), maps: Vec::new(), figures: None, middle: Layer::default() }
+    pub fn new(header: &Header, profile: &Profile) -> Self {
+        Self {
+            header: header.clone(),
+            profile: profile.clone(),
+            layers: Vec::new(),
+            maps: Vec::new(),
+            figures: None,
+            middle: Layer::default(),
+        }
     }
 
     /// Takes the next layer, and what the deposit model says of it.
@@ -56,7 +64,7 @@ impl Report {
         if layer.index == self.header.layers / 2 {
             self.middle = layer.clone();
         }
-        self.layers.push(encode::layer(layer, judgement.map(|j| &j.figures)));
+        self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
         if let Some(judgement) = judgement {
             self.figures.get_or_insert_default().add(&judgement.figures);
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
@@ -64,8 +72,8 @@ impl Report {
     }
 
     /// The page. `files` are the names of the files that were written.
-    pub fn finish(self, summary: &Summary, profile: &Profile, repair: &RepairReport, files: &[String]) -> String {
-        let header = &self.header;
+    pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String]) -> String {
+        let (header, profile) = (&self.header, &self.profile);
         let values = [
             ("title", escape(&header.part)),
             ("css", include_str!("page.css").to_owned()),

@@ -163,7 +163,7 @@ fn straight_through(layer: &Layer) -> Layer {
         closed,
         points: points.iter().map(|(x, y)| DVec3::new(x * half, y * half, layer.z)).collect(),
         width: Along::Same(first.width.after(0)),
-        speed: Along::Same(first.speed.after(0)),
+        pace: Along::Same(first.pace.after(0)),
     };
     let passes = [
         pass(true, &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),

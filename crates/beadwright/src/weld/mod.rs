@@ -18,7 +18,7 @@ pub(crate) use torch::retract_time;
 pub use torch::{Approach, Pause, Torch, Welded};
 
 use crate::motion::Motion;
-use crate::process::{Follow, Process, StartStop, Travel};
+use crate::process::{Process, StartStop, Travel};
 
 /// What times, ways and moves depend on besides the passes.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,12 +31,4 @@ pub struct WeldSettings {
     pub travel: Travel,
     /// How the machine speeds up, where that is known.
     pub motion: Option<Motion>,
-}
-
-/// Speed of the torch and part of the nominal wire feed, at a pace (mm/s) of the metal.
-pub fn speed_and_feed(pace: f64, process: &Process) -> (f64, f64) {
-    match process.follow {
-        Follow::Speed => (pace, 1.0),
-        Follow::WireFeed => (process.deposition_speed, process.deposition_speed / pace),
-    }
 }

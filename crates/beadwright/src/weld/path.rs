@@ -32,14 +32,14 @@ pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     }
     // A value holds on the way to the next point.
     let along = |value: fn(&Move) -> f64| Along::Each(moves[1..].iter().chain(moves.last()).map(value).collect());
-    let (width, speed) = (along(|m| m.width), along(|m| m.pace));
-    Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, speed }
+    let (width, pace) = (along(|m| m.width), along(|m| m.pace));
+    Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace }
 }
 
 fn moves(pass: &Pass, ends: &StartStop) -> Vec<Move> {
     let mut moves = Vec::with_capacity(pass.points.len() + 4);
-    moves.extend(pass.start().map(|to| Move { to, pace: pass.speed.after(0), width: pass.width.after(0) }));
-    moves.extend(pass.segments().map(|s| Move { to: s.to, pace: s.speed, width: s.width }));
+    moves.extend(pass.start().map(|to| Move { to, pace: pass.pace.after(0), width: pass.width.after(0) }));
+    moves.extend(pass.segments().map(|s| Move { to: s.to, pace: s.pace, width: s.width }));
     if pass.closed {
         overlap(&mut moves, ends.end_overlap);
     }

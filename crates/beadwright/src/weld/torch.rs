@@ -1,6 +1,6 @@
 //! Follows the torch: the ways between passes, how long everything takes, and how long it must wait.
 
-use super::{WeldSettings, speed_and_feed};
+use super::WeldSettings;
 use crate::motion::Motion;
 use crate::process::{Process, StartStop};
 use glam::DVec3;
@@ -60,8 +60,10 @@ pub struct Welded {
     pub metal: f64,
     /// Time for which the arc stands in the crater, s.
     pub crater: f64,
-    /// Time with gas, starting and ending and drawing the wire back, s.
-    pub delay: f64,
+    /// Time with gas and starting before the torch moves, s.
+    pub before: f64,
+    /// Time with ending, gas and drawing the wire back after the crater, s.
+    pub after: f64,
 }
 
 impl Torch {
@@ -95,9 +97,14 @@ impl Torch {
         self.at
     }
 
-    /// Speed (mm/s) and part of the nominal wire feed at a pace.
-    pub fn speed_and_feed(&self, pace: f64) -> (f64, f64) {
-        self.process.as_ref().map_or((pace, 1.0), |process| speed_and_feed(pace, process))
+    /// Speed at a pace, mm/s.
+    pub fn speed_at(&self, pace: f64) -> f64 {
+        self.process.as_ref().map_or(pace, |process| process.speed_at(pace))
+    }
+
+    /// Wire feed at a pace (mm/s), of the nominal one.
+    pub fn feed_at(&self, pace: f64) -> f64 {
+        self.process.as_ref().map_or(1.0, |process| process.feed_at(pace))
     }
 
     /// Begins a layer, with the wait that its predecessor needs.
@@ -144,34 +151,36 @@ impl Torch {
     /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them.
     pub fn weld(&mut self, moves: &[(DVec3, f64)]) -> Welded {
         let pieces = || moves.windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
-        let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_and_feed(pace).0));
-        let steady: f64 = pieces().map(|(length, pace)| length / self.speed_and_feed(pace).0).sum();
+        let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_at(pace)));
+        let steady: f64 = pieces().map(|(length, pace)| length / self.speed_at(pace)).sum();
         let moving = match (&self.motion, moves.first()) {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
             _ => steady,
         };
         let crater = self.ends.crater_fill_time;
         let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + crater * self.ends.crater_power;
+        let [before, after] = self.delays();
         let welded = Welded {
             length: pieces().map(|p| p.0).sum(),
             moving,
             slowed: moving - steady,
             metal,
             crater,
-            delay: self.delay(),
+            before,
+            after,
         };
-        self.seconds += moving + crater + welded.delay;
+        self.seconds += before + moving + crater + after;
         if let Some(&(end, _)) = moves.last() {
             (self.at, self.low) = (Some(end), end.z);
         }
         welded
     }
 
-    /// Time with gas, starting, ending and drawing the wire back at its nominal speed, s a pass.
-    fn delay(&self) -> f64 {
-        let Some(process) = &self.process else { return 0.0 };
-        let gas_and_arc = process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow;
-        gas_and_arc + retract_time(&self.ends, process)
+    /// Time for gas and starting, and for ending, gas and drawing the wire back at its nominal speed, s a pass.
+    fn delays(&self) -> [f64; 2] {
+        let Some(process) = &self.process else { return [0.0; 2] };
+        let end = process.arc_end_delay + process.gas_postflow + retract_time(&self.ends, process);
+        [process.gas_preflow + process.arc_start_delay, end]
     }
 }
 

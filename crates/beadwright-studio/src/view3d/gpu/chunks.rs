@@ -230,7 +230,7 @@ fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
         beads: begin.beads + segments.min(layer.len()),
         rough: begin.rough + layer.rough_segments.partition_point(|&s| (s as usize) < segments),
         caps: begin.caps + layer.cap_segments.partition_point(|&s| (s as usize) < segments),
-        travels: begin.travels + 6 * begun().filter(|pass| pass.travel.is_some()).count(),
+        travels: begin.travels + begun().map(|pass| 2 * pass.travel.len().saturating_sub(1)).sum::<usize>(),
         dots: begin.dots + dots,
     }
 }
@@ -243,7 +243,7 @@ fn marks(layer: &LayerBeads, travels: &mut Vec<Point>, dots: &mut Vec<Point>) {
         else {
             continue;
         };
-        for leg in pass.travel.iter().flat_map(|legs| legs.windows(2)).flatten() {
+        for leg in pass.travel.windows(2).flatten() {
             travels.push(Point { at: leg.as_vec3().into(), role: role::TRAVEL });
         }
         dots.push(Point { at: first.from().into(), role: role::START });
