@@ -28,9 +28,9 @@ PY
 }
 
 measure "beadwright plan, deposit model" target/release/beadwright plan "$work/bunny.stl" \
-    -p benches/fdm-0.45x0.2.toml -o "$work/judged"
+    -p crates/beadwright/benches/fdm-0.45x0.2.toml -o "$work/judged"
 measure "beadwright plan --no-deposit" target/release/beadwright plan "$work/bunny.stl" \
-    -p benches/fdm-0.45x0.2.toml --no-deposit -o "$work/out"
+    -p crates/beadwright/benches/fdm-0.45x0.2.toml --no-deposit -o "$work/out"
 if command -v prusa-slicer > /dev/null; then
     measure "prusa-slicer" prusa-slicer --export-gcode "$work/bunny.stl" -o "$work/prusa.gcode" \
         --layer-height 0.2 --first-layer-height 0.2 --nozzle-diameter 0.4 --extrusion-width 0.45 --perimeters 1 \

@@ -1,10 +1,10 @@
 //! `beadwright bead`: a library of measured beads, and the parameters of a wanted one.
 
-use crate::output::write_file;
 use anyhow::Context;
 use beadwright::bead::Overlap;
 use beadwright::bead::library::demonstration_csv;
 use beadwright::bead::library::{BeadLibrary, Columns, Layering, Limit, Measured, Prediction, Response, Wish};
+use beadwright::files::write_file;
 use beadwright::report::bead_window;
 use serde_json::{Map, Value, json};
 use std::io::Write;

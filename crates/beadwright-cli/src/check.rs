@@ -1,8 +1,8 @@
 //! `beadwright check`.
 
-use crate::output::write_file;
 use crate::{profile, program, progress, reach};
 use beadwright::check::{self, CHECKS, Finding};
+use beadwright::files::write_file;
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track};

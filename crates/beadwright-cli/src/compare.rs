@@ -1,10 +1,10 @@
 //! `beadwright compare`: strategies and programs side by side.
 
-use crate::output::write_file;
 use crate::plan::{deposit_settings, parse_grid};
 use crate::{model, profile, program, progress};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
+use beadwright::files::write_file;
 use beadwright::fill;
 use std::io::Write;
 use std::path::PathBuf;

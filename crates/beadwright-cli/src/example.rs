@@ -1,8 +1,8 @@
 //! `beadwright example`.
 
-use crate::output::write_file;
 use anyhow::Context;
 use beadwright::example;
+use beadwright::files::write_file;
 use std::io::Write;
 use std::path::PathBuf;
 

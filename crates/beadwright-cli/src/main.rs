@@ -8,12 +8,12 @@ mod compare;
 mod example;
 mod inspect;
 mod model;
-mod output;
 mod plan;
 mod profile;
 mod program;
 mod progress;
 mod reach;
+mod remedy;
 mod reproduce;
 mod simulate;
 mod studio;
@@ -79,7 +79,8 @@ fn main() -> ExitCode {
         // Whoever reads our output may stop reading: that is no failure of ours.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));
+            eprintln!("error: {error:#}{remedy}");
             ExitCode::FAILURE
         }
     }

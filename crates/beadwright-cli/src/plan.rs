@@ -1,18 +1,15 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
-use crate::output::Output;
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::dialect::{Chunk, Writer};
+use beadwright::files::{Folder, PlanFiles, Programs};
 use beadwright::layer::Layer;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
-use beadwright::plan_file;
 use beadwright::profile::Profile;
-use beadwright::program::Programmer;
-use beadwright::report::{self, Report, rows};
+use beadwright::report::{self, rows};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
@@ -93,30 +90,24 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let part = arguments.model.part();
     let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };
     let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let posts = names.iter().map(|name| profile::writer(name, &programs.job(&part))).collect::<Result<Vec<_>, _>>()?;
+    let programs = profile::programs(names, &programs.job(&part))?;
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
-    let output = Output::new(&arguments.output)?;
-    let programmer = programs.programmer();
     let settings = deposit_settings(arguments.grid, &profile, model.bounds());
-    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
-    let pictures = arguments.picture.clone();
     let from_layer = arguments.from_layer as usize - 1;
     let mut files = Files {
-        output,
-        posts,
-        programmer,
-        pictures,
+        folder: Folder::new(&arguments.output)?,
+        programs: Some(programs),
+        files: None,
+        pictures: &arguments.picture,
         settings,
-        profile: profile.clone(),
-        judge,
-        report: None,
-        first: true,
+        profile: &profile,
+        judge: (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS)),
         from_layer,
     };
-    let planned = plan::plan_part(&part, &model, &profile, &task, &mut files);
+    let planned = plan::plan_into(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
     let mut summary = planned.map_err(|error| match error {
         PlanError::Sink(error) => error,
@@ -143,70 +134,48 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// Where the layers go.
-struct Files {
-    output: Output,
-    posts: Vec<Box<dyn Writer>>,
-    programmer: Programmer,
-    pictures: Vec<usize>,
+struct Files<'a> {
+    folder: Folder,
+    /// The programs until the plan begins, then all files.
+    programs: Option<Programs>,
+    files: Option<PlanFiles>,
+    pictures: &'a [usize],
     settings: DepositSettings,
-    profile: Profile,
+    profile: &'a Profile,
     judge: Option<Judge>,
-    report: Option<Report>,
-    first: bool,
     /// Index of the first layer of the programs.
     from_layer: usize,
 }
 
-impl Files {
-    fn chunks(&mut self, chunks: Vec<Chunk>) -> anyhow::Result<()> {
-        chunks.iter().try_for_each(|c| self.output.append(&c.file, &c.text))
-    }
-
-    fn each_post(&mut self, mut write: impl FnMut(&mut dyn Writer) -> Vec<Chunk>) -> anyhow::Result<()> {
-        let chunks = self.posts.iter_mut().flat_map(|post| write(post.as_mut())).collect();
-        self.chunks(chunks)
-    }
-
+impl Files<'_> {
     /// Writes what comes last, and moves everything to its place.
     fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
-        let leave = self.programmer.leave();
-        self.each_post(|post| post.end(leave))?;
-        self.output.append("plan.json", plan_file::tail())?;
-        self.output.append("metrics.json", &format!("{:#}\n", summary.json(self.judge.as_ref().map(Judge::total))))?;
-        let mut names = self.output.names();
-        names.push("report.html".to_owned());
-        if let Some(report) = self.report.take() {
-            self.output.append("report.html", &report.finish(summary, repair, &names))?;
+        if let Some(files) = self.files {
+            self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total)))?;
         }
-        self.output.commit()?;
-        Ok(names)
+        Ok(self.folder.commit()?)
     }
 }
 
-impl Sink for Files {
+impl Sink for Files<'_> {
     type Error = anyhow::Error;
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
-        self.report = Some(Report::new(header, &self.profile));
-        self.output.append("plan.json", &plan_file::head(header, &self.settings))?;
-        self.each_post(|post| post.begin(header.layers))
+        let Some(programs) = self.programs.take() else { return Ok(()) };
+        let (files, chunks) = PlanFiles::begin(header, self.profile, &self.settings, programs, self.from_layer);
+        self.files = Some(files);
+        Ok(self.folder.extend(chunks)?)
     }
 
     fn layer(&mut self, layer: Layer) -> anyhow::Result<()> {
-        self.output.append("plan.json", &plan_file::layer(&layer, self.first))?;
-        self.first = false;
-        if layer.index >= self.from_layer {
-            let program = self.programmer.layer(&layer);
-            self.each_post(|post| post.layer(&program))?;
-        }
         if self.pictures.contains(&(layer.index + 1)) {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
-            self.output.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
+            self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
-        let welded = plan::welded(&layer, &self.profile);
+        let welded = plan::welded(&layer, self.profile);
         let judgement = self.judge.as_mut().map(|judge| judge.layer(&welded));
-        if let Some(report) = &mut self.report {
-            report.layer(&layer, judgement.as_ref());
+        if let Some(files) = &mut self.files {
+            self.folder.extend(files.layer(&layer, judgement.as_ref()))?;
         }
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! `beadwright profile`, and how `--profile` and `--set` are read.
 
 use anyhow::Context;
-use beadwright::dialect::{self, DialectError, Job, Writer};
+use beadwright::dialect::{DialectError, Job};
+use beadwright::files::Programs;
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
 use std::io::Write;
 use std::path::Path;
@@ -76,15 +77,14 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
     })
 }
 
-/// Begins a program in a dialect; where the profile lacks its section, tells which one to copy.
-pub(crate) fn writer(name: &str, job: &Job<'_>) -> anyhow::Result<Box<dyn Writer>> {
-    dialect::writer(name, job).map_err(|error| {
-        let section = format!("\n[{name}]");
-        match BUILT_IN.iter().find(|(_, text)| text.contains(&section)) {
-            Some((with, _)) if matches!(error, DialectError::NoSection { .. }) => {
-                anyhow::anyhow!("{error} `beadwright profile show {with}` prints one to copy.")
-            }
-            _ => error.into(),
-        }
+/// Programs in these dialects; where the profile lacks a section, tells which one to copy.
+pub(crate) fn programs(names: &[String], job: &Job<'_>) -> anyhow::Result<Programs> {
+    Programs::new(names, job).map_err(|error| {
+        let DialectError::NoSection { dialect, .. } = error else { return error.into() };
+        let section = format!("\n[{dialect}]");
+        let with = BUILT_IN.iter().find(|(_, text)| text.contains(&section));
+        let hint =
+            with.map_or(String::new(), |(with, _)| format!(" `beadwright profile show {with}` prints one to copy."));
+        anyhow::anyhow!("{error}{hint}")
     })
 }

@@ -1,8 +1,8 @@
 //! `beadwright reach`: whether a robot can weld a plan, and with what margins.
 
-use crate::output::write_file;
 use crate::profile;
 use anyhow::{Context, bail};
+use beadwright::files::write_file;
 use beadwright::plan_file::{self, PlanFile};
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, cell};

@@ -1,8 +1,8 @@
 //! `beadwright reproduce`: the papers' tables and figures, ours beside theirs.
 
-use crate::output::Output;
 use crate::progress;
 use anyhow::Context;
+use beadwright::files::Folder;
 use beadwright::reproduce::PAPERS;
 use std::io::Write;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     };
     let (task, bar) = progress::task()?;
-    let mut output = Output::new(&arguments.output)?;
+    let mut output = Folder::new(&arguments.output)?;
     let mut said = Vec::new();
     for paper in papers {
         let done = (paper.run)(&task)?;

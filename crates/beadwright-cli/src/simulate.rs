@@ -1,10 +1,10 @@
 //! `beadwright simulate`: what a plan or anyone's program would build.
 
-use crate::output::write_file;
 use crate::plan::parse_grid;
 use crate::{model, profile, program, progress};
 use beadwright::compare::{self, Entry};
 use beadwright::deposit::DepositSettings;
+use beadwright::files::write_file;
 use beadwright::model::Units;
 use beadwright::report::rows;
 use std::collections::BTreeMap;

@@ -1,8 +1,8 @@
 //! What a person can do, with its key: menus, keys and the list of keys are made from one table.
 
 use crate::app::Studio;
+use crate::export::Export;
 use crate::jobs::Ask;
-use crate::panels;
 use crate::view::Mode;
 use crate::view3d::StandardView;
 use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup, ViewportCommand};
@@ -140,7 +140,7 @@ impl Studio {
             Action::SaveAs => self.ask(Ask::SaveProject),
             Action::ExportProgram => {
                 let dialect = self.view.dialect.clone();
-                self.exporting = panels::export::What::Program(dialect);
+                self.exporting = Export::Program(dialect);
                 self.ask(Ask::Folder);
             }
             Action::Undo => {

@@ -1,6 +1,7 @@
 //! The window: where project, planner, views and panels are put together.
 
 use crate::actions;
+use crate::export::Export;
 use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{self, Ask, Job};
@@ -59,7 +60,7 @@ pub struct Studio {
     pub(crate) refused: Option<(String, String)>,
     pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
     /// The dialect that a folder is asked for.
-    pub(crate) exporting: panels::export::What,
+    pub(crate) exporting: Export,
     pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
     pub(crate) steps: Option<(usize, Vec<Steps>)>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
@@ -112,7 +113,7 @@ impl Studio {
             parsed: None,
             refused: None,
             dialog: None,
-            exporting: panels::export::What::default(),
+            exporting: Export::default(),
             steps_job: None,
             steps: None,
             reach_job: None,

@@ -1,12 +1,12 @@
 //! What is opened and what is written: models, projects, programs, pictures.
 
 use crate::app::Studio;
-use crate::export::{self, Paper};
+use crate::export::Export;
 use crate::jobs::{self, Ask};
 use crate::panels;
 use crate::project::{Project, Source};
-use crate::settings::write_whole;
 use beadwright::bead::library::BeadLibrary;
+use beadwright::files::write_file;
 use beadwright::profile::Profile;
 use std::path::Path;
 
@@ -54,8 +54,7 @@ impl Studio {
     /// Writes the project file.
     pub fn save_to(&mut self, path: &Path) {
         let written = self.project().write(path.parent());
-        let written = written
-            .and_then(|text| write_whole(path, text.as_bytes()).map_err(|e| format!("{}: {e}.", path.display())));
+        let written = written.and_then(|text| write_file(path, text.as_bytes()).map_err(|error| format!("{error}.")));
         match written {
             Ok(()) => {
                 self.saved = self.project().clone();
@@ -68,31 +67,9 @@ impl Studio {
         }
     }
 
-    /// Writes the program in a dialect into a folder.
-    pub fn export_program(&mut self, dialect: &str, folder: &Path) {
-        let done = export::program(&self.plan, dialect).and_then(|files| {
-            export::write(folder, &files)?;
-            Ok(files.into_keys().collect())
-        });
-        self.told(folder, done);
-    }
-
-    /// Writes plan, report or metrics into a folder.
-    pub fn export_paper(&mut self, paper: Paper, folder: &Path) {
-        let names = [paper.file().to_owned()];
-        let done = export::paper(&self.plan, paper, &names).and_then(|text| {
-            export::write(folder, &[(paper.file().to_owned(), text)].into())?;
-            Ok(names.to_vec())
-        });
-        self.told(folder, done);
-    }
-
-    /// Writes what `beadwright plan` writes into a folder: the programs of the profile's dialects, plan, metrics and report.
-    pub fn export_all(&mut self, folder: &Path) {
-        let done = export::all(&self.plan).and_then(|files| {
-            export::write(folder, &files)?;
-            Ok(files.into_keys().collect())
-        });
+    /// Writes into a folder: a program, a file of the plan, or all that `beadwright plan` writes.
+    pub fn export(&mut self, what: &Export, folder: &Path) {
+        let done = what.write(&self.plan, folder);
         self.told(folder, done);
     }
 
@@ -128,11 +105,10 @@ impl Studio {
                     Err(error) => self.complain(error),
                 }
             }
-            Ask::Folder => match self.exporting.clone() {
-                panels::export::What::Program(dialect) => self.export_program(&dialect, path),
-                panels::export::What::Paper(paper) => self.export_paper(paper, path),
-                panels::export::What::All => self.export_all(path),
-            },
+            Ask::Folder => {
+                let what = self.exporting.clone();
+                self.export(&what, path);
+            }
         }
     }
 

@@ -217,7 +217,7 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
         send(Event::Preview(Arc::new(layer), beads));
     }
     let mut layers = Layers { send, layers: Vec::new(), torch: Torch::of(&profile.weld_settings()) };
-    let mut summary = plan::plan_part(&request.project.part(), &part, &profile, task, &mut layers)?;
+    let mut summary = plan::plan_into(&request.project.part(), &*part, &profile, task, &mut layers)?;
     let layers = layers.layers;
     summary.notes.splice(0..0, note);
     send(Event::Planned(Box::new(summary)));

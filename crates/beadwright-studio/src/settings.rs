@@ -2,6 +2,7 @@
 
 use crate::project::Project;
 use crate::text::Language;
+use beadwright::files::{FolderError, write_file};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -109,22 +110,10 @@ impl Store {
         self.folder.as_ref().map(|folder| folder.join(name))
     }
 
-    fn keep(&self, name: &str, text: &str) -> std::io::Result<()> {
+    fn keep(&self, name: &str, text: &str) -> Result<(), FolderError> {
         let (Some(folder), Some(path)) = (&self.folder, self.file(name)) else { return Ok(()) };
-        std::fs::create_dir_all(folder)?;
-        write_whole(&path, text.as_bytes())
+        // A folder that cannot be made is told of with the file.
+        let _ = std::fs::create_dir_all(folder);
+        write_file(&path, text.as_bytes())
     }
-}
-
-/// Writes a file whole or not at all.
-///
-/// # Errors
-/// What the system says.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut aside = path.as_os_str().to_owned();
-    aside.push(".part");
-    let aside = PathBuf::from(aside);
-    std::fs::write(&aside, bytes).and_then(|()| std::fs::rename(&aside, path)).inspect_err(|_| {
-        let _ = std::fs::remove_file(&aside);
-    })
 }

@@ -1,6 +1,7 @@
 //! Projects, their files, their history, and the form of the profile.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use beadwright::files::Folder;
 use beadwright::model::{Placement, Units};
 use beadwright::profile::{BUILT_IN, Profile, edit};
 use beadwright_studio::form::{self, Kind};
@@ -157,10 +158,14 @@ fn windows_at_a_time_keep_projects_of_their_own() {
 fn files_of_a_program_are_all_written_or_none() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let files = |names: &[&str]| names.iter().map(|name| ((*name).to_owned(), "text".to_owned())).collect();
-    let error = beadwright_studio::export::write(&out, &files(&["a.src", "no/such/b.src"])).unwrap_err();
-    assert!(error.contains("b.src") && error.ends_with('.'), "{error}");
-    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0);
-    beadwright_studio::export::write(&out, &files(&["a.src", "b.src"])).unwrap();
+    let write = |names: &[&str]| {
+        let mut folder = Folder::new(&out)?;
+        names.iter().try_for_each(|name| folder.append(name, "text"))?;
+        folder.commit()
+    };
+    let error = write(&["a.src", "no/such/b.src"]).unwrap_err().to_string();
+    assert!(error.contains("b.src"), "{error}");
+    assert!(!out.exists() && std::fs::read_dir(folder.path()).unwrap().count() == 0);
+    assert_eq!(write(&["a.src", "b.src"]).unwrap(), ["a.src", "b.src"]);
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 2);
 }

@@ -3,6 +3,7 @@
 
 mod window;
 
+use beadwright_studio::export::Export;
 use beadwright_studio::project::Source;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
@@ -52,7 +53,7 @@ fn an_example_is_planned_changed_looked_through_and_exported() {
     assert_eq!(harness.state_mut().view().last, 3);
 
     let out = folder.path().join("out");
-    harness.state_mut().export_program("krl", &out);
+    harness.state_mut().export(&Export::Program("krl".to_owned()), &out);
     for name in std::fs::read_dir(folder.path().join("cli")).unwrap().map(|e| e.unwrap().file_name()) {
         let name = name.into_string().unwrap();
         if name.ends_with(".src") || name.ends_with(".dat") {

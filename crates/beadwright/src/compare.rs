@@ -155,7 +155,7 @@ pub fn strategy(
     let mut profile = profile.clone();
     profile.fill.strategy = name.to_owned();
     let mut planned = Planned { judging: Judging::new(settings, &bounds(mesh), chosen), profile: &profile };
-    let metrics = plan::plan_layers(name, mesh, &profile, task, &mut planned)?.metrics;
+    let metrics = plan::plan_into(name, mesh, &profile, task, &mut planned)?.metrics;
     let judging = planned.judging;
     let totals = Totals { turns: judging.turns, ..Totals::of_plan(&metrics) };
     Ok(judging.entry(name, totals))

@@ -41,6 +41,7 @@ pub mod curve;
 pub mod deposit;
 pub mod dialect;
 pub mod example;
+pub mod files;
 pub mod fill;
 pub mod layer;
 pub mod limit;

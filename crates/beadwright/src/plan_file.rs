@@ -30,11 +30,11 @@ pub fn head(header: &Header, settings: &DepositSettings) -> String {
     format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
-/// The text of one layer; `first` tells whether a comma must come before it.
-pub fn layer(layer: &Layer, first: bool) -> String {
+/// The text of one layer; a comma comes before all but the one of index 0.
+pub fn layer(layer: &Layer) -> String {
     let points: usize = layer.passes.iter().map(|p| p.points.len()).sum();
     let mut text = String::with_capacity(256 + points * 28);
-    text.push_str(if first { "\n" } else { ",\n" });
+    text.push_str(if layer.index == 0 { "\n" } else { ",\n" });
     text.push_str(&format!("{{\"index\":{},\"z\":", layer.index));
     push_fixed(&mut text, layer.z, DECIMALS);
     text.push_str(",\"height\":");

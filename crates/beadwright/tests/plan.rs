@@ -236,7 +236,7 @@ fn plan_json_holds_the_plan() {
     let plan = plan_of(&example::find("gear").unwrap().mesh(), &profile);
     let settings = plan::deposit_settings(&profile);
     let mut text = plan_file::head(&plan.header, &settings);
-    plan.layers.iter().for_each(|l| text.push_str(&plan_file::layer(l, l.index == 0)));
+    plan.layers.iter().for_each(|l| text.push_str(&plan_file::layer(l)));
     text.push_str(plan_file::tail());
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!((json["version"].as_u64(), json["units"].as_str()), (Some(1), Some("mm")));

@@ -5,30 +5,14 @@ use beadwright::bead::wall::WallBead;
 use beadwright::curve::Nurbs;
 use beadwright::example;
 use beadwright::layer::Layer;
+use beadwright::model::PartRef;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
 use beadwright::model::wall_curves::{WallCurves, WallCurvesError};
 use beadwright::pass::Pass;
-use beadwright::plan::{self, Header, Sink};
+use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::{DAffine3, DVec3};
-use std::convert::Infallible;
-
-#[derive(Default)]
-struct Kept(Vec<Layer>);
-
-impl Sink for Kept {
-    type Error = Infallible;
-
-    fn begin(&mut self, _: &Header) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.0.push(layer);
-        Ok(())
-    }
-}
 
 fn profile(width: f64, height: f64) -> Profile {
     let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
@@ -51,9 +35,7 @@ fn of_example(name: &str) -> WallCurves {
 }
 
 fn layers(curves: &WallCurves, height: f64, profile: &Profile) -> Vec<Layer> {
-    let mut kept = Kept::default();
-    plan::plan_curves("wall", curves, height, profile, &Task::new(), &mut kept).unwrap();
-    kept.0
+    plan::plan("wall", PartRef::Curves(curves, height), profile, &Task::new()).unwrap().layers
 }
 
 fn circle(radius: f64, z: f64) -> Nurbs {

@@ -1,28 +1,12 @@
 //! What can be written.
 
 use crate::app::Studio;
-use crate::export::Paper;
+use crate::export::Export;
 use crate::jobs::Ask;
 use beadwright::dialect;
+use beadwright::files::{METRICS, PLAN, REPORT};
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 use std::path::PathBuf;
-
-/// What a folder is asked for.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum What {
-    /// A program in a dialect.
-    Program(String),
-    /// A file that belongs to the plan.
-    Paper(Paper),
-    /// All that the command writes.
-    All,
-}
-
-impl Default for What {
-    fn default() -> Self {
-        Self::Paper(Paper::Plan)
-    }
-}
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
@@ -46,11 +30,14 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     if !judged {
         ui.weak(studio.t("not-complete"));
     }
-    let papers = [("export-plan", Paper::Plan), ("export-report", Paper::Report), ("export-metrics", Paper::Metrics)];
-    let program = ("export-program", What::Program(studio.view.dialect.clone()), planned);
-    let papers = papers.into_iter().map(|(key, paper)| (key, What::Paper(paper), judged));
-    let all = ("export-all", What::All, judged);
-    for (key, what, enabled) in [program].into_iter().chain(papers).chain([all]) {
+    let rows = [
+        ("export-program", Export::Program(studio.view.dialect.clone()), planned),
+        ("export-plan", Export::File(PLAN), judged),
+        ("export-report", Export::File(REPORT), judged),
+        ("export-metrics", Export::File(METRICS), judged),
+        ("export-all", Export::All, judged),
+    ];
+    for (key, what, enabled) in rows {
         if ui.add_enabled(enabled, Button::new(studio.t(key))).clicked() {
             studio.exporting = what;
             match studio.view.folder.trim() {

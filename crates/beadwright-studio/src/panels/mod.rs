@@ -1,7 +1,7 @@
 //! The panels around the views, one file each.
 
 mod centre;
-pub(crate) mod export;
+mod export;
 mod findings;
 mod layers;
 mod menu;

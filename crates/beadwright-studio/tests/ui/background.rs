@@ -1,6 +1,7 @@
 //! The background: work that breaks, work that is no longer wanted, work that is not done yet.
 
 use super::window::{example, sees, studio, wait};
+use beadwright_studio::export::Export;
 use beadwright_studio::jobs::{self, Job};
 use beadwright_studio::planner::{Event, Failure, Planner};
 use beadwright_studio::project::{Project, Source};
@@ -104,11 +105,11 @@ fn what_belongs_to_the_request_before_is_not_written() {
     let out = folder.path().join("out");
     let mut harness = example(folder.path(), "cross");
     harness.state_mut().set_value("layers.height", "2.5");
-    harness.state_mut().export_program("krl", &out);
+    harness.state_mut().export(&Export::Program("krl".to_owned()), &out);
     let message = harness.state().messages().last().unwrap();
     assert!(message.error && !out.exists(), "{}", message.text);
     wait(&mut harness);
-    harness.state_mut().export_program("krl", &out);
+    harness.state_mut().export(&Export::Program("krl".to_owned()), &out);
     assert!(!harness.state().messages().last().unwrap().error && out.exists());
 
     // A part that cannot be planned is not written as the one before either.
@@ -117,6 +118,6 @@ fn what_belongs_to_the_request_before_is_not_written() {
     let plan = harness.state().plan();
     assert!(plan.failure.is_some() && plan.layers.is_empty() && plan.part.is_none() && plan.scene.mesh().is_none());
     let again = folder.path().join("again");
-    harness.state_mut().export_program("krl", &again);
+    harness.state_mut().export(&Export::Program("krl".to_owned()), &again);
     assert!(!again.exists());
 }

@@ -2,8 +2,9 @@
 
 use super::window::{has_adapter, run, studio, wait};
 use beadwright::dialect;
+use beadwright::files::{METRICS, PLAN, REPORT};
 use beadwright_studio::Studio;
-use beadwright_studio::export::Paper;
+use beadwright_studio::export::Export;
 use beadwright_studio::project::{Project, Source};
 use egui_kittest::Harness;
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,7 +55,7 @@ fn all_dialects_and_papers_are_those_of_the_command() {
     ] {
         let mut harness = opened(folder.path(), &model, profile, scale);
         let whole = folder.path().join(format!("{profile}-all"));
-        harness.state_mut().export_all(&whole);
+        harness.state_mut().export(&Export::All, &whole);
         let theirs = folder.path().join(format!("{profile}-cli"));
         let scale = scale.to_string();
         let plan = ["plan", &text(&model), "--profile", profile, "--scale", &scale, "-o", &text(&theirs)];
@@ -62,7 +63,7 @@ fn all_dialects_and_papers_are_those_of_the_command() {
         same(&files(&whole), &files(&theirs));
         for dialect in posts {
             let ours = folder.path().join(format!("{profile}-{dialect}"));
-            harness.state_mut().export_program(dialect, &ours);
+            harness.state_mut().export(&Export::Program((*dialect).to_owned()), &ours);
             let theirs = folder.path().join(format!("{profile}-{dialect}-cli"));
             let out = text(&theirs);
             let plan = [&plan[..6], &["-o", &out, "--post", dialect, "--no-deposit"]].concat();
@@ -86,7 +87,7 @@ fn a_wall_given_by_curves_is_written_as_the_command_does() {
     std::fs::write(&model, beadwright::example::find("pot").unwrap().iges().unwrap()).unwrap();
     let mut harness = opened(folder.path(), &model, "cmt-al2319-kuka", 1.0);
     let [ours, theirs] = ["ours", "theirs"].map(|name| folder.path().join(name));
-    harness.state_mut().export_all(&ours);
+    harness.state_mut().export(&Export::All, &ours);
     run(&["plan", model.to_str().unwrap(), "-o", theirs.to_str().unwrap()]);
     same(&files(&ours), &files(&theirs));
 }
@@ -96,9 +97,9 @@ fn papers_are_written_one_by_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = super::window::example(folder.path(), "cross");
     let [all, one] = ["all", "one"].map(|name| folder.path().join(name));
-    harness.state_mut().export_all(&all);
-    for paper in [Paper::Plan, Paper::Metrics, Paper::Report] {
-        harness.state_mut().export_paper(paper, &one);
+    harness.state_mut().export(&Export::All, &all);
+    for name in [PLAN, METRICS, REPORT] {
+        harness.state_mut().export(&Export::File(name), &one);
     }
     let (all, one) = (files(&all), files(&one));
     assert!(one.keys().map(String::as_str).eq(["metrics.json", "plan.json", "report.html"]));
@@ -107,7 +108,7 @@ fn papers_are_written_one_by_one() {
     let report = String::from_utf8(one["report.html"].clone()).unwrap();
     assert!(!report.contains("CROSS.src") && String::from_utf8_lossy(&all["report.html"]).contains("CROSS.src"));
     // A dialect that the profile lacks is refused with a sentence.
-    harness.state_mut().export_program("rapid", &folder.path().join("none"));
+    harness.state_mut().export(&Export::Program("rapid".to_owned()), &folder.path().join("none"));
     let told = harness.state().messages().last().unwrap();
     assert!(told.error && told.text.contains("rapid") && told.text.ends_with('.'), "{}", told.text);
 }

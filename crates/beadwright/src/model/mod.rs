@@ -20,7 +20,7 @@ pub mod units;
 pub mod wall_curves;
 pub(crate) mod weld;
 
-pub use part::{Model, Part, PartError, Placement};
+pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;
 pub use units::Units;
 
@@ -71,8 +71,7 @@ pub enum ImportError {
     },
     /// Curves where a solid is needed.
     #[error(
-        "this is an IGES file. `beadwright plan FILE --strategy wall` welds its curves as walls and `beadwright inspect` \
-         lists them; here a solid is needed. Save the model as STL (binary or ASCII)."
+        "this is an IGES file: its curves can be welded as walls, but here a solid is needed. Save the model as STL (binary or ASCII)."
     )]
     Iges,
     /// Nothing known.
@@ -110,7 +109,7 @@ pub enum ImportError {
         triangles: usize,
     },
     /// The part is too far out.
-    #[error("the model reaches {reach_m:.1} m from the origin; at most {} m are supported. Move it to the origin, or check --units.", MAX_REACH_MM / 1000.0)]
+    #[error("the model reaches {reach_m:.1} m from the origin; at most {} m are supported. Move it to the origin, or check the unit of the file.", MAX_REACH_MM / 1000.0)]
     TooFar {
         /// Largest coordinate, m.
         reach_m: f64,

@@ -56,6 +56,30 @@ pub enum Part {
     },
 }
 
+/// A part to be planned: a [`Part`], or a solid alone.
+#[derive(Debug, Clone, Copy)]
+pub enum PartRef<'a> {
+    /// A solid that stands on z = 0.
+    Mesh(&'a Mesh),
+    /// The centre-lines of a wall, and where it ends, mm.
+    Curves(&'a WallCurves, f64),
+}
+
+impl<'a> From<&'a Part> for PartRef<'a> {
+    fn from(part: &'a Part) -> Self {
+        match part {
+            Part::Mesh(import) => Self::Mesh(&import.mesh),
+            Part::Curves { curves, height, .. } => Self::Curves(curves, *height),
+        }
+    }
+}
+
+impl<'a> From<&'a Mesh> for PartRef<'a> {
+    fn from(mesh: &'a Mesh) -> Self {
+        Self::Mesh(mesh)
+    }
+}
+
 /// Why a model gives no part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PartError {
@@ -72,10 +96,10 @@ pub enum PartError {
     #[error(transparent)]
     Units(#[from] UnitsUnclear),
     /// A height for a solid.
-    #[error("--height belongs to walls given by curves (IGES), not to a solid")]
+    #[error("a height belongs to walls given by curves (IGES), not to a solid")]
     HeightOfSolid,
     /// Curves of one height, and none to end at.
-    #[error("the curves lie at one height; --height says how high the wall grows, mm")]
+    #[error("the curves lie at one height: say how high the wall grows, mm")]
     NoHeight,
 }
 

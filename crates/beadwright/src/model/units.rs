@@ -43,8 +43,7 @@ impl Units {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "the part measures {} in the file's units. As millimetres it would be smaller than {MIN_BEADS} beads of {bead_width} mm. \
-     Say which unit is meant: --units in makes it {} mm, --units cm {} mm, --units m {} mm; \
-     --units mm keeps it as it is, --scale enlarges it.",
+     Say which unit is meant: inches make it {} mm, centimetres {} mm, metres {} mm.",
     size_text(*.size, 1.0), size_text(*.size, 25.4), size_text(*.size, 10.0), size_text(*.size, 1000.0)
 )]
 pub struct UnitsUnclear {

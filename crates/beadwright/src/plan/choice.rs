@@ -33,7 +33,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
         Part::Mesh(import) if !kept && profile.fill.strategy == "loop" && all_thin(&import.mesh, &profile, task)? => {
             "wall".clone_into(&mut profile.fill.strategy);
             note = Some(
-                "Strategy wall instead of loop: the part is all walls for one bead. --strategy loop keeps the other."
+                "Strategy wall instead of loop: the part is all walls for one bead; asked for by name, loop is kept."
                     .to_owned(),
             );
         }

@@ -1,8 +1,8 @@
 //! The front door: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
 //!
-//! [`plan_layers`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
+//! [`plan_into`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
 //! needs the memory of the mesh plus [`BATCH`] layers. [`plan`] collects the layers. A wall may
-//! be given by its centre-lines instead ([`plan_curves`]).
+//! be given by its centre-lines instead of a solid.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -27,7 +27,7 @@ use crate::fill::{self, Path, Strategy};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
-use crate::model::{Mesh, Part};
+use crate::model::{Mesh, PartRef};
 use crate::order;
 use crate::pass::Pass;
 use crate::profile::Profile;
@@ -43,6 +43,7 @@ use rayon::prelude::*;
 use scan_lines::Planned;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::convert::Infallible;
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the profile has
 /// them.
@@ -127,7 +128,7 @@ pub enum PlanError<E> {
     UnknownStrategy(String),
     /// The plan would be too large.
     #[error(
-        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check --units and layers.height."
+        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check the unit of the file and layers.height."
     )]
     TooManyLayers {
         /// Height of the part, mm.
@@ -169,60 +170,66 @@ pub trait Sink {
     fn layer(&mut self, layer: Layer) -> Result<(), Self::Error>;
 }
 
-/// Plans a mesh that stands on z = 0 and keeps all layers.
+/// Keeps the layers of a plan.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Collect {
+    /// What is the same for all layers; none before the plan begins.
+    pub header: Option<Header>,
+    /// The layers so far.
+    pub layers: Vec<Layer>,
+}
+
+impl Sink for Collect {
+    type Error = Infallible;
+
+    fn begin(&mut self, header: &Header) -> Result<(), Infallible> {
+        self.header = Some(header.clone());
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.layers.push(layer);
+        Ok(())
+    }
+}
+
+/// Plans a part that stands on z = 0, a solid or a wall given by curves, and keeps all layers. `name` is for files and
+/// headings.
 ///
 /// # Errors
 /// [`PlanError`].
-pub fn plan(
-    part: &str,
-    mesh: &Mesh,
+pub fn plan<'a>(
+    name: &str,
+    part: impl Into<PartRef<'a>>,
     profile: &Profile,
     task: &Task,
-) -> Result<Plan, PlanError<std::convert::Infallible>> {
-    struct Collect(Option<Header>, Vec<Layer>);
-    impl Sink for Collect {
-        type Error = std::convert::Infallible;
-
-        fn begin(&mut self, header: &Header) -> Result<(), Self::Error> {
-            self.0 = Some(header.clone());
-            Ok(())
-        }
-
-        fn layer(&mut self, layer: Layer) -> Result<(), Self::Error> {
-            self.1.push(layer);
-            Ok(())
-        }
-    }
-    let mut collect = Collect(None, Vec::new());
-    let summary = plan_layers(part, mesh, profile, task, &mut collect)?;
-    let header = collect.0.ok_or_else(|| PlanError::Empty("the part has no layers.".to_owned()))?;
-    Ok(Plan { header, layers: collect.1, summary })
+) -> Result<Plan, PlanError<Infallible>> {
+    let mut collect = Collect::default();
+    let summary = plan_into(name, part, profile, task, &mut collect)?;
+    let header = collect.header.ok_or_else(|| PlanError::Empty("the part has no layers.".to_owned()))?;
+    Ok(Plan { header, layers: collect.layers, summary })
 }
 
-/// Plans a part, solid or given by curves, and hands every layer to `sink`.
+/// Plans a part and hands every layer to `sink`. The result does not depend on the number of threads: layers are filled in
+/// parallel, but ordered and handed over one after another.
 ///
 /// # Errors
 /// [`PlanError`], with what the sink failed with among them.
-pub fn plan_part<S: Sink + Send>(
+pub fn plan_into<'a, S: Sink + Send>(
     name: &str,
-    part: &Part,
+    part: impl Into<PartRef<'a>>,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    match part {
-        Part::Mesh(import) => plan_layers(name, &import.mesh, profile, task, sink),
-        Part::Curves { curves, height, .. } => plan_curves(name, curves, *height, profile, task, sink),
+    match part.into() {
+        PartRef::Mesh(mesh) => plan_mesh(name, mesh, profile, task, sink),
+        PartRef::Curves(curves, height) => plan_curves(name, curves, height, profile, task, sink),
     }
 }
 
-/// Plans a mesh that stands on z = 0 and hands every layer to `sink`. The result does not depend on the number of
-/// threads: layers are filled in parallel, but ordered and handed over one after another.
-///
-/// # Errors
-/// [`PlanError`], with what the sink failed with among them.
-pub fn plan_layers<S: Sink + Send>(
-    part: &str,
+fn plan_mesh<S: Sink + Send>(
+    name: &str,
     mesh: &Mesh,
     profile: &Profile,
     task: &Task,
@@ -239,12 +246,12 @@ pub fn plan_layers<S: Sink + Send>(
         };
         planned.into_par_iter().map(fill).collect()
     };
-    let summary = run(part, slicer.layer_count(), profile, task, sink, fill_batch)?;
+    let summary = run(name, slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         let largest = mesh.size();
         return Err(PlanError::Empty(format!(
             "no part of the slices is wide enough for a bead of {} mm (the part is {:.1} × {:.1} × {:.1} mm). \
-             Take a narrower bead or a larger part, or check --units.",
+             Take a narrower bead or a larger part, or check the unit of the file.",
             profile.bead.width, largest.x, largest.y, largest.z
         )));
     }
@@ -273,12 +280,9 @@ fn strategy_and_slabs<E>(
     Ok((strategy, slabs))
 }
 
-/// Plans a wall given by its centre-lines, one bead thick, up to a height (mm), and hands every layer to `sink`.
-///
-/// # Errors
-/// [`PlanError`], with what the sink failed with among them.
-pub fn plan_curves<S: Sink + Send>(
-    part: &str,
+/// One bead thick, up to a height, mm.
+fn plan_curves<S: Sink + Send>(
+    name: &str,
     curves: &WallCurves,
     height: f64,
     profile: &Profile,
@@ -295,7 +299,7 @@ pub fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let summary = run(part, slabs.len(), profile, task, sink, fill_batch)?;
+    let summary = run(name, slabs.len(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty("all curves are shorter than fill.min_pass_length.".to_owned()));
     }

@@ -45,11 +45,11 @@ use serde::{Deserialize, Serialize};
 
 /// The built-in profiles as (name, TOML text).
 pub const BUILT_IN: [(&str, &str); 5] = [
-    ("cmt-al2319-kuka", include_str!("../../../../profiles/cmt-al2319-kuka.toml")),
-    ("cmt-steel-abb", include_str!("../../../../profiles/cmt-steel-abb.toml")),
-    ("cmt-steel-robots", include_str!("../../../../profiles/cmt-steel-robots.toml")),
-    ("plasma-304-cnc", include_str!("../../../../profiles/plasma-304-cnc.toml")),
-    ("fdm-abs-0.4", include_str!("../../../../profiles/fdm-abs-0.4.toml")),
+    ("cmt-al2319-kuka", include_str!("../../profiles/cmt-al2319-kuka.toml")),
+    ("cmt-steel-abb", include_str!("../../profiles/cmt-steel-abb.toml")),
+    ("cmt-steel-robots", include_str!("../../profiles/cmt-steel-robots.toml")),
+    ("plasma-304-cnc", include_str!("../../profiles/plasma-304-cnc.toml")),
+    ("fdm-abs-0.4", include_str!("../../profiles/fdm-abs-0.4.toml")),
 ];
 
 /// A process on a cell.

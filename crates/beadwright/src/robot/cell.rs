@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// The built-in cells as (name, TOML text).
 pub const BUILT_IN: [(&str, &str); 2] = [
-    ("kuka-kr20-r1810", include_str!("../../../../cells/kuka-kr20-r1810.toml")),
-    ("abb-irb1410", include_str!("../../../../cells/abb-irb1410.toml")),
+    ("kuka-kr20-r1810", include_str!("../../cells/kuka-kr20-r1810.toml")),
+    ("abb-irb1410", include_str!("../../cells/abb-irb1410.toml")),
 ];
 
 /// An arm, its torch and the place of the part.

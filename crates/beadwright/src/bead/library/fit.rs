@@ -65,7 +65,7 @@ fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError>
     let reason = match kept.inputs.len() {
         0 => "no input varies: every bead was welded with the same parameters.".to_owned(),
         n if n > MOST_INPUTS => {
-            format!("{n} inputs vary, at most {MOST_INPUTS} can be fitted. Name those that matter with --inputs.")
+            format!("{n} inputs vary, at most {MOST_INPUTS} can be fitted. Name those that matter.")
         }
         _ => return Ok((kept, notes)),
     };
@@ -123,7 +123,7 @@ fn kept(
         if term.len() == 1 {
             let others = wanted[1..k].iter().map(|t| inputs[t[0]].name.as_str()).collect::<Vec<_>>().join(", ");
             let reason = format!(
-                "{} follows from {others} in every measured bead, so their effects cannot be told apart. Leave one of them out with --inputs.",
+                "{} follows from {others} in every measured bead, so their effects cannot be told apart. Leave one of them out.",
                 names[0]
             );
             return Err(LibraryError::Inputs { reason });

@@ -237,7 +237,10 @@ impl Cells<'_> {
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() && value.abs() < 1e12 => Ok(value),
             _ if text.is_empty() => Err(self.refuse(i, "the value is missing.".into())),
-            _ => Err(self.refuse(i, format!("\"{field}\" is not a number. A column that is no input is left out by naming the inputs (--inputs)."))),
+            _ => Err(self.refuse(
+                i,
+                format!("\"{field}\" is not a number. A column that is no input is left out by naming the inputs."),
+            )),
         }
     }
 

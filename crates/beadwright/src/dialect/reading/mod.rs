@@ -150,9 +150,7 @@ pub enum ReadError {
     #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]
     NoProgram(&'static str),
     /// No metal.
-    #[error(
-        "no move with the arc on was found: say which codes light and end the arc with --arc-on and --arc-off.{hint}"
-    )]
+    #[error("no move with the arc on was found: say which codes light and end the arc.{hint}")]
     NoDeposition {
         /// Switching codes that the program has, as a sentence, or nothing.
         hint: String,

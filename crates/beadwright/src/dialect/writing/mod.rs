@@ -27,6 +27,13 @@ pub struct Chunk {
     pub text: String,
 }
 
+impl Chunk {
+    /// Text for a file.
+    pub fn new(file: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { file: file.into(), text: text.into() }
+    }
+}
+
 /// Writes a program in one dialect.
 pub trait Writer: Send {
     /// What comes before the first layer of `layers`.

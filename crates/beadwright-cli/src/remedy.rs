@@ -1,0 +1,30 @@
+//! Which flags help against an error of the library, which knows of none.
+
+use beadwright::bead::library::LibraryError;
+use beadwright::dialect::reading::ReadError;
+use beadwright::model::{ImportError, PartError};
+
+/// A sentence, where there are flags.
+pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
+    error.chain().find_map(|cause| part(cause).or_else(|| program(cause)).or_else(|| library(cause)))
+}
+
+fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    Some(match cause.downcast_ref()? {
+        PartError::Units(_) => "--units in, cm, m or mm tells it; --scale enlarges the part.",
+        PartError::NoHeight => "--height tells it, in mm.",
+        PartError::HeightOfSolid => "Leave --height out.",
+        PartError::Import(ImportError::TooFar { .. }) => "--units tells the unit.",
+        _ => return None,
+    })
+}
+
+fn program(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    let no_arc = matches!(cause.downcast_ref()?, ReadError::NoDeposition { .. });
+    no_arc.then_some("--arc-on and --arc-off tell them.")
+}
+
+fn library(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    let inputs = matches!(cause.downcast_ref()?, LibraryError::Inputs { .. } | LibraryError::TooFew { .. });
+    inputs.then_some("--inputs names those that are fitted.")
+}

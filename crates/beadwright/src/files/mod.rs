@@ -1,0 +1,121 @@
+//! The files of a plan: programs, `plan.json`, `metrics.json` and `report.html`.
+//!
+//! [`PlanFiles`] makes their text as the layers come, so command and desktop program write the same bytes. [`Folder`] puts
+//! files into a folder, all of them or none; it is the only part of the library that touches the disk, and there with the
+//! feature `files` only.
+
+#[cfg(feature = "files")]
+mod folder;
+
+#[cfg(feature = "files")]
+pub use folder::{Folder, FolderError, write_file};
+
+use crate::deposit::{DepositSettings, Figures, Judgement};
+use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
+use crate::layer::Layer;
+use crate::model::RepairReport;
+use crate::plan::{Header, Summary};
+use crate::plan_file;
+use crate::profile::Profile;
+use crate::program::Programmer;
+use crate::report::Report;
+use std::collections::BTreeSet;
+
+/// Name of the plan's file.
+pub const PLAN: &str = "plan.json";
+/// Name of the file of totals.
+pub const METRICS: &str = "metrics.json";
+/// Name of the report.
+pub const REPORT: &str = "report.html";
+
+/// Programs that are written together, layer by layer.
+pub struct Programs {
+    writers: Vec<Box<dyn Writer>>,
+    programmer: Programmer,
+}
+
+impl Programs {
+    /// Programs in these dialects.
+    ///
+    /// # Errors
+    /// [`DialectError`] of the first dialect that cannot be written.
+    pub fn new<S: AsRef<str>>(dialects: &[S], job: &Job<'_>) -> Result<Self, DialectError> {
+        let writers = dialects.iter().map(|name| writer(name.as_ref(), job)).collect::<Result<_, _>>()?;
+        Ok(Self { writers, programmer: job.programmer() })
+    }
+
+    fn each(&mut self, write: impl FnMut(&mut Box<dyn Writer>) -> Vec<Chunk>) -> Vec<Chunk> {
+        self.writers.iter_mut().flat_map(write).collect()
+    }
+
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.each(|writer| writer.begin(layers))
+    }
+
+    fn layer(&mut self, layer: &Layer) -> Vec<Chunk> {
+        let program = self.programmer.layer(layer);
+        self.each(|writer| writer.layer(&program))
+    }
+
+    fn end(&mut self) -> Vec<Chunk> {
+        let leave = self.programmer.leave();
+        self.each(|writer| writer.end(leave))
+    }
+}
+
+/// Makes the text of all files of a plan as its layers come.
+pub struct PlanFiles {
+    programs: Programs,
+    report: Report,
+    /// Index of the first layer of the programs.
+    from_layer: usize,
+    names: BTreeSet<String>,
+}
+
+impl PlanFiles {
+    /// The files of a plan with its beginnings; the programs begin with the layer of that index.
+    pub fn begin(
+        header: &Header,
+        profile: &Profile,
+        settings: &DepositSettings,
+        mut programs: Programs,
+        from_layer: usize,
+    ) -> (Self, Vec<Chunk>) {
+        let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, settings))];
+        chunks.extend(programs.begin(header.layers));
+        let report = Report::new(header, profile);
+        let mut files = Self { programs, report, from_layer, names: BTreeSet::new() };
+        files.note(&chunks);
+        (files, chunks)
+    }
+
+    /// Takes the next layer, and what the deposit model says of it.
+    pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
+        self.report.layer(layer, judgement);
+        let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
+        if layer.index >= self.from_layer {
+            chunks.extend(self.programs.layer(layer));
+        }
+        self.note(&chunks);
+        chunks
+    }
+
+    /// What comes last; `total` is what the deposit model says of all layers.
+    pub fn end(mut self, summary: &Summary, repair: &RepairReport, total: Option<&Figures>) -> Vec<Chunk> {
+        let mut chunks = self.programs.end();
+        chunks.push(Chunk::new(PLAN, plan_file::tail()));
+        chunks.push(Chunk::new(METRICS, format!("{:#}\n", summary.json(total))));
+        self.note(&chunks);
+        let names: Vec<String> = self.names.into_iter().chain([REPORT.to_owned()]).collect();
+        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names)));
+        chunks
+    }
+
+    fn note(&mut self, chunks: &[Chunk]) {
+        for chunk in chunks {
+            if !self.names.contains(&chunk.file) {
+                self.names.insert(chunk.file.clone());
+            }
+        }
+    }
+}
