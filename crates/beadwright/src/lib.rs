@@ -1,69 +1,83 @@
 //! Beadwright turns a part into a weld-deposition program, and tells beforehand what that program would build.
 //!
-//! A file's bytes become a [`Mesh`](model::Mesh) ([`model::import`]), the mesh is cut into [layers](mod@slice), every
-//! island of a layer is [filled](fill) with passes, the passes are put in [`order`], and a [plan](plan::plan)
-//! holds the result. A plan becomes a neutral [`program`], and a [`dialect`] writes that in a robot's language. All
-//! values of the process come from a [`profile`]. Data goes down this table only:
-//!
-//! | stage | module |
-//! | --- | --- |
-//! | import | [`model`] |
-//! | slice | [`slice`](mod@slice) |
-//! | bead | [`bead`] |
-//! | fill | [`fill`] |
-//! | order | [`order`] |
-//! | judge | [`deposit`], [`simulate`], [`compare`] |
-//! | check | [`check`](mod@check) |
-//! | start and stop | [`weld`] |
-//! | plan | [`plan`], [`metrics`], [`plan_file`] |
-//! | program | [`program`] |
-//! | dialect | [`dialect`] |
-//! | show | [`report`] |
-//! | reach | [`robot`] |
-//!
-//! Beside it stand [`task`] (progress and cancelling), [`warning`] (what was lost or mended), [`profile`] and
-//! [`example`] (parts to try). The library does no I/O and never panics on input.
+//! A file's bytes become a [`Model`], placed it is a [`Part`]; the part is cut into [slices](slice), every island of a
+//! slice is [filled](fill), the passes are put in order, and a [`Plan`] holds the result. A plan is written in a robot's
+//! language by a [`dialect`], judged by the deposit model ([`deposit`]), checked ([`check`](mod@check)) and shown
+//! ([`report`]). All values of the process come from a [`Profile`].
 //!
 //! ```
-//! use beadwright::{example, plan, profile::Profile, task::Task};
+//! use beadwright::{Model, Placement, Profile, Task, dialect, example, plan};
 //!
-//! let mesh = example::find("cross").ok_or("no such example")?.mesh();
-//! let profile = Profile::built_in("plasma-304-cnc")?;
-//! let plan = plan::plan("cross", &mesh, &profile, &Task::new())?;
-//! assert_eq!(plan.layers.len(), 15);
+//! let (profile, task) = (Profile::built_in("cmt-al2319-kuka")?, Task::new());
+//! let bytes = example::find("cross").ok_or("no such example")?.stl();
+//! let part = Model::read(&bytes, &task)?.place(&Placement::default(), None, profile.bead.width)?;
+//! let plan = plan("cross", &part, &profile, &task)?;
+//! let files = dialect::write("krl", &plan.layers, &profile.job("cross"))?;
+//! assert!(files["CROSS.src"].contains("CROSS_L001( )"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! The library does no I/O (but for [`files`], with the feature of that name) and never panics on input. More programs like
+//! this one are in `examples/`.
 
 pub mod bead;
 pub mod check;
 pub mod compare;
-pub mod curve;
 pub mod deposit;
 pub mod dialect;
 pub mod example;
 pub mod files;
 pub mod fill;
-pub mod layer;
-pub mod limit;
-pub mod metrics;
 pub mod model;
-pub mod motion;
-pub mod number;
-pub mod order;
-pub mod pass;
 pub mod plan;
-pub mod plan_file;
 pub mod process;
 pub mod profile;
 pub mod program;
 pub mod report;
-pub mod reproduce;
 pub mod robot;
 pub mod simulate;
 pub mod slice;
+
+// Used by the modules above, and open to who needs them.
+#[doc(hidden)]
+pub mod curve;
+#[doc(hidden)]
+pub mod layer;
+#[doc(hidden)]
+pub mod limit;
+#[doc(hidden)]
+pub mod metrics;
+#[doc(hidden)]
+pub mod motion;
+#[doc(hidden)]
+pub mod number;
+#[doc(hidden)]
+pub mod order;
+#[doc(hidden)]
+pub mod pass;
+#[doc(hidden)]
+pub mod plan_file;
+#[doc(hidden)]
+pub mod reproduce;
+#[doc(hidden)]
 pub mod task;
+#[doc(hidden)]
 pub mod template;
+#[doc(hidden)]
 pub mod warning;
+#[doc(hidden)]
 pub mod weld;
 
+pub use crate::bead::Bead;
+pub use crate::check::{Finding, check};
+pub use crate::deposit::{Figures, Judge};
+pub use crate::fill::{FillSettings, Strategy};
+pub use crate::layer::Layer;
+pub use crate::metrics::Metrics;
+pub use crate::model::{Mesh, Model, Part, Placement};
+pub use crate::pass::{Along, Pass, PassKind};
+pub use crate::plan::{Plan, PlanError, Sink, plan};
+pub use crate::profile::{Profile, ProfileError};
+pub use crate::task::Task;
+pub use glam;
 pub use planar;

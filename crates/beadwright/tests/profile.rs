@@ -62,10 +62,7 @@ fn a_post_without_its_section_is_refused() {
         panic!("it was taken")
     };
     let error = error.to_string();
-    assert!(
-        error.contains("no [krl] section") && error.contains(&format!("beadwright profile show {KUKA}")),
-        "{error}"
-    );
+    assert!(error.contains("no [krl] section") && error.ends_with('.'), "{error}");
 }
 
 #[test]
@@ -557,9 +554,9 @@ mod schema {
             for (section, value) in &profile {
                 assert!(schema["properties"][section].is_object(), "{name}: {section}");
                 let Some(table) = value.as_table() else { continue };
-                let title = format!("{}{}", section[..1].to_uppercase(), &section[1..]);
-                let title = if section == "bead" { "BeadShape" } else { &title };
-                let known = &schema["$defs"][title]["properties"];
+                let property = schema["properties"][section].to_string();
+                let place = property.split("#/$defs/").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+                let known = &schema["$defs"][place]["properties"];
                 assert!(table.keys().all(|key| known[key].is_object()), "{name}: [{section}] {table:?}");
             }
         }

@@ -223,19 +223,24 @@ pub fn plan_into<'a, S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part.into() {
-        PartRef::Mesh(mesh) => plan_mesh(name, mesh, profile, task, sink),
+        PartRef::Mesh(mesh) => plan_with(name, mesh, strategy_of(profile)?, profile, task, sink),
         PartRef::Curves(curves, height) => plan_curves(name, curves, height, profile, task, sink),
     }
 }
 
-fn plan_mesh<S: Sink + Send>(
+/// Plans a solid with a strategy of one's own, whatever the profile says, and hands every layer to `sink`.
+///
+/// # Errors
+/// [`PlanError`], with what the sink failed with among them.
+pub fn plan_with<S: Sink + Send>(
     name: &str,
     mesh: &Mesh,
+    strategy: &dyn Strategy,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
+    let slabs = slabs_of(mesh, profile, task)?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
@@ -246,7 +251,7 @@ fn plan_mesh<S: Sink + Send>(
         };
         planned.into_par_iter().map(fill).collect()
     };
-    let summary = run(name, slicer.layer_count(), profile, task, sink, fill_batch)?;
+    let summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         let largest = mesh.size();
         return Err(PlanError::Empty(format!(
@@ -264,20 +269,19 @@ fn middle(mesh: &Mesh) -> DVec2 {
     low.midpoint(high).truncate()
 }
 
-/// The strategy of a profile, and where the layers of a mesh lie.
-fn strategy_and_slabs<E>(
-    mesh: &Mesh,
-    profile: &Profile,
-    task: &Task,
-) -> Result<(&'static dyn Strategy, Vec<Slab>), PlanError<E>> {
+/// The strategy of a profile.
+fn strategy_of<E>(profile: &Profile) -> Result<&'static dyn Strategy, PlanError<E>> {
     let name = &profile.fill.strategy;
-    let strategy = fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))?;
+    fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))
+}
+
+/// Where the layers of a mesh lie.
+fn slabs_of<E>(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
-    let slabs = match profile.wall_bead()? {
+    Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
         None => slice::even_slabs(mesh, profile.layers.height),
-    };
-    Ok((strategy, slabs))
+    })
 }
 
 /// One bead thick, up to a height, mm.
@@ -299,7 +303,7 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let summary = run(name, slabs.len(), profile, task, sink, fill_batch)?;
+    let summary = run([name, &profile.fill.strategy], slabs.len(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty("all curves are shorter than fill.min_pass_length.".to_owned()));
     }
@@ -308,15 +312,14 @@ fn plan_curves<S: Sink + Send>(
 
 /// Fills batch after batch and hands their layers over in order.
 fn run<S: Sink + Send>(
-    part: &str,
+    [part, strategy]: [&str; 2],
     layers: usize,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
     fill_batch: impl Fn(usize) -> Result<Vec<Filled>, Cancelled> + Sync,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let strategy = profile.fill.strategy.clone();
-    let header = Header { part: part.to_owned(), profile: profile.name.clone(), strategy, layers };
+    let header = Header { part: part.to_owned(), profile: profile.name.clone(), strategy: strategy.to_owned(), layers };
     sink.begin(&header).map_err(PlanError::Sink)?;
     let mut emitter =
         Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };

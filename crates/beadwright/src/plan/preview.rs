@@ -1,7 +1,7 @@
 //! One layer before the others: what a person looks at while the rest is planned.
 
 use super::filled::{Filled, fill_planned};
-use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, strategy_and_slabs, weld_curves};
+use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_of, strategy_of, weld_curves};
 use crate::bead::wall::WallBead;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
@@ -38,7 +38,7 @@ pub fn preview(
 }
 
 fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<Option<Filled>, PlanError<Infallible>> {
-    let (strategy, slabs) = strategy_and_slabs(mesh, profile, task)?;
+    let (strategy, slabs) = (strategy_of(profile)?, slabs_of(mesh, profile, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
     let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;
