@@ -1,14 +1,15 @@
-//! What a person can do, with its key: menus, keys and the list of keys are made from one table.
+//! What a person can do. Panels put what was asked for into a queue; menus, keys and the list of keys are made from one
+//! table.
 
-use crate::app::Studio;
 use crate::export::Export;
 use crate::jobs::Ask;
-use crate::view::Mode;
-use crate::view3d::StandardView;
-use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup, ViewportCommand};
+use crate::text::Language;
+use beadwright::model::Placement;
+use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
+use std::path::PathBuf;
 
 /// Something that is done at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Asks for a model or a project.
     Open,
@@ -54,6 +55,42 @@ pub enum Action {
     Keys,
     /// Ends the program.
     Quit,
+    /// Asks for a file.
+    Ask(Ask),
+    /// Writes something into the folder in view, or asks for one.
+    Export(Export),
+    /// Opens a model or a project.
+    OpenFile(PathBuf),
+    /// Opens an example part.
+    OpenExample(&'static str),
+    /// Speaks another language.
+    Speak(Language),
+    /// Lays a value over the profile: its key, and the value as in TOML.
+    SetValue(String, String),
+    /// Takes a value out of the profile, so that its default holds.
+    ResetValue(String),
+    /// Takes the text of another profile.
+    SetProfile(&'static str),
+    /// Places the part.
+    Place(Placement),
+    /// Tells how high a wall of curves grows, mm.
+    Height(f64),
+    /// Plans with a second strategy too.
+    CompareWith(&'static str),
+    /// Takes a sentence away, by its index.
+    Dismiss(usize),
+    /// Works out pockets and skeleton regions of the layer in view.
+    LookCloser,
+    /// Works out what the robot reaches.
+    Reach,
+    /// Brings back the project of a run that did not end well.
+    BringBack,
+    /// Lets go of that project.
+    LetGo,
+    /// Closes the window, whatever was changed.
+    Leave,
+    /// Keeps the window open after all.
+    GoOn,
 }
 
 /// An action, its text and its key.
@@ -71,7 +108,7 @@ const fn entry(action: Action, text: &'static str, modifiers: Modifiers, key: Ke
 }
 
 /// All of them.
-pub const ENTRIES: [Entry; 22] = [
+pub static ENTRIES: [Entry; 22] = [
     entry(Action::Open, "open", Modifiers::COMMAND, Key::O),
     entry(Action::SaveAs, "save-as", Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
     entry(Action::Save, "save", Modifiers::COMMAND, Key::S),
@@ -97,8 +134,8 @@ pub const ENTRIES: [Entry; 22] = [
 ];
 
 /// The entry of an action.
-pub fn find(action: Action) -> Option<&'static Entry> {
-    ENTRIES.iter().find(|entry| entry.action == action)
+pub fn find(action: &Action) -> Option<&'static Entry> {
+    ENTRIES.iter().find(|entry| entry.action == *action)
 }
 
 /// Whether Escape was pressed just now. A number field that is left by it takes what was typed a frame later, since its focus
@@ -125,83 +162,5 @@ pub fn pressed(ctx: &Context) -> Vec<Action> {
         let free = !typing || key.modifiers.command;
         free && ctx.input_mut(|input| input.consume_shortcut(&key))
     };
-    ENTRIES.iter().filter(meant).map(|entry| entry.action).collect()
-}
-
-impl Studio {
-    /// Does what was asked for.
-    pub fn act(&mut self, action: Action) {
-        match action {
-            Action::Open => self.ask(Ask::Open),
-            Action::Save => match self.file.clone() {
-                Some(path) => self.save_to(&path),
-                None => self.ask(Ask::SaveProject),
-            },
-            Action::SaveAs => self.ask(Ask::SaveProject),
-            Action::ExportProgram => {
-                let dialect = self.view.dialect.clone();
-                self.exporting = Export::Program(dialect);
-                self.ask(Ask::Folder);
-            }
-            Action::Undo => {
-                let undone = self.project.undo();
-                self.went(undone);
-            }
-            Action::Redo => {
-                let redone = self.project.redo();
-                self.went(redone);
-            }
-            Action::Plan => self.replan(),
-            Action::Stop => {
-                self.planner.cancel();
-                self.plan.progress = None;
-                if let Some(other) = &mut self.other {
-                    other.planner.cancel();
-                    other.plan.progress = None;
-                }
-                self.view.playing = false;
-            }
-            Action::Solid => self.view.mode = Mode::Solid,
-            Action::Layer => self.view.mode = Mode::Layer,
-            Action::Compare => self.view.mode = Mode::Compare,
-            Action::Fit => {
-                self.flat.fit();
-                self.solid.fit();
-            }
-            Action::Top => self.look(StandardView::Top),
-            Action::Front => self.look(StandardView::Front),
-            Action::Right => self.look(StandardView::Right),
-            Action::Corner => self.look(StandardView::Iso),
-            Action::Up => self.view.step_layer(1, self.plan.layer_count()),
-            Action::Down => self.view.step_layer(-1, self.plan.layer_count()),
-            Action::Play => {
-                let starts = !self.view.playing && self.plan.summary.is_some();
-                self.view.play(starts, &self.plan.scene);
-            }
-            Action::Theme => {
-                self.settings.light = !self.settings.light;
-                self.apply_theme();
-                self.store.keep_settings(&self.settings);
-            }
-            Action::Keys => self.view.keys = !self.view.keys,
-            Action::Quit => self.ctx.send_viewport_cmd(ViewportCommand::Close),
-        }
-    }
-
-    /// A step of the history was taken.
-    fn went(&mut self, gone: bool) {
-        // Before the file was opened there was another project: saving must not put that one into the file.
-        if self.project.steps() < self.opened {
-            self.file = None;
-        }
-        self.refused = None;
-        if gone {
-            self.replan();
-        }
-    }
-
-    fn look(&mut self, from: StandardView) {
-        self.solid.camera.set_view(from);
-        self.solid.fit();
-    }
+    ENTRIES.iter().filter(meant).map(|entry| entry.action.clone()).collect()
 }

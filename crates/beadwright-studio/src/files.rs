@@ -1,9 +1,8 @@
 //! What is opened and what is written: models, projects, programs, pictures.
 
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::export::Export;
 use crate::jobs::{self, Ask};
-use crate::panels;
 use crate::project::{Project, Source};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::files::write_file;
@@ -19,16 +18,16 @@ impl Studio {
         if is_project {
             self.open_project(path);
         } else {
-            self.file = None;
+            self.open.file = None;
             self.open_model(Source::File(path.to_owned()));
         }
-        self.settings.remember(path);
-        self.store.keep_settings(&self.settings);
+        self.window.settings.remember(path);
+        self.window.store.keep_settings(&self.window.settings);
     }
 
     /// Opens one of the example parts.
     pub fn open_example(&mut self, name: &str) {
-        self.file = None;
+        self.open.file = None;
         self.open_model(Source::Example(name.to_owned()));
     }
 
@@ -44,7 +43,7 @@ impl Studio {
         let project = project.and_then(|text| Project::read(&text, path.parent()).map_err(|error| named(&error)));
         match project {
             Ok(project) => {
-                self.file = Some(path.to_owned());
+                self.open.file = Some(path.to_owned());
                 self.begin(project);
             }
             Err(error) => self.complain(error),
@@ -57,10 +56,10 @@ impl Studio {
         let written = written.and_then(|text| write_file(path, text.as_bytes()).map_err(|error| format!("{error}.")));
         match written {
             Ok(()) => {
-                self.saved = self.project().clone();
-                self.file = Some(path.to_owned());
-                self.settings.remember(path);
-                self.store.keep_settings(&self.settings);
+                self.open.saved = self.project().clone();
+                self.open.file = Some(path.to_owned());
+                self.window.settings.remember(path);
+                self.window.store.keep_settings(&self.window.settings);
                 self.say(format!("{} {}", self.t("written"), path.display()));
             }
             Err(error) => self.complain(error),
@@ -69,7 +68,7 @@ impl Studio {
 
     /// Writes into a folder: a program, a file of the plan, or all that `beadwright plan` writes.
     pub fn export(&mut self, what: &Export, folder: &Path) {
-        let done = what.write(&self.plan, folder);
+        let done = what.write(&self.plans.own, folder);
         self.told(folder, done);
     }
 
@@ -88,7 +87,7 @@ impl Studio {
     /// Asks for a file or a folder.
     pub(crate) fn ask(&mut self, what: Ask) {
         let name = self.project().part();
-        self.dialog = Some(jobs::ask(&self.ctx, what, &name));
+        self.jobs.dialog = Some(jobs::ask(&self.window.ctx, what, &name));
     }
 
     pub(crate) fn answered(&mut self, what: Ask, path: &Path) {
@@ -106,7 +105,7 @@ impl Studio {
                 }
             }
             Ask::Folder => {
-                let what = self.exporting.clone();
+                let what = self.jobs.exporting.clone();
                 self.export(&what, path);
             }
         }
@@ -116,7 +115,7 @@ impl Studio {
     pub fn open_beads(&mut self, path: &Path) {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         match read_text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
-            Ok(library) => self.beads = Some(library),
+            Ok(library) => self.jobs.beads = Some(library),
             Err(error) => self.complain(error),
         }
     }
@@ -124,9 +123,9 @@ impl Studio {
     /// Writes a picture of the 3-D view.
     pub fn save_picture(&mut self, path: &Path) {
         const SIZE: [u32; 2] = [1920, 1200];
-        let Some(render_state) = &self.render_state else { return };
-        let style = panels::solid::style(self);
-        let picture = self.solid.picture(render_state, &self.plan.scene, &style, SIZE);
+        let Some(render_state) = &self.window.render_state else { return };
+        let style = self.style();
+        let picture = self.solid.picture(render_state, &self.plans.own.scene, &style, SIZE);
         let written = picture.and_then(|(width, height, pixels)| {
             let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
             let saved = image::save_buffer_with_format(path, &pixels, width, height, colours, format);

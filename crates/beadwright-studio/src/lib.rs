@@ -5,7 +5,8 @@
 //!
 //! | module | what it holds |
 //! | --- | --- |
-//! | [`app`] | the window: where everything is put together |
+//! | [`studio`] | the program: where everything is put together |
+//! | `app`, `act` | a frame of the window; what was asked for is done |
 //! | [`project`], [`history`] | what is worked on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, and what it has told |
 //! | [`jobs`] | other work in the background: layers looked at closely, reach, file dialogs |
@@ -14,11 +15,12 @@
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
 //! | `files`, [`export`] | what is opened and what is written |
-//! | [`actions`] | menus and keys |
+//! | [`actions`] | what can be asked for; menus and keys |
 //! | [`settings`], [`text`], [`fonts`] | what is remembered; words; letters |
 
+mod act;
 pub mod actions;
-pub mod app;
+mod app;
 pub mod export;
 mod files;
 pub mod fonts;
@@ -30,9 +32,10 @@ pub mod planner;
 pub mod project;
 pub mod settings;
 pub mod state;
+pub mod studio;
 pub mod text;
 pub mod view;
 pub mod view2d;
 pub mod view3d;
 
-pub use app::Studio;
+pub use studio::Studio;

@@ -1,8 +1,8 @@
 //! The views in the middle of the window.
 
 use super::{solid, totals};
-use crate::app::Studio;
-use crate::jobs;
+use crate::actions::Action;
+use crate::studio::Studio;
 use crate::planner::Failure;
 use crate::state::PlanState;
 use crate::view::Mode;
@@ -35,17 +35,17 @@ fn layer(studio: &mut Studio, ui: &mut Ui) {
     let steps = steps(studio);
     let layer = studio.view.last;
     if let Some(picked) =
-        flat(&studio.plan, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label, scale)
+        flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label, scale)
     {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
     // A layer without islands has none, and is not looked at again.
-    studio.steps = steps.map(|steps| (layer, steps));
+    studio.jobs.steps = steps.map(|steps| (layer, steps));
 }
 
 /// The steps of the layer in view, taken out of the program for as long as they are drawn.
 fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
-    studio.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
+    studio.jobs.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
 }
 
 fn flat(
@@ -93,12 +93,9 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
 
 /// Works out pockets and skeleton regions of the layer in view where they are asked for.
 fn look_closer(studio: &mut Studio) {
-    let known = studio.steps.as_ref().is_some_and(|(of, _)| *of == studio.view.last);
-    if !studio.view.show.regions || known || studio.steps_job.is_some() {
-        return;
-    }
-    if let (Some(layer), Some(profile)) = (studio.plan.layer(studio.view.last), &studio.plan.profile) {
-        studio.steps_job = Some(jobs::steps(&studio.ctx, layer.clone(), profile.clone()));
+    let known = studio.jobs.steps.as_ref().is_some_and(|(of, _)| *of == studio.view.last);
+    if studio.view.show.regions && !known && studio.jobs.steps_job.is_none() {
+        studio.request(Action::LookCloser);
     }
 }
 
@@ -108,12 +105,12 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
     let [label, other_label] = ["view-2d-label", "view-2d-other"].map(|key| studio.t(key));
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
-        left.strong(studio.plan.header.as_ref().map_or("", |header| &header.strategy));
+        left.strong(studio.plans.own.header.as_ref().map_or("", |header| &header.strategy));
         let before = studio.flat.eye();
-        if let Some(picked) = flat(&studio.plan, &mut studio.flat, left, &studio.view, &[], label, None) {
+        if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &[], label, None) {
             studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
         }
-        let Some(other) = &mut studio.other else { return };
+        let Some(other) = &mut studio.plans.other else { return };
         if let Some(Failure::Sentence(text)) = &other.plan.failure {
             right.colored_label(right.visuals().error_fg_color, text);
         }
@@ -131,7 +128,7 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn choose(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.other.as_ref().map_or_else(|| "–".to_owned(), |other| other.strategy.clone());
+    let now = studio.plans.other.as_ref().map_or_else(|| "–".to_owned(), |other| other.strategy.clone());
     let mut chosen = None;
     ui.horizontal(|ui| {
         let label = ui.label(studio.t("other-strategy"));
@@ -145,17 +142,17 @@ fn choose(studio: &mut Studio, ui: &mut Ui) {
         combo.response.labelled_by(label.id);
     });
     if let Some(strategy) = chosen.filter(|strategy| *strategy != now) {
-        studio.compare_with(Some(strategy));
+        studio.request(Action::CompareWith(strategy));
     }
 }
 
 /// Totals of both plans side by side.
 fn differences(studio: &Studio, ui: &mut Ui) {
-    let Some(other) = &studio.other else { return };
-    let (own, theirs) = (totals::rows_of(&studio.plan), totals::rows_of(&other.plan));
+    let Some(other) = &studio.plans.other else { return };
+    let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
     Grid::new("differences").num_columns(3).spacing([28.0, 2.0]).striped(true).show(ui, |ui| {
         ui.label("");
-        let now = studio.plan.header.as_ref().map_or("", |header| &header.strategy);
+        let now = studio.plans.own.header.as_ref().map_or("", |header| &header.strategy);
         ui.strong(now);
         ui.strong(&other.strategy);
         ui.end_row();

@@ -1,12 +1,12 @@
 //! What can be written.
 
-use crate::app::Studio;
+use crate::actions::Action;
+use crate::studio::Studio;
 use crate::export::Export;
 use crate::jobs::Ask;
 use beadwright::dialect;
 use beadwright::files::{METRICS, PLAN, REPORT};
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
-use std::path::PathBuf;
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
@@ -24,8 +24,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
     ui.add(edit).labelled_by(label.id);
     let (planned, judged) = (
-        studio.plan.summary.is_some() && studio.plan.is_of_last_request(),
-        studio.plan.total.is_some() && studio.plan.is_of_last_request(),
+        studio.plans.own.summary.is_some() && studio.plans.own.is_of_last_request(),
+        studio.plans.own.total.is_some() && studio.plans.own.is_of_last_request(),
     );
     if !judged {
         ui.weak(studio.t("not-complete"));
@@ -39,15 +39,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ];
     for (key, what, enabled) in rows {
         if ui.add_enabled(enabled, Button::new(studio.t(key))).clicked() {
-            studio.exporting = what;
-            match studio.view.folder.trim() {
-                "" => studio.ask(Ask::Folder),
-                folder => studio.answered(Ask::Folder, &PathBuf::from(folder)),
-            }
+            studio.request(Action::Export(what));
         }
     }
-    let pictured = studio.render_state.is_some() && studio.plan.layer_count() > 0;
+    let pictured = studio.window.render_state.is_some() && studio.plans.own.layer_count() > 0;
     if ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked() {
-        studio.ask(Ask::SavePicture);
+        studio.request(Action::Ask(Ask::SavePicture));
     }
 }

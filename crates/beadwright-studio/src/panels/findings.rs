@@ -1,6 +1,6 @@
 //! What the checks found; a click goes there.
 
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::view::Mode;
 use beadwright::check::{CHECKS, Finding};
 use eframe::egui::{CollapsingHeader, Ui};
@@ -9,7 +9,7 @@ use eframe::egui::{CollapsingHeader, Ui};
 const LISTED: usize = 100;
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let Some(findings) = studio.plan.findings.clone() else {
+    let Some(findings) = studio.plans.own.findings.clone() else {
         ui.weak(studio.t("findings-wait"));
         return;
     };

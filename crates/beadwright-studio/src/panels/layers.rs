@@ -1,12 +1,12 @@
 //! Below the views: which layers are shown, how much of the highest, and the torch that runs.
 
 use crate::actions::Action;
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::view::Mode;
 use eframe::egui::{Slider, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let layers = studio.plan.layer_count();
+    let layers = studio.plans.own.layer_count();
     if layers == 0 {
         return;
     }
@@ -37,7 +37,7 @@ fn torch(studio: &mut Studio, ui: &mut Ui) {
     let playing = studio.view.playing;
     let word = if playing { studio.t("stop") } else { studio.t("play") };
     if ui.button(format!("{} {word}", if playing { "■" } else { "▶" })).clicked() {
-        studio.act(Action::Play);
+        studio.request(Action::Play);
     }
     let (rate, progress) = (studio.t("rate"), studio.t("progress"));
     slider(ui, rate, 2, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
@@ -63,7 +63,7 @@ fn advance(studio: &mut Studio, ui: &Ui) {
         return;
     }
     let passed = ui.input(|input| f64::from(input.stable_dt));
-    studio.view.advance(passed, &studio.plan.scene);
+    studio.view.advance(passed, &studio.plans.own.scene);
     if studio.view.playing {
         ui.ctx().request_repaint();
     }

@@ -1,7 +1,7 @@
 //! Menus, and the bar below them: strategy, views, progress.
 
 use crate::actions::{self, Action};
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::text::Language;
 use crate::view::Mode;
 use beadwright::task::Stage;
@@ -38,31 +38,31 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
-    for entry in wanted.iter().filter_map(|action| actions::find(*action)) {
+    for entry in wanted.iter().filter_map(actions::find) {
         let enabled = match entry.action {
-            Action::Undo => studio.project.can_undo(),
-            Action::Redo => studio.project.can_redo(),
-            Action::ExportProgram | Action::Play => studio.plan.summary.is_some(),
+            Action::Undo => studio.open.project.can_undo(),
+            Action::Redo => studio.open.project.can_redo(),
+            Action::ExportProgram | Action::Play => studio.plans.own.summary.is_some(),
             Action::Save | Action::SaveAs | Action::Plan => studio.project().source.is_some(),
-            Action::Stop => studio.plan.is_busy(),
+            Action::Stop => studio.plans.own.is_busy(),
             _ => true,
         };
         let key = entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default();
         if ui.add_enabled(enabled, Button::new(studio.t(entry.text)).shortcut_text(key)).clicked() {
-            studio.act(entry.action);
+            studio.request(entry.action.clone());
             ui.close();
         }
     }
 }
 
 fn recent(studio: &mut Studio, ui: &mut Ui) {
-    if studio.settings.recent.is_empty() {
+    if studio.window.settings.recent.is_empty() {
         ui.weak(studio.t("no-recent"));
     }
-    for path in studio.settings.recent.clone() {
+    for path in studio.window.settings.recent.clone() {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-            studio.open(&path);
+            studio.request(Action::OpenFile(path));
             ui.close();
         }
     }
@@ -71,7 +71,7 @@ fn recent(studio: &mut Studio, ui: &mut Ui) {
 fn examples(studio: &mut Studio, ui: &mut Ui) {
     for example in example::ALL {
         if ui.button(example.name).on_hover_text(example.about).clicked() {
-            studio.open_example(example.name);
+            studio.request(Action::OpenExample(example.name));
             ui.close();
         }
     }
@@ -79,13 +79,12 @@ fn examples(studio: &mut Studio, ui: &mut Ui) {
 
 fn languages(studio: &mut Studio, ui: &mut Ui) {
     for (language, name) in Language::ALL {
-        let possible = studio.chinese || language == Language::English;
+        let possible = studio.window.chinese || language == Language::English;
         // Without a font its own name could not be shown either.
         let name = if possible { name } else { "Chinese" };
         let button = ui.add_enabled(possible, Button::selectable(studio.language() == language, name));
         if button.on_disabled_hover_text(studio.t("no-chinese")).clicked() {
-            studio.settings.language = language;
-            studio.store.keep_settings(&studio.settings);
+            studio.request(Action::Speak(language));
             ui.close();
         }
     }
@@ -102,7 +101,7 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
     });
     combo.response.labelled_by(label.id);
     if chosen != now {
-        studio.set_value("fill.strategy", &format!("\"{chosen}\""));
+        studio.request(Action::SetValue("fill.strategy".to_owned(), format!("\"{chosen}\"")));
     }
     ui.separator();
     for (mode, key) in [(Mode::Solid, "view-solid"), (Mode::Layer, "view-layer"), (Mode::Compare, "view-compare")] {
@@ -110,20 +109,20 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
         ui.selectable_value(&mut studio.view.mode, mode, text);
     }
     ui.separator();
-    match studio.plan.progress {
+    match studio.plans.own.progress {
         Some((stage, fraction)) => {
             ui.add(ProgressBar::new(fraction as f32).desired_width(180.0).text(studio.t(stage_text(stage))));
             if ui.button(studio.t("stop")).clicked() {
-                studio.act(Action::Stop);
+                studio.request(Action::Stop);
             }
         }
-        None if studio.plan.is_complete() => {
+        None if studio.plans.own.is_complete() => {
             ui.label(studio.t("ready"));
         }
-        None if studio.plan.failure.is_none() && studio.plan.part.is_some() => {
+        None if studio.plans.own.failure.is_none() && studio.plans.own.part.is_some() => {
             ui.label(studio.t("stopped"));
             if ui.button(studio.t("plan")).clicked() {
-                studio.act(Action::Plan);
+                studio.request(Action::Plan);
             }
         }
         None => {}

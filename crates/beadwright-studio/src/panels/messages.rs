@@ -1,6 +1,7 @@
 //! What went wrong or was done, as sentences that stay until they are closed.
 
-use crate::app::Studio;
+use crate::actions::Action;
+use crate::studio::Studio;
 use crate::planner::Failure;
 use eframe::egui::{Color32, RichText, ScrollArea, Ui};
 
@@ -9,26 +10,26 @@ const HEIGHT: f32 = 70.0;
 
 /// Whether there is anything to say.
 pub(super) fn any(studio: &Studio) -> bool {
-    let failed = matches!(studio.plan.failure, Some(Failure::Sentence(_)));
-    failed || !studio.messages.is_empty() || !warnings(studio).is_empty()
+    let failed = matches!(studio.plans.own.failure, Some(Failure::Sentence(_)));
+    failed || !studio.window.messages.is_empty() || !warnings(studio).is_empty()
 }
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let failure = match &studio.plan.failure {
+    let failure = match &studio.plans.own.failure {
         Some(Failure::Sentence(text)) => Some(text.clone()),
         _ => None,
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
     ScrollArea::vertical().max_height(HEIGHT).show(ui, |ui| {
         if let Some(text) = failure {
-            line(ui, &text, true, || studio.plan.failure = None, close);
+            line(ui, &text, true, || studio.plans.own.failure = None, close);
         }
         let mut closed = None;
-        for (i, message) in studio.messages.iter().enumerate().rev() {
+        for (i, message) in studio.window.messages.iter().enumerate().rev() {
             line(ui, &message.text, message.error, || closed = Some(i), close);
         }
         closed.into_iter().for_each(|i| {
-            studio.messages.remove(i);
+            studio.request(Action::Dismiss(i));
         });
         for text in warnings {
             ui.label(RichText::new(format!("• {text}")).weak());
@@ -48,8 +49,8 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
 
 /// What was mended in the model, and what the plan left out.
 fn warnings(studio: &Studio) -> Vec<String> {
-    let part = studio.plan.part.iter().flat_map(|part| part.warnings());
-    let plan = studio.plan.summary.iter().flat_map(|summary| {
+    let part = studio.plans.own.part.iter().flat_map(|part| part.warnings());
+    let plan = studio.plans.own.summary.iter().flat_map(|summary| {
         let events = summary.warnings.summaries().map(|warning| warning.sentence());
         events.chain(summary.notes.iter().cloned()).collect::<Vec<_>>()
     });

@@ -13,7 +13,7 @@ mod questions;
 pub(crate) mod solid;
 mod totals;
 
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::view::Side;
 use eframe::egui::{Panel, ScrollArea, Ui};
 
@@ -23,7 +23,7 @@ pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     if messages::any(studio) {
         Panel::bottom("messages").show(ui, |ui| messages::show(studio, ui));
     }
-    if studio.plan.layer_count() > 0 {
+    if studio.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
     }
     Panel::left("parameters").default_size(300.0).show(ui, |ui| {
@@ -42,7 +42,7 @@ fn side(studio: &mut Studio, ui: &mut Ui) {
         [(Side::Totals, "totals"), (Side::Findings, "findings"), (Side::Plots, "plots"), (Side::Export, "export")];
     ui.horizontal(|ui| {
         for (side, key) in tabs {
-            let count = studio.plan.findings.as_ref().filter(|_| side == Side::Findings).map_or(0, Vec::len);
+            let count = studio.plans.own.findings.as_ref().filter(|_| side == Side::Findings).map_or(0, Vec::len);
             let text = if count > 0 { format!("{} ({count})", studio.t(key)) } else { studio.t(key).to_owned() };
             ui.selectable_value(&mut studio.view.side, side, text);
         }

@@ -1,7 +1,8 @@
 //! The profile as a form: units, ranges and meaning of every key.
 
+use crate::actions::Action;
 use crate::actions;
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
 use beadwright::limit::Limit;
@@ -16,7 +17,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("search"));
     ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
     let fields = || form::sections().iter().flat_map(|section| &section.fields);
-    if let Some((key, reason)) = studio.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key)) {
+    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key)) {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
     }
     let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
@@ -31,14 +32,14 @@ fn choose(studio: &mut Studio, ui: &mut Ui, profile: &Profile) {
         let combo = ComboBox::from_id_salt("profile").selected_text(&profile.name).show_ui(ui, |ui| {
             for (name, text) in BUILT_IN {
                 if ui.selectable_label(profile.name == name, name).clicked() {
-                    studio.set_profile("profile", Ok(text.to_owned()));
+                    studio.request(Action::SetProfile(text));
                 }
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(&profile.description);
     });
     if ui.button(studio.t("profile-file")).clicked() {
-        studio.ask(Ask::OpenProfile);
+        studio.request(Action::Ask(Ask::OpenProfile));
     }
 }
 
@@ -82,7 +83,7 @@ impl Form<'_> {
         let value = form::value(self.values, &field.key);
         let limit = form::limit(self.limits, &field.key);
         let hint = self.hint(field, limit);
-        let refused = self.studio.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
+        let refused = self.studio.open.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
         let mut name = RichText::new(self.studio.language().word("name", &field.name));
         if refused {
             name = name.color(ui.visuals().error_fg_color);
@@ -92,18 +93,18 @@ impl Form<'_> {
             let (response, changed) = widget(ui, field, value.as_ref(), limit);
             response.labelled_by(label.id).on_hover_text(&hint);
             if let Some(text) = changed {
-                self.studio.set_value(&field.key, &text);
+                self.studio.request(Action::SetValue(field.key.clone(), text));
             }
             if field.optional
                 && value.is_some()
                 && ui.small_button("↺").on_hover_text(self.studio.t("default")).clicked()
             {
-                self.studio.reset_value(&field.key);
+                self.studio.request(Action::ResetValue(field.key.clone()));
             }
         });
         ui.end_row();
         // Where it was typed, so that it is seen.
-        if let Some((_, reason)) = self.studio.refused.as_ref().filter(|(key, _)| *key == field.key) {
+        if let Some((_, reason)) = self.studio.open.refused.as_ref().filter(|(key, _)| *key == field.key) {
             let text = format!("{} {reason}", self.studio.t("impossible"));
             ui.label("");
             ui.add(Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());

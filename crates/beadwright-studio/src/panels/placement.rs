@@ -1,7 +1,8 @@
 //! Where the part stands: units, scale, turn.
 
+use crate::actions::Action;
 use crate::actions;
-use crate::app::Studio;
+use crate::studio::Studio;
 use beadwright::model::{Part, Placement, Units};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};
 
@@ -30,13 +31,15 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
                 placement = Placement { units: placement.units, ..Placement::default() };
             }
         });
-        studio.change("placement", |project| project.placement = placement);
+        if placement != studio.project().placement {
+            studio.request(Action::Place(placement));
+        }
     });
 }
 
 /// The turn that lays the part in view flat.
 fn laid_flat(studio: &Studio, placement: &Placement) -> glam::DVec3 {
-    match studio.plan.part.as_deref() {
+    match studio.plans.own.part.as_deref() {
         Some(Part::Mesh(import)) => placement.laid_flat(&import.mesh),
         _ => placement.turn,
     }

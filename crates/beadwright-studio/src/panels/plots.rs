@@ -1,7 +1,8 @@
 //! Curves: figures of every layer, beads that were measured, the joints of the robot.
 
-use crate::app::Studio;
-use crate::jobs;
+use crate::actions::Action;
+use crate::studio::Studio;
+use crate::jobs::Ask;
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::{Reach, cell};
 use eframe::egui::{ComboBox, Rangef, Ui};
@@ -19,16 +20,16 @@ const HEIGHT: f32 = 140.0;
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let x = studio.t("axis-layer");
     let judged = |value: fn(&beadwright::deposit::Figures) -> f64| -> Vec<[f64; 2]> {
-        let figures = studio.plan.judgements.iter().enumerate();
+        let figures = studio.plans.own.judgements.iter().enumerate();
         figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
     };
     curve(ui, studio.t("plot-void"), x, judged(|f| f.void_percent()));
     curve(ui, studio.t("plot-overfill"), x, judged(|f| f.overfill_percent()));
     let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        (0..studio.plan.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
+        (0..studio.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
-    curve(ui, studio.t("plot-starts"), x, planned(&|i| studio.plan.layers[i].passes.len() as f64));
-    let seconds = |i: usize| studio.plan.scene.layer(i).map_or(0.0, |beads| beads.seconds());
+    curve(ui, studio.t("plot-starts"), x, planned(&|i| studio.plans.own.layers[i].passes.len() as f64));
+    let seconds = |i: usize| studio.plans.own.scene.layer(i).map_or(0.0, |beads| beads.seconds());
     curve(ui, studio.t("plot-time"), x, planned(&seconds));
     ui.separator();
     beads(studio, ui);
@@ -39,9 +40,9 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 /// Width/height of a bead library over its inputs.
 fn beads(studio: &mut Studio, ui: &mut Ui) {
     if ui.button(studio.t("open-beads")).clicked() {
-        studio.ask(jobs::Ask::OpenBeads);
+        studio.request(Action::Ask(Ask::OpenBeads));
     }
-    let Some(library) = &studio.beads else { return };
+    let Some(library) = &studio.jobs.beads else { return };
     let found = bead_window::plot(library);
     ui.label(studio.t("plot-lambda")).on_hover_text(&found.title);
     drawn(ui, "lambda", &found);
@@ -83,17 +84,14 @@ fn joints(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
-    let ready = studio.plan.summary.is_some() && studio.reach_job.is_none();
-    if ui.add_enabled(ready, eframe::egui::Button::new(studio.t("reach-run"))).clicked()
-        && let Some(profile) = studio.plan.profile.clone()
-    {
-        let layers = studio.plan.layers.clone();
-        studio.reach_job = Some(jobs::reach(&studio.ctx, studio.view.cell.clone(), layers, profile));
+    let ready = studio.plans.own.summary.is_some() && studio.jobs.reach_job.is_none();
+    if ui.add_enabled(ready, eframe::egui::Button::new(studio.t("reach-run"))).clicked() {
+        studio.request(Action::Reach);
     }
-    if studio.reach_job.is_some() {
+    if studio.jobs.reach_job.is_some() {
         ui.spinner();
     }
-    let Some(reach) = &studio.reach else { return };
+    let Some(reach) = &studio.jobs.reach else { return };
     match reach.least_margin() {
         Some(margin) => ui.label(format!("{}: {margin:.1}°", studio.t("reach-margin"))),
         None => ui.label("–"),

@@ -1,14 +1,14 @@
 //! Questions that must be answered before work goes on, and the list of keys.
 
 use crate::actions::{Action, ENTRIES};
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::planner::Failure;
-use beadwright::model::Units;
+use beadwright::model::{Placement, Units};
 use eframe::egui::{Align2, DragValue, Grid, Ui, Window, vec2};
 
 pub(super) fn show(studio: &mut Studio, ui: &Ui) {
     lost(studio, ui);
-    match studio.plan.failure.clone() {
+    match studio.plans.own.failure.clone() {
         Some(Failure::Units(text)) => units(studio, ui, &text),
         Some(Failure::Height(text)) => height(studio, ui, &text),
         _ => {}
@@ -18,21 +18,21 @@ pub(super) fn show(studio: &mut Studio, ui: &Ui) {
 }
 
 fn closing(studio: &mut Studio, ui: &Ui) {
-    if !studio.closing {
+    if !studio.window.closing {
         return;
     }
     window(studio.t("closing-title")).show(ui.ctx(), |ui| {
         ui.label(studio.t("closing-text"));
         ui.horizontal(|ui| {
             if ui.button(studio.t("save")).clicked() {
-                studio.closing = false;
-                studio.act(Action::Save);
+                studio.request(Action::GoOn);
+                studio.request(Action::Save);
             }
             if ui.button(studio.t("close-anyway")).clicked() {
-                studio.close();
+                studio.request(Action::Leave);
             }
             if ui.button(studio.t("go-on")).clicked() {
-                studio.closing = false;
+                studio.request(Action::GoOn);
             }
         });
     });
@@ -47,18 +47,16 @@ fn window<'a>(title: &'a str) -> Window<'a> {
 }
 
 fn lost(studio: &mut Studio, ui: &Ui) {
-    let Some(project) = studio.lost.clone() else { return };
+    let Some(project) = studio.open.lost.clone() else { return };
     window(studio.t("lost-title")).show(ui.ctx(), |ui| {
         ui.label(studio.t("lost-text"));
         ui.label(project.source.as_ref().map(|source| source.label()).unwrap_or_default());
         ui.horizontal(|ui| {
             if ui.button(studio.t("bring-back")).clicked() {
-                studio.lost = None;
-                studio.begin(project);
+                studio.request(Action::BringBack);
             }
             if ui.button(studio.t("let-go")).clicked() {
-                studio.lost = None;
-                studio.forget_lost();
+                studio.request(Action::LetGo);
             }
         });
     });
@@ -71,7 +69,7 @@ fn units(studio: &mut Studio, ui: &Ui, text: &str) {
         ui.horizontal(|ui| {
             for (name, units) in Units::ALL {
                 if ui.button(name).clicked() {
-                    studio.change("placement", |project| project.placement.units = Some(units));
+                    studio.request(Action::Place(Placement { units: Some(units), ..studio.project().placement }));
                 }
             }
         });
@@ -90,7 +88,7 @@ fn height(studio: &mut Studio, ui: &Ui, text: &str) {
             ui.add(DragValue::new(&mut height).range(0.1..=20_000.0).suffix(" mm")).labelled_by(label.id);
             ui.data_mut(|data| data.insert_temp(id, height));
             if ui.button(studio.t("take")).clicked() {
-                studio.change("height", |project| project.height = Some(height));
+                studio.request(Action::Height(height));
             }
         });
     });

@@ -1,7 +1,7 @@
 //! The 3-D view with its bar and its legend.
 
-use crate::app::Studio;
-use crate::view3d::{Colour, Pick, Style, palette};
+use crate::studio::Studio;
+use crate::view3d::{Colour, Pick, palette};
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
@@ -17,11 +17,11 @@ const COLOURS: [(Colour, &str); 5] = [
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(studio, ui));
     ui.horizontal(|ui| legend(studio, ui));
-    let style = style(studio);
+    let style = studio.style();
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
     let label = studio.t("view-3d-label");
-    let shown = studio.solid.show(ui, studio.render_state.as_ref(), &studio.plan.scene, &style, label);
+    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, &style, label);
     if shown.clicked {
         studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
     }
@@ -50,9 +50,9 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
 fn legend(studio: &Studio, ui: &mut Ui) {
-    let dark = !studio.settings.light;
+    let dark = !studio.window.settings.light;
     if studio.view.colour == Colour::Kind {
-        let used = |kind| studio.plan.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
+        let used = |kind| studio.plans.own.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
         let kinds = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
         for kind in kinds.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
@@ -61,7 +61,7 @@ fn legend(studio: &Studio, ui: &mut Ui) {
         }
         return;
     }
-    let Some((low, high)) = studio.plan.scene.value_range(studio.view.colour) else { return };
+    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else { return };
     let unit = match studio.view.colour {
         Colour::Speed => " mm/s",
         Colour::Time => " s",
@@ -87,32 +87,9 @@ fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// What is shown now.
-pub(crate) fn style(studio: &Studio) -> Style {
-    let view = &studio.view;
-    let pieces = studio.plan.scene.layer(view.last).map_or(0, |layer| layer.len());
-    Style {
-        colour: view.colour,
-        mesh: view.mesh,
-        travels: view.show.travels,
-        starts: view.show.starts,
-        marks_from: if view.all_marks { 0 } else { view.last },
-        beads: view.show.beads,
-        layers: view.first..=view.last,
-        segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
-        torch: view.torch,
-        highlight: view.chosen.and_then(|chosen| pick(studio, chosen)),
-        dark: !studio.settings.light,
-    }
-}
 
 /// A piece in the layer is one in its pass.
 fn chosen(studio: &Studio, pick: Pick) -> Option<(usize, usize, usize)> {
-    let span = studio.plan.scene.layer(pick.layer)?.passes().get(pick.pass)?;
+    let span = studio.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;
     Some((pick.layer, pick.pass, pick.segment - span.segments.start))
-}
-
-fn pick(studio: &Studio, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
-    let span = studio.plan.scene.layer(layer)?.passes().get(pass)?;
-    Some(Pick { layer, pass, segment: span.segments.start + piece })
 }

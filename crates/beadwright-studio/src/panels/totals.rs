@@ -1,6 +1,6 @@
 //! Totals of the plan, and the values of the chosen bead.
 
-use crate::app::Studio;
+use crate::studio::Studio;
 use crate::state::PlanState;
 use beadwright::deposit::Figures;
 use beadwright::metrics::Metrics;
@@ -8,13 +8,13 @@ use beadwright::report::rows;
 use eframe::egui::{Grid, Ui};
 
 pub(super) fn show(studio: &Studio, ui: &mut Ui) {
-    if let Some(part) = &studio.plan.part {
+    if let Some(part) = &studio.plans.own.part {
         let (low, high) = part.bounds();
         let size = high - low;
         ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", studio.t("size"), size.x, size.y, size.z));
         ui.separator();
     }
-    let rows = rows_of(&studio.plan);
+    let rows = rows_of(&studio.plans.own);
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             ui.label(name_of(studio, name));
@@ -45,8 +45,8 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
         ui.weak(studio.t("nothing-chosen"));
         return;
     };
-    let found = studio.plan.layer(layer).and_then(|layer| layer.passes.get(pass));
-    let (Some(found), Some(profile)) = (found, &studio.plan.profile) else { return };
+    let found = studio.plans.own.layer(layer).and_then(|layer| layer.passes.get(pass));
+    let (Some(found), Some(profile)) = (found, &studio.plans.own.profile) else { return };
     let Some(segment) = found.segments().nth(piece) else { return };
     let process = &profile.process;
     let metal: f64 = found.segments().map(|s| s.length() / s.pace).sum();

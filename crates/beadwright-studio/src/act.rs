@@ -1,0 +1,137 @@
+//! What a person asked for is done.
+
+use crate::actions::Action;
+use crate::export::Export;
+use crate::jobs::{self, Ask};
+use crate::studio::Studio;
+use crate::view::Mode;
+use crate::view3d::StandardView;
+use eframe::egui::ViewportCommand;
+use std::path::Path;
+
+impl Studio {
+    /// Does what was asked for.
+    pub fn act(&mut self, action: Action) {
+        match action {
+            Action::Open => self.ask(Ask::Open),
+            Action::Save => match self.open.file.clone() {
+                Some(path) => self.save_to(&path),
+                None => self.ask(Ask::SaveProject),
+            },
+            Action::SaveAs => self.ask(Ask::SaveProject),
+            Action::ExportProgram => {
+                self.jobs.exporting = Export::Program(self.view.dialect.clone());
+                self.ask(Ask::Folder);
+            }
+            Action::Undo => {
+                let undone = self.open.project.undo();
+                self.went(undone);
+            }
+            Action::Redo => {
+                let redone = self.open.project.redo();
+                self.went(redone);
+            }
+            Action::Plan => self.replan(),
+            Action::Stop => {
+                self.plans.planner.cancel();
+                self.plans.own.progress = None;
+                if let Some(other) = &mut self.plans.other {
+                    other.planner.cancel();
+                    other.plan.progress = None;
+                }
+                self.view.playing = false;
+            }
+            Action::Solid => self.view.mode = Mode::Solid,
+            Action::Layer => self.view.mode = Mode::Layer,
+            Action::Compare => self.view.mode = Mode::Compare,
+            Action::Fit => {
+                self.flat.fit();
+                self.solid.fit();
+            }
+            Action::Top => self.look(StandardView::Top),
+            Action::Front => self.look(StandardView::Front),
+            Action::Right => self.look(StandardView::Right),
+            Action::Corner => self.look(StandardView::Iso),
+            Action::Up => self.view.step_layer(1, self.plans.own.layer_count()),
+            Action::Down => self.view.step_layer(-1, self.plans.own.layer_count()),
+            Action::Play => {
+                let starts = !self.view.playing && self.plans.own.summary.is_some();
+                self.view.play(starts, &self.plans.own.scene);
+            }
+            Action::Theme => {
+                self.window.settings.light = !self.window.settings.light;
+                self.apply_theme();
+                self.window.store.keep_settings(&self.window.settings);
+            }
+            Action::Keys => self.view.keys = !self.view.keys,
+            Action::Quit => self.window.ctx.send_viewport_cmd(ViewportCommand::Close),
+            Action::Ask(what) => self.ask(what),
+            Action::Export(what) => {
+                let folder = self.view.folder.trim().to_owned();
+                self.jobs.exporting = what;
+                match folder.as_str() {
+                    "" => self.ask(Ask::Folder),
+                    folder => self.answered(Ask::Folder, Path::new(folder)),
+                }
+            }
+            Action::OpenFile(path) => self.open(&path),
+            Action::OpenExample(name) => self.open_example(name),
+            Action::Speak(language) => {
+                self.window.settings.language = language;
+                self.window.store.keep_settings(&self.window.settings);
+            }
+            Action::SetValue(key, value) => self.set_value(&key, &value),
+            Action::ResetValue(key) => self.reset_value(&key),
+            Action::SetProfile(text) => self.set_profile("profile", Ok(text.to_owned())),
+            Action::Place(placement) => self.change("placement", |project| project.placement = placement),
+            Action::Height(height) => self.change("height", |project| project.height = Some(height)),
+            Action::CompareWith(strategy) => self.compare_with(Some(strategy)),
+            Action::Dismiss(index) => drop(self.window.messages.remove(index)),
+            Action::LookCloser => self.look_closer(),
+            Action::Reach => self.begin_reach(),
+            Action::BringBack => {
+                if let Some(project) = self.open.lost.take() {
+                    self.begin(project);
+                }
+            }
+            Action::LetGo => {
+                self.open.lost = None;
+                self.forget_lost();
+            }
+            Action::Leave => self.close(),
+            Action::GoOn => self.window.closing = false,
+        }
+    }
+
+    /// Works out pockets and skeleton regions of the layer in view.
+    fn look_closer(&mut self) {
+        if let (Some(layer), Some(profile)) = (self.plans.own.layer(self.view.last), &self.plans.own.profile) {
+            self.jobs.steps_job = Some(jobs::steps(&self.window.ctx, layer.clone(), profile.clone()));
+        }
+    }
+
+    /// Works out what the robot of the cell in view reaches.
+    fn begin_reach(&mut self) {
+        if let Some(profile) = self.plans.own.profile.clone() {
+            let (cell, layers) = (self.view.cell.clone(), self.plans.own.layers.clone());
+            self.jobs.reach_job = Some(jobs::reach(&self.window.ctx, cell, layers, profile));
+        }
+    }
+
+    /// A step of the history was taken.
+    fn went(&mut self, gone: bool) {
+        // Before the file was opened there was another project: saving must not put that one into the file.
+        if self.open.project.steps() < self.open.opened {
+            self.open.file = None;
+        }
+        self.open.refused = None;
+        if gone {
+            self.replan();
+        }
+    }
+
+    fn look(&mut self, from: StandardView) {
+        self.solid.camera.set_view(from);
+        self.solid.fit();
+    }
+}

@@ -1,0 +1,388 @@
+//! The program: window, project, plans, work in the background, views.
+
+use crate::actions::Action;
+use crate::export::Export;
+use crate::form::Parsed;
+use crate::history::History;
+use crate::jobs::{Ask, Job};
+use crate::planner::{Haste, Planner};
+use crate::project::Project;
+use crate::settings::{Settings, Store};
+use crate::state::PlanState;
+use crate::text::Language;
+use crate::view::ViewState;
+use crate::view2d::View2d;
+use crate::view3d::{Pick, Style, View3d};
+use beadwright::bead::library::BeadLibrary;
+use beadwright::fill::hybrid::Steps;
+use beadwright::profile::{Profile, edit};
+use beadwright::robot::Reach;
+use eframe::egui::{self, Context, ViewportCommand};
+use eframe::egui_wgpu::RenderState;
+use eframe::egui_wgpu::wgpu::DeviceType;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::time::Duration;
+
+/// A second plan of the same part, with another strategy.
+pub struct Other {
+    /// The strategy.
+    pub strategy: String,
+    /// Its planner.
+    pub planner: Planner,
+    /// Its plan.
+    pub plan: PlanState,
+    /// Its view.
+    pub flat: View2d,
+}
+
+/// The window and what is remembered.
+pub struct Window {
+    pub(crate) ctx: Context,
+    pub(crate) render_state: Option<RenderState>,
+    pub(crate) store: Store,
+    pub(crate) settings: Settings,
+    /// What went wrong or was done, as sentences, the newest last.
+    pub(crate) messages: Vec<Message>,
+    /// Whether there are letters for Chinese.
+    pub(crate) chinese: bool,
+    /// Whether the window is to be closed although there are changes, and it is asked what becomes of them.
+    pub(crate) closing: bool,
+}
+
+/// The project that is worked on.
+pub struct Open {
+    pub(crate) project: History<Project>,
+    /// Where it lies.
+    pub(crate) file: Option<PathBuf>,
+    /// It as it was opened or written last.
+    pub(crate) saved: Project,
+    /// It as it was kept aside last.
+    pub(crate) kept: Project,
+    /// Steps of the history when it was opened.
+    pub(crate) opened: usize,
+    /// The project of a run that did not end well.
+    pub(crate) lost: Option<Project>,
+    /// The profile as its form needs it, of the text that it was read from last.
+    parsed: Option<Rc<Parsed>>,
+    /// A key whose value cannot be, and why.
+    pub(crate) refused: Option<(String, String)>,
+}
+
+/// The plan, and one beside it.
+pub struct Plans {
+    pub(crate) planner: Planner,
+    pub(crate) own: PlanState,
+    pub(crate) other: Option<Other>,
+}
+
+/// Other work in the background, and what came of it.
+#[derive(Default)]
+pub struct Jobs {
+    pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
+    /// What a folder is asked for.
+    pub(crate) exporting: Export,
+    pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
+    pub(crate) steps: Option<(usize, Vec<Steps>)>,
+    pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
+    pub(crate) reach: Option<Reach>,
+    /// Measured beads to look at.
+    pub(crate) beads: Option<BeadLibrary>,
+}
+
+/// The program: what panels show. They change the view only; all else they [ask for](Self::request).
+pub struct Studio {
+    pub(crate) window: Window,
+    pub(crate) open: Open,
+    pub(crate) plans: Plans,
+    pub(crate) jobs: Jobs,
+    pub(crate) view: ViewState,
+    pub(crate) solid: View3d,
+    pub(crate) flat: View2d,
+    /// What is to be done when the panels are drawn.
+    pub(crate) queue: Vec<Action>,
+}
+
+/// A sentence in the window.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Whether something went wrong.
+    pub error: bool,
+    /// The sentence.
+    pub text: String,
+}
+
+impl Studio {
+    /// The program in a window; `store` remembers things.
+    pub fn new(cc: &eframe::CreationContext<'_>, store: Store) -> Self {
+        let ctx = cc.egui_ctx.clone();
+        let settings = store.settings();
+        let planner = Planner::new(bell(&ctx, cc.wgpu_render_state.as_ref()));
+        let studio = Self {
+            window: Window {
+                chinese: crate::fonts::set(&ctx),
+                render_state: cc.wgpu_render_state.clone(),
+                ctx,
+                store,
+                settings,
+                messages: Vec::new(),
+                closing: false,
+            },
+            open: Open {
+                project: History::new(Project::default()),
+                file: None,
+                saved: Project::default(),
+                kept: Project::default(),
+                opened: 0,
+                lost: None,
+                parsed: None,
+                refused: None,
+            },
+            plans: Plans { planner, own: PlanState::default(), other: None },
+            jobs: Jobs::default(),
+            view: ViewState::default(),
+            solid: View3d::default(),
+            flat: View2d::default(),
+            queue: Vec::new(),
+        };
+        studio.apply_theme();
+        studio
+    }
+
+    /// Asks for something to be done when the panels are drawn.
+    pub(crate) fn request(&mut self, action: Action) {
+        self.queue.push(action);
+    }
+
+    /// Offers the project of a run that did not end well, if there is one.
+    pub fn offer_lost(&mut self) {
+        self.open.lost = self.window.store.lost_project();
+    }
+
+    /// Lets go of that project; what is open now is kept aside in its place.
+    pub(crate) fn forget_lost(&mut self) {
+        self.window.store.forget_project();
+        self.open.kept = Project::default();
+    }
+
+    /// The text of a key in the language of the window.
+    pub(crate) fn t(&self, key: &'static str) -> &'static str {
+        self.language().text(key)
+    }
+
+    pub(crate) fn language(&self) -> Language {
+        if self.window.chinese { self.window.settings.language } else { Language::English }
+    }
+
+    /// The project.
+    pub fn project(&self) -> &Project {
+        self.open.project.now()
+    }
+
+    /// The project file that is worked on.
+    pub fn file(&self) -> Option<&Path> {
+        self.open.file.as_deref()
+    }
+
+    /// The profile as its form needs it.
+    pub(crate) fn parsed(&mut self) -> Option<Rc<Parsed>> {
+        let text = &self.open.project.now().profile;
+        if self.open.parsed.as_ref().is_none_or(|parsed| parsed.text != *text) {
+            self.open.parsed = Parsed::of(text).map(Rc::new);
+        }
+        self.open.parsed.clone()
+    }
+
+    /// The plan, as far as it has come.
+    pub fn plan(&self) -> &PlanState {
+        &self.plans.own
+    }
+
+    /// The sentences in the window.
+    pub fn messages(&self) -> &[Message] {
+        &self.window.messages
+    }
+
+    /// What is shown.
+    pub fn view(&mut self) -> &mut ViewState {
+        &mut self.view
+    }
+
+    /// Whether nothing is under way.
+    pub fn is_idle(&self) -> bool {
+        let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy());
+        !self.plans.own.is_busy() && !other && self.jobs.reach_job.is_none() && self.jobs.steps_job.is_none()
+    }
+
+    pub(crate) fn say(&mut self, text: impl Into<String>) {
+        self.window.messages.push(Message { error: false, text: text.into() });
+    }
+
+    pub(crate) fn complain(&mut self, text: impl Into<String>) {
+        let message = Message { error: true, text: text.into() };
+        // What goes wrong again and again, at every step of a drag, is said once.
+        if self.window.messages.last() != Some(&message) {
+            self.window.messages.push(message);
+        }
+    }
+
+    /// What is shown now.
+    pub(crate) fn style(&self) -> Style {
+        let view = &self.view;
+        let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
+        Style {
+            colour: view.colour,
+            mesh: view.mesh,
+            travels: view.show.travels,
+            starts: view.show.starts,
+            marks_from: if view.all_marks { 0 } else { view.last },
+            beads: view.show.beads,
+            layers: view.first..=view.last,
+            segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
+            torch: view.torch,
+            highlight: view.chosen.and_then(|chosen| self.pick(chosen)),
+            dark: !self.window.settings.light,
+        }
+    }
+
+    fn pick(&self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
+        let span = self.plans.own.scene.layer(layer)?.passes().get(pass)?;
+        Some(Pick { layer, pass, segment: span.segments.start + piece })
+    }
+
+    /// Works on another project from now on.
+    pub(crate) fn begin(&mut self, project: Project) {
+        self.open.project.seal();
+        self.open.project.set("open", project);
+        self.open.project.seal();
+        self.open.opened = self.open.project.steps();
+        self.open.saved = self.open.project.now().clone();
+        self.open.refused = None;
+        self.flat.clear_measure();
+        self.view.reset();
+        self.flat.fit();
+        self.solid.fit();
+        self.replan();
+    }
+
+    /// Whether something would be lost if the window were closed.
+    pub fn is_changed(&self) -> bool {
+        self.project().source.is_some() && *self.project() != self.open.saved
+    }
+
+    /// Closes the window, whatever was changed.
+    pub(crate) fn close(&mut self) {
+        self.open.saved = self.project().clone();
+        self.window.ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    /// Changes the project, and plans anew if it differs.
+    pub(crate) fn change(&mut self, about: &str, change: impl FnOnce(&mut Project)) {
+        let mut next = self.project().clone();
+        change(&mut next);
+        if self.open.project.set(about, next) {
+            self.replan();
+        }
+    }
+
+    /// Lays a value over the profile, given as in TOML; what cannot be is told at the field.
+    pub fn set_value(&mut self, key: &str, value: &str) {
+        let text = edit::with_value(&self.project().profile, key, value);
+        self.set_profile(key, text.map_err(|error| error.to_string()));
+    }
+
+    /// Takes a value out of the profile, so that its default holds.
+    pub(crate) fn reset_value(&mut self, key: &str) {
+        let text = edit::without_value(&self.project().profile, key);
+        self.set_profile(key, text.map_err(|error| error.to_string()));
+    }
+
+    /// Takes the text of a profile if it can be.
+    pub(crate) fn set_profile(&mut self, about: &str, text: Result<String, String>) {
+        let checked = text.and_then(|text| match Profile::parse(&text) {
+            Ok(_) => Ok(text),
+            Err(error) => Err(error.to_string()),
+        });
+        match checked {
+            Ok(text) => {
+                self.open.refused = None;
+                self.change(about, |project| project.profile = text);
+            }
+            Err(reason) => self.open.refused = Some((about.to_owned(), reason)),
+        }
+    }
+
+    /// Plans the project anew, the layer in view first.
+    pub fn replan(&mut self) {
+        self.view.playing = false;
+        self.view.chosen = None;
+        // Answers that are still under way are about the plan before.
+        (self.jobs.reach, self.jobs.reach_job) = (None, None);
+        (self.jobs.steps, self.jobs.steps_job) = (None, None);
+        if self.project().source.is_none() {
+            // Undone to the empty window.
+            self.plans.planner.cancel();
+            self.plans.own = PlanState::default();
+            self.plans.other = None;
+            return;
+        }
+        self.plans.own.restart();
+        self.plans.planner.plan(self.open.project.now(), self.view.last);
+        let project = self.open.project.now().clone();
+        if let Some(other) = &mut self.plans.other {
+            other.plan.restart();
+            other.planner.plan(&with_strategy(project, &other.strategy), self.view.last);
+        }
+    }
+
+    /// Plans the part with a second strategy too, to be seen beside the first; none for no second plan.
+    pub fn compare_with(&mut self, strategy: Option<&str>) {
+        let Some(strategy) = strategy else {
+            self.plans.other = None;
+            return;
+        };
+        let mut other = Other {
+            strategy: strategy.to_owned(),
+            planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
+            plan: PlanState::default(),
+            flat: View2d::default(),
+        };
+        if self.project().source.is_some() {
+            other.plan.restart();
+            other.planner.plan(&with_strategy(self.project().clone(), strategy), self.view.last);
+        }
+        self.plans.other = Some(other);
+    }
+
+    pub(crate) fn apply_theme(&self) {
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            self.window.ctx.style_mut_of(theme, |style| {
+                let visuals = &mut style.visuals;
+                visuals.weak_text_color = Some(egui::Color32::from_gray(if visuals.dark_mode { 150 } else { 95 }));
+                // A field to write in is seen without a frame.
+                visuals.extreme_bg_color = egui::Color32::from_gray(if visuals.dark_mode { 8 } else { 226 });
+            });
+        }
+        self.window.ctx.set_theme(if self.window.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
+    }
+}
+
+/// Draws the window again when the planner has something to tell: at once, or within a while where drawing in software
+/// would hold up planning.
+fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Haste) + Send + Sync + 'static {
+    const WHILE: Duration = Duration::from_millis(500);
+    let in_software = render_state.is_some_and(|state| state.adapter.get_info().device_type == DeviceType::Cpu);
+    let ctx = ctx.clone();
+    move |haste| match haste {
+        Haste::Soon if in_software => ctx.request_repaint_after(WHILE),
+        _ => ctx.request_repaint(),
+    }
+}
+
+/// A project with another strategy.
+fn with_strategy(mut project: Project, strategy: &str) -> Project {
+    if let Ok(text) = edit::with_value(&project.profile, "fill.strategy", &format!("\"{strategy}\"")) {
+        project.profile = text;
+    }
+    project
+}
