@@ -1,9 +1,9 @@
 //! What is opened and what is written: models, projects, programs, pictures.
 
-use crate::studio::Studio;
 use crate::export::Export;
 use crate::jobs::{self, Ask};
 use crate::project::{Project, Source};
+use crate::studio::Studio;
 use beadwright::bead::library::BeadLibrary;
 use beadwright::files::write_file;
 use beadwright::profile::Profile;

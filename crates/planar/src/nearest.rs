@@ -3,7 +3,7 @@
 //! Points beside a segment are measured against it; from there what is nearest spreads from point to neighbouring point,
 //! in two sweeps over the rows (Danielsson 1980, with segments in place of points). It spreads only over the wanted
 //! points: what lies behind a gap of others is not seen. Distances are true to the segment that is found; in rare
-//! places, where three cells meet, that is not the nearest one, by a small part of a step.
+//! places, where three cells meet, that is not the nearest one, by less than half a step.
 
 use crate::lattice::Lattice;
 use glam::{DVec2, Vec2};

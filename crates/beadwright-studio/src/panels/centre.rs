@@ -2,9 +2,9 @@
 
 use super::{solid, totals};
 use crate::actions::Action;
-use crate::studio::Studio;
 use crate::planner::Failure;
 use crate::state::PlanState;
+use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view2d::{Subject, View2d};
 use beadwright::fill;

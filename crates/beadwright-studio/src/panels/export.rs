@@ -1,9 +1,9 @@
 //! What can be written.
 
 use crate::actions::Action;
-use crate::studio::Studio;
 use crate::export::Export;
 use crate::jobs::Ask;
+use crate::studio::Studio;
 use beadwright::dialect;
 use beadwright::files::{METRICS, PLAN, REPORT};
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};

@@ -1,8 +1,8 @@
 //! What went wrong or was done, as sentences that stay until they are closed.
 
 use crate::actions::Action;
-use crate::studio::Studio;
 use crate::planner::Failure;
+use crate::studio::Studio;
 use eframe::egui::{Color32, RichText, ScrollArea, Ui};
 
 /// Lines that are shown at a time.

@@ -1,10 +1,10 @@
 //! The profile as a form: units, ranges and meaning of every key.
 
-use crate::actions::Action;
 use crate::actions;
-use crate::studio::Studio;
+use crate::actions::Action;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
+use crate::studio::Studio;
 use beadwright::limit::Limit;
 use beadwright::profile::{BUILT_IN, Profile};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
@@ -17,7 +17,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("search"));
     ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
     let fields = || form::sections().iter().flat_map(|section| &section.fields);
-    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key)) {
+    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key))
+    {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
     }
     let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };

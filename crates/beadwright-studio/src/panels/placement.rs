@@ -1,7 +1,7 @@
 //! Where the part stands: units, scale, turn.
 
-use crate::actions::Action;
 use crate::actions;
+use crate::actions::Action;
 use crate::studio::Studio;
 use beadwright::model::{Part, Placement, Units};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};

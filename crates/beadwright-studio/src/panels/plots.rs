@@ -1,8 +1,8 @@
 //! Curves: figures of every layer, beads that were measured, the joints of the robot.
 
 use crate::actions::Action;
-use crate::studio::Studio;
 use crate::jobs::Ask;
+use crate::studio::Studio;
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::{Reach, cell};
 use eframe::egui::{ComboBox, Rangef, Ui};

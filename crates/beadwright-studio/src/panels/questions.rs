@@ -1,8 +1,8 @@
 //! Questions that must be answered before work goes on, and the list of keys.
 
 use crate::actions::{Action, ENTRIES};
-use crate::studio::Studio;
 use crate::planner::Failure;
+use crate::studio::Studio;
 use beadwright::model::{Placement, Units};
 use eframe::egui::{Align2, DragValue, Grid, Ui, Window, vec2};
 

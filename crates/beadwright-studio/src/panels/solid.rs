@@ -87,7 +87,6 @@ fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-
 /// A piece in the layer is one in its pass.
 fn chosen(studio: &Studio, pick: Pick) -> Option<(usize, usize, usize)> {
     let span = studio.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;

@@ -1,7 +1,7 @@
 //! Totals of the plan, and the values of the chosen bead.
 
-use crate::studio::Studio;
 use crate::state::PlanState;
+use crate::studio::Studio;
 use beadwright::deposit::Figures;
 use beadwright::metrics::Metrics;
 use beadwright::report::rows;
