@@ -77,7 +77,7 @@ fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
     let place = robot::turn_table(cell, cell.part, &track).map_or(cell.part, |table| table.place);
     let found = robot::reach(cell, place, &track).findings;
     let finding =
-        |f: &robot::Finding| Finding { check: REACH, layer: None, pass: None, place: None, text: f.sentence() };
+        |f: &robot::ReachFinding| Finding { check: REACH, layer: None, pass: None, place: None, text: f.sentence() };
     found.iter().map(finding).collect()
 }
 

@@ -66,20 +66,20 @@ struct Request {
 
 /// How soon an event wants to be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Haste {
+pub enum Urgency {
     /// At once: something that a person waits for.
     Now,
     /// With others like it.
     Soon,
 }
 
-type Notify = Arc<dyn Fn(Haste) + Send + Sync>;
+type Notify = Arc<dyn Fn(Urgency) + Send + Sync>;
 
 impl Event {
-    fn haste(&self) -> Haste {
+    fn urgency(&self) -> Urgency {
         match self {
-            Self::Part(..) | Self::Preview(..) | Self::Planned(_) | Self::Checked(..) | Self::Failed(_) => Haste::Now,
-            Self::Progress(..) | Self::Begin(_) | Self::Layer(..) | Self::Judged(..) => Haste::Soon,
+            Self::Part(..) | Self::Preview(..) | Self::Planned(_) | Self::Checked(..) | Self::Failed(_) => Urgency::Now,
+            Self::Progress(..) | Self::Begin(_) | Self::Layer(..) | Self::Judged(..) => Urgency::Soon,
         }
     }
 }
@@ -96,7 +96,7 @@ pub struct Planner {
 
 impl Planner {
     /// A planner that calls `notify` when there is something to hear.
-    pub fn new(notify: impl Fn(Haste) + Send + Sync + 'static) -> Self {
+    pub fn new(notify: impl Fn(Urgency) + Send + Sync + 'static) -> Self {
         let (requests, inbox) = channel::<Request>();
         let (sender, events) = channel();
         let notify: Notify = Arc::new(notify);
@@ -112,7 +112,7 @@ impl Planner {
         let (number, sender, bell) = (self.number, self.sender.clone(), self.notify.clone());
         self.task = Task::with_progress(move |stage, fraction| {
             if sender.send((number, Event::Progress(stage, fraction))).is_ok() {
-                bell(Haste::Soon);
+                bell(Urgency::Soon);
             }
         });
         let request = Request { number, project: project.clone(), layer, task: self.task.clone() };
@@ -141,7 +141,7 @@ impl Drop for Planner {
 
 /// What has been read and placed, so that it need not be done again.
 #[derive(Default)]
-struct Kept {
+struct Cache {
     model: Option<(Source, Option<SystemTime>, Model)>,
     part: Option<(PartKey, Arc<Part>)>,
     mesh: Option<(Arc<Part>, Arc<Mesh>)>,
@@ -156,7 +156,7 @@ struct PartKey {
 }
 
 fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify) {
-    let mut kept = Kept::default();
+    let mut kept = Cache::default();
     while let Ok(mut request) = inbox.recv() {
         // Only the newest counts.
         while let Ok(newer) = inbox.try_recv() {
@@ -164,9 +164,9 @@ fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify
         }
         let number = request.number;
         let send = |event: Event| {
-            let haste = event.haste();
+            let urgency = event.urgency();
             if outbox.send((number, event)).is_ok() {
-                bell(haste);
+                bell(urgency);
             }
         };
         match jobs::caught(|| work(&request, &mut kept, &send)) {
@@ -174,7 +174,7 @@ fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify
             Ok(Err(Stop::Failed(failure))) => send(Event::Failed(failure)),
             Err(sentence) => {
                 // Nobody knows in which state it was left.
-                kept = Kept::default();
+                kept = Cache::default();
                 send(Event::Failed(Failure::Sentence(sentence)));
             }
         }
@@ -201,7 +201,7 @@ impl From<PlanError<Infallible>> for Stop {
     }
 }
 
-fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Result<(), Stop> {
+fn work(request: &Request, kept: &mut Cache, send: &(dyn Fn(Event) + Sync)) -> Result<(), Stop> {
     let task = &request.task;
     let sentence = |text: String| Stop::Failed(Failure::Sentence(text));
     let profile = Profile::parse(&request.project.profile).map_err(|error| sentence(error.to_string()))?;
@@ -227,9 +227,9 @@ fn work(request: &Request, kept: &mut Kept, send: &(dyn Fn(Event) + Sync)) -> Re
         let errors = errors(&layers[index], &judgement);
         send(Event::Judged(index, Arc::new(judgement), errors));
     };
-    let judged = check::judge(&layers, &profile, judge, task, each)?;
+    let judged = check::judge_layers(&layers, &profile, judge, task, each)?;
     let total = judged.total;
-    send(Event::Checked(total, check::check_judged(&layers, &profile, settings.nominal.rise, judged)));
+    send(Event::Checked(total, check::check_figures(&layers, &profile, settings.nominal.rise, judged)));
     Ok(())
 }
 
@@ -270,7 +270,7 @@ impl Sink for Layers<'_> {
     }
 }
 
-impl Kept {
+impl Cache {
     fn part(&mut self, project: &Project, bead_width: f64, task: &Task) -> Result<Arc<Part>, Stop> {
         let Some(source) = &project.source else {
             return Err(Stop::Failed(Failure::Sentence("no model is open.".to_owned())));

@@ -39,12 +39,12 @@ pub struct PlanState {
     /// What the 3-D view shows.
     pub scene: Scene,
     /// How far the last request has come with what is in view.
-    came: Came,
+    received: Received,
 }
 
 /// What of a request is in view already; the rest is still that of the request before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Came {
+enum Received {
     #[default]
     Nothing,
     Part,
@@ -57,12 +57,12 @@ impl PlanState {
         self.progress = Some((Stage::Import, 0.0));
         self.failure = None;
         self.findings = None;
-        self.came = Came::Nothing;
+        self.received = Received::Nothing;
     }
 
     /// Whether layers, profile and totals in view belong together and to the last request: only then may they be written.
     pub fn is_of_last_request(&self) -> bool {
-        self.came == Came::Layers
+        self.received == Received::Layers
     }
 
     /// Takes an event in.
@@ -70,7 +70,7 @@ impl PlanState {
         match event {
             Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
             Event::Part(part, mesh, profile) => {
-                self.came = Came::Part;
+                self.received = Received::Part;
                 self.take_part(part, mesh, profile);
             }
             Event::Preview(layer, beads) => {
@@ -79,7 +79,7 @@ impl PlanState {
                 self.preview = Some(layer);
             }
             Event::Begin(header) => {
-                self.came = Came::Layers;
+                self.received = Received::Layers;
                 self.clear_plan();
                 self.header = Some(header);
             }
@@ -118,11 +118,11 @@ impl PlanState {
 
     /// What the failed request has not replaced would be taken for what it asked for.
     fn clear_failed(&mut self) {
-        if self.came == Came::Nothing {
+        if self.received == Received::Nothing {
             (self.part, self.profile) = (None, None);
             self.scene.clear();
         }
-        if self.came != Came::Layers {
+        if self.received != Received::Layers {
             self.preview = None;
             self.clear_layers();
         }

@@ -5,7 +5,7 @@ use crate::export::Export;
 use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{Ask, Job};
-use crate::planner::{Haste, Planner};
+use crate::planner::{Urgency, Planner};
 use crate::project::Project;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
@@ -369,12 +369,12 @@ impl Studio {
 
 /// Draws the window again when the planner has something to tell: at once, or within a while where drawing in software
 /// would hold up planning.
-fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Haste) + Send + Sync + 'static {
+fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Urgency) + Send + Sync + 'static {
     const WHILE: Duration = Duration::from_millis(500);
     let in_software = render_state.is_some_and(|state| state.adapter.get_info().device_type == DeviceType::Cpu);
     let ctx = ctx.clone();
-    move |haste| match haste {
-        Haste::Soon if in_software => ctx.request_repaint_after(WHILE),
+    move |urgency| match urgency {
+        Urgency::Soon if in_software => ctx.request_repaint_after(WHILE),
         _ => ctx.request_repaint(),
     }
 }

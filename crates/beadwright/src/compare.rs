@@ -84,14 +84,14 @@ pub const MAP_PIXELS: usize = 320;
 const KEPT_PATCHES: usize = 8;
 
 /// Judges layers as they come.
-struct Judging<'a> {
+struct EntryBuilder<'a> {
     judge: Judge,
     chosen: &'a Chosen,
     layers: Vec<JudgedLayer>,
     turns: usize,
 }
 
-impl<'a> Judging<'a> {
+impl<'a> EntryBuilder<'a> {
     fn new(settings: DepositSettings, bounds: &Bounds, chosen: &'a Chosen) -> Self {
         let judge = Judge::new(settings).with_stack(bounds).with_pictures(MAP_PIXELS);
         Self { judge, chosen, layers: Vec::new(), turns: 0 }
@@ -118,7 +118,7 @@ impl<'a> Judging<'a> {
 
 /// Judges the layers of a plan as they are welded.
 struct Planned<'a> {
-    judging: Judging<'a>,
+    entry: EntryBuilder<'a>,
     profile: &'a Profile,
 }
 
@@ -130,7 +130,7 @@ impl Sink for Planned<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.judging.take(&plan::welded(&layer, self.profile));
+        self.entry.take(&plan::welded(&layer, self.profile));
         Ok(())
     }
 }
@@ -154,11 +154,11 @@ pub fn strategy(
 ) -> Result<Entry, PlanError<Infallible>> {
     let mut profile = profile.clone();
     profile.fill.strategy = name.to_owned();
-    let mut planned = Planned { judging: Judging::new(settings, &bounds(mesh), chosen), profile: &profile };
+    let mut planned = Planned { entry: EntryBuilder::new(settings, &bounds(mesh), chosen), profile: &profile };
     let metrics = plan::plan_into(name, mesh, &profile, task, &mut planned)?.metrics;
-    let judging = planned.judging;
-    let totals = Totals { turns: judging.turns, ..Totals::of_plan(&metrics) };
-    Ok(judging.entry(name, totals))
+    let entry = planned.entry;
+    let totals = Totals { turns: entry.turns, ..Totals::of_plan(&metrics) };
+    Ok(entry.entry(name, totals))
 }
 
 impl Totals {
@@ -209,13 +209,13 @@ pub fn program(
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
     let bounds = Bounds::of(points.chain(outlines)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
-    let mut judging = Judging::new(settings, &bounds, chosen);
+    let mut entry = EntryBuilder::new(settings, &bounds, chosen);
     for (done, layer) in layers.iter().enumerate() {
         task.step(Stage::Deposit, done as f64 / layers.len() as f64)?;
-        judging.take(layer);
+        entry.take(layer);
     }
-    let totals = Totals { turns: judging.turns, ..totals };
-    Ok(judging.entry(name, totals))
+    let totals = Totals { turns: entry.turns, ..totals };
+    Ok(entry.entry(name, totals))
 }
 
 /// One column of the comparison.

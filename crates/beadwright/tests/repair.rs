@@ -135,7 +135,7 @@ fn a_crack_is_welded() {
     for corner in facets[k].iter_mut().filter(|v| **v == DVec3::splat(10.0)) {
         *corner += DVec3::new(1e-6 * diagonal, 0.0, 0.0);
     }
-    check(&facets, RepairReport { cracks_welded: 1, ..clean() }, 1000.0, SIZE);
+    check(&facets, RepairReport { vertices_merged: 1, ..clean() }, 1000.0, SIZE);
 }
 
 #[test]
@@ -147,8 +147,8 @@ fn all_corners_shaken_within_the_crack_width_are_welded() {
     };
     let facets: Vec<Facet> = cube().into_iter().enumerate().map(shake).collect();
     let import = imported(&facets);
-    assert!(import.repair.cracks_welded > 8);
-    let expect = RepairReport { cracks_welded: import.repair.cracks_welded, ..clean() };
+    assert!(import.repair.vertices_merged > 8);
+    let expect = RepairReport { vertices_merged: import.repair.vertices_merged, ..clean() };
     check(&facets, expect, 1000.0, SIZE);
 }
 
@@ -158,7 +158,7 @@ fn a_gap_wider_than_a_crack_stays_open() {
     let k = at_far_corner(&facets);
     facets[k] = facets[k].map(|v| if v == DVec3::splat(10.0) { v + DVec3::new(0.01, 0.0, 0.0) } else { v });
     let repair = imported(&facets).repair;
-    assert_eq!((repair.cracks_welded, repair.vertices, repair.open_edges), (0, 9, 4));
+    assert_eq!((repair.vertices_merged, repair.vertices, repair.open_edges), (0, 9, 4));
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn every_fault_is_told_in_a_sentence() {
     let faults = RepairReport {
         degenerate: 1,
         duplicate: 2,
-        cracks_welded: 3,
+        vertices_merged: 3,
         open_edges: 4,
         non_manifold_edges: 5,
         flipped: 6,

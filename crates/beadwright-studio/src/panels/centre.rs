@@ -6,7 +6,7 @@ use crate::planner::Failure;
 use crate::state::PlanState;
 use crate::studio::Studio;
 use crate::view::Mode;
-use crate::view2d::{Subject, View2d};
+use crate::view2d::{Drawing, View2d};
 use beadwright::fill;
 use beadwright::fill::hybrid::Steps;
 use eframe::egui::{CentralPanel, ComboBox, Grid, Panel, Ui};
@@ -59,7 +59,7 @@ fn flat(
 ) -> Option<Option<(usize, usize)>> {
     let layer = plan.layer(state.last)?;
     let count: usize = layer.passes.iter().map(|pass| pass.segments().count()).sum();
-    let subject = Subject {
+    let subject = Drawing {
         layer,
         judgement: plan.judgements.get(state.last),
         steps,

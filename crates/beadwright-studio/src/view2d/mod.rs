@@ -57,7 +57,7 @@ impl Default for Show {
 
 /// What is looked at.
 #[derive(Clone, Copy)]
-pub struct Subject<'a> {
+pub struct Drawing<'a> {
     /// The layer.
     pub layer: &'a Layer,
     /// What the deposit model says of it.
@@ -145,7 +145,7 @@ impl View2d {
     }
 
     /// Shows a layer in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, subject: Subject<'_>, show: Show, label: &str) -> Done {
+    pub fn show(&mut self, ui: &mut Ui, subject: Drawing<'_>, show: Show, label: &str) -> Done {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
         let bounds = bounds(subject.layer);

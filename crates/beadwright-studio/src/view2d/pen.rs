@@ -1,7 +1,7 @@
 //! Draws a layer in the coordinates of the part.
 
 use super::heat::{VOID, heat};
-use super::{Eye, Show, Subject};
+use super::{Eye, Show, Drawing};
 use crate::view3d::palette;
 use beadwright::deposit::picture;
 use beadwright::fill::hybrid::Steps;
@@ -60,7 +60,7 @@ impl Pen<'_> {
         }
     }
 
-    pub(super) fn passes(&self, subject: &Subject<'_>, show: Show) {
+    pub(super) fn passes(&self, subject: &Drawing<'_>, show: Show) {
         let mut left = subject.pieces;
         let shown = subject.layer.passes.iter().map(|pass| {
             let pieces: Vec<_> = pass.segments().take(left).collect();

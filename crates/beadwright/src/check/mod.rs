@@ -99,7 +99,7 @@ pub struct Subject<'a> {
 
 /// What the deposit model says of a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Judged {
+pub struct LayerFigures {
     /// Of each layer.
     pub figures: Vec<Figures>,
     /// Of all layers.
@@ -112,13 +112,13 @@ pub struct Judged {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn judge<L: Borrow<Layer>>(
+pub fn judge_layers<L: Borrow<Layer>>(
     layers: &[L],
     profile: &Profile,
     mut judge: Judge,
     task: &Task,
     mut each: impl FnMut(usize, Judgement),
-) -> Result<Judged, Cancelled> {
+) -> Result<LayerFigures, Cancelled> {
     let passes = || layers.iter().flat_map(|l| &l.borrow().passes);
     let points = passes().flat_map(|p| &p.points).filter(|p| p.is_finite());
     if let Some(bounds) = Bounds::of(points.map(|p| p.truncate())) {
@@ -134,7 +134,7 @@ pub fn judge<L: Borrow<Layer>>(
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
     let growth = judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
-    Ok(Judged { figures, total: *judge.total(), growth })
+    Ok(LayerFigures { figures, total: *judge.total(), growth })
 }
 
 /// Runs all checks on a plan.
@@ -147,13 +147,13 @@ pub fn check<L: Borrow<Layer>>(
     settings: DepositSettings,
     task: &Task,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let judged = judge(layers, profile, Judge::new(settings), task, |_, _| ())?;
-    Ok(check_judged(layers, profile, settings.nominal.rise, judged))
+    let judged = judge_layers(layers, profile, Judge::new(settings), task, |_, _| ())?;
+    Ok(check_figures(layers, profile, settings.nominal.rise, judged))
 }
 
 /// Runs all checks on a plan that was judged; `rise` is the nominal one of a layer, mm.
-pub fn check_judged<L: Borrow<Layer>>(layers: &[L], profile: &Profile, rise: f64, judged: Judged) -> Vec<Finding> {
-    let Judged { figures, growth, .. } = judged;
+pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, rise: f64, judged: LayerFigures) -> Vec<Finding> {
+    let LayerFigures { figures, growth, .. } = judged;
     let layers = layers.iter().map(L::borrow).collect();
     let subject = Subject { layers, profile, rise, figures, growth };
     CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()

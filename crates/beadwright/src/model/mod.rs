@@ -3,7 +3,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | [`stl`] | binary and ASCII STL, told apart by content |
-//! | `weld` | equal corners become one vertex |
+//! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
@@ -18,7 +18,7 @@ pub mod repair;
 pub mod stl;
 pub mod units;
 pub mod wall_curves;
-pub(crate) mod weld;
+pub(crate) mod merge_vertices;
 
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;

@@ -1,7 +1,7 @@
 //! What is wrong with a mesh, and the mending that needs no guess: nothing is moved by more than a crack.
 //!
 //! 1. degenerate triangles go;
-//! 2. vertices on open edges that lie within 1e-5 of the part's diagonal are welded (cracks from rounding);
+//! 2. vertices on open edges that lie within 1e-5 of the part's diagonal are merged (cracks from rounding);
 //! 3. duplicate triangles go;
 //! 4. triangles are turned to agree with their neighbours, each shell by its majority;
 //! 5. a mesh that is inside out as a whole is turned.
@@ -29,7 +29,7 @@ pub struct RepairReport {
     /// Triangles that stood there twice, removed.
     pub duplicate: usize,
     /// Vertices moved onto a neighbour to close a crack.
-    pub cracks_welded: usize,
+    pub vertices_merged: usize,
     /// Edges with a triangle on one side only: holes in the surface.
     pub open_edges: usize,
     /// Edges shared by three or more triangles.
@@ -47,7 +47,7 @@ pub struct RepairReport {
 impl RepairReport {
     /// Whether the mesh is closed and nothing had to be mended.
     pub fn is_clean(&self) -> bool {
-        let mended = self.degenerate + self.duplicate + self.cracks_welded + self.flipped;
+        let mended = self.degenerate + self.duplicate + self.vertices_merged + self.flipped;
         mended + self.open_edges + self.non_manifold_edges + self.normals_against_winding == 0 && !self.inside_out
     }
 
@@ -62,7 +62,7 @@ impl RepairReport {
         };
         say(self.degenerate, "triangle", "triangles", " without an area removed");
         say(self.duplicate, "duplicate triangle", "duplicate triangles", " removed");
-        say(self.cracks_welded, "vertex", "vertices", " welded to close cracks");
+        say(self.vertices_merged, "vertex", "vertices", " merged to close cracks");
         say(self.flipped, "triangle", "triangles", " wound against the neighbours turned");
         say(self.normals_against_winding, "stored normal", "stored normals", " against the winding ignored");
         say(self.open_edges, "open edge", "open edges", ": the surface has holes");
@@ -90,7 +90,7 @@ pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, Rep
         report.non_manifold_edges += usize::from(edge.len() > 2);
     }
     mesh.neighbours = adjacency.neighbours;
-    if report.degenerate + report.duplicate + report.cracks_welded > 0 {
+    if report.degenerate + report.duplicate + report.vertices_merged > 0 {
         drop_unused_vertices(&mut mesh);
     }
     if mesh.volume() < 0.0 {
@@ -129,9 +129,9 @@ fn drop_degenerate(mesh: &mut Mesh) -> usize {
 
 /// The rare path: cracks and duplicates.
 fn mend_edges(mesh: &mut Mesh, mut adjacency: Adjacency, report: &mut RepairReport) -> Adjacency {
-    let welded = weld_cracks(mesh, &adjacency.odd_edges);
-    if welded > 0 {
-        report.cracks_welded = welded;
+    let merged = merge_cracks(mesh, &adjacency.odd_edges);
+    if merged > 0 {
+        report.vertices_merged = merged;
         report.degenerate += drop_degenerate(mesh);
         adjacency = Adjacency::new(mesh.vertices.len(), &mesh.triangles);
     }
@@ -143,7 +143,7 @@ fn mend_edges(mesh: &mut Mesh, mut adjacency: Adjacency, report: &mut RepairRepo
 }
 
 /// Welds vertices of open edges that lie within the crack width of one another; returns how many moved.
-fn weld_cracks(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
+fn merge_cracks(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     let tolerance = mesh.size().length() * CRACK;
     let open = odd_edges.iter().filter(|edge| edge.iter().filter(|h| h.forward).count() * 2 != edge.len());
     let mut border: Vec<u32> = open

@@ -3,7 +3,7 @@
 //! A file is binary when its size is 84 + 50 · n for the count n that it announces, whatever its header says:
 //! binary files that begin with "solid" are common.
 
-use super::weld::{BLOCK, Welder};
+use super::merge_vertices::{BLOCK, VertexMerger};
 use super::{Import, ImportError, repair};
 use crate::task::{Stage, Task};
 
@@ -146,7 +146,7 @@ fn build(
     task: &Task,
 ) -> Result<Import, ImportError> {
     task.step(Stage::Import, 0.0)?;
-    let mut welder = Welder::for_triangles(count);
+    let mut welder = VertexMerger::for_triangles(count);
     let mut triangles = Vec::with_capacity(count);
     let mut against = 0;
     let mut block = Vec::with_capacity(BLOCK);

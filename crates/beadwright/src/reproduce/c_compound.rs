@@ -29,7 +29,7 @@ const SPECIMENS: [(&str, &str, f64, &str); 4] = [
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.
 pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
-    let judged = |strategy: &str, gap: f64| judge(strategy, gap, task);
+    let judged = |strategy: &str, gap: f64| entry_of(strategy, gap, task);
     let mut specimens = Vec::new();
     for (strategy, name, gap, words) in SPECIMENS {
         specimens.push((name, words, judged(strategy, gap)?));
@@ -58,7 +58,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     Ok(Reproduced { page, lines: lines(&specimens, &sweep), files: Vec::new() })
 }
 
-fn judge(strategy: &str, gap: f64, task: &Task) -> Result<Entry, ReproduceError> {
+fn entry_of(strategy: &str, gap: f64, task: &Task) -> Result<Entry, ReproduceError> {
     let wrong = |e: &dyn std::fmt::Display| ReproduceError(e.to_string());
     let mut profile = Profile::built_in("plasma-304-cnc").map_err(|e| wrong(&e))?;
     profile.fill.contour_gap = gap;

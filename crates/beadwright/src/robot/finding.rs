@@ -79,7 +79,7 @@ impl Trouble {
 
 /// All troubles of one kind and joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Finding {
+pub struct ReachFinding {
     /// The first stop that has it.
     pub stop: Stop,
     /// What is wrong there.
@@ -90,7 +90,7 @@ pub struct Finding {
     pub count: usize,
 }
 
-impl Finding {
+impl ReachFinding {
     /// One sentence with place, size and remedy.
     pub fn sentence(&self) -> String {
         let place = place(&self.stop);
@@ -163,11 +163,11 @@ fn place(stop: &Stop) -> String {
 
 /// Troubles gathered on the way.
 #[derive(Debug, Default)]
-pub(super) struct Findings(BTreeMap<(u8, usize), Finding>);
+pub(super) struct Findings(BTreeMap<(u8, usize), ReachFinding>);
 
 impl Findings {
     pub(super) fn add(&mut self, stop: &Stop, trouble: Trouble) {
-        let new = || Finding { stop: *stop, trouble, worst: (*stop, trouble), count: 0 };
+        let new = || ReachFinding { stop: *stop, trouble, worst: (*stop, trouble), count: 0 };
         let finding = self.0.entry(trouble.key()).or_insert_with(new);
         finding.count += 1;
         if trouble.size() > finding.worst.1.size() {
@@ -176,7 +176,7 @@ impl Findings {
     }
 
     /// By kind and joint, the fatal kinds first.
-    pub(super) fn sorted(self) -> Vec<Finding> {
+    pub(super) fn sorted(self) -> Vec<ReachFinding> {
         self.0.into_values().collect()
     }
 }

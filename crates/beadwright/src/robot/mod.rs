@@ -25,7 +25,7 @@ mod walk;
 
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
 pub use cell::{Cell, CellError, PartPlace, Table};
-pub use finding::{Finding, Trouble};
+pub use finding::{ReachFinding, Trouble};
 pub use suggest::{Suggestion, suggest};
 pub use table::{TableAngle, turn_table};
 pub use track::{Stop, Track};

@@ -61,12 +61,12 @@ impl Suggestion {
 pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestion> {
     let points = outermost(track);
     let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
-    let judge = |place: PartPlace, angles: usize| judge(&arm, &tool_from_flange, place, &points, angles);
-    let fine = |place: PartPlace| judge(place, FINE);
+    let rated = |place: PartPlace, angles: usize| rate(&arm, &tool_from_flange, place, &points, angles);
+    let fine = |place: PartPlace| rated(place, FINE);
     let mut places = vec![start];
     places.extend(grid(&arm, start.rotation));
     // Collected in order: the first of equal ones wins, whatever the threads do.
-    let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(|p| judge(p, COARSE)).collect();
+    let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(|p| rated(p, COARSE)).collect();
     let here = fine(start);
     let mut best = better(None, judged).and_then(|found| better(here, vec![fine(found.place)]))?;
     for (mm, degrees) in STEPS {
@@ -123,7 +123,7 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
 }
 
 /// The best least margin over branches and torch angles; none where a point is beyond reach or a limit in all of them.
-pub(super) fn judge(
+pub(super) fn rate(
     arm: &Arm,
     tool_from_flange: &Frame,
     place: PartPlace,

@@ -4,7 +4,7 @@
 //! are. Angles are judged as places of the part are (`suggest`): by the outermost points of a few layers.
 
 use super::cell::{Cell, PartPlace};
-use super::suggest::{WORTH_MOVING, judge, outermost};
+use super::suggest::{WORTH_MOVING, outermost, rate};
 use super::track::Track;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -33,7 +33,7 @@ pub fn turn_table(cell: &Cell, place: PartPlace, track: &Track) -> Option<TableA
     let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
     let margin = |angle: f64| {
         let turned = place.turned_about(table, angle);
-        judge(&arm, &tool_from_flange, turned, &points, super::turn::ANGLES).map(|found| (angle, found.margin))
+        rate(&arm, &tool_from_flange, turned, &points, super::turn::ANGLES).map(|found| (angle, found.margin))
     };
     let [low, high] = table.limits;
     let steps = (180.0 / STEP) as i32;

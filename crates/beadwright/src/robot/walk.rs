@@ -2,7 +2,7 @@
 
 use super::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
 use super::cell::{Cell, PartPlace};
-use super::finding::{Finding, Findings, Trouble};
+use super::finding::{ReachFinding, Findings, Trouble};
 use super::track::{Stop, Track};
 use super::{part_from_tool, turn};
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ pub struct Reach {
     /// The torch angle.
     pub turning: Turning,
     /// What is wrong, the fatal first, one of each kind and joint.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<ReachFinding>,
     /// Poses whose joint angles were computed.
     pub computed: usize,
 }
@@ -118,11 +118,11 @@ impl Walk<'_> {
         let speeds = std::array::from_fn(|j| (joints[j] - from[j]).abs() / seconds);
         self.before = Some(joints);
         let pose = Pose { torch_angle, joints, margins: self.arm.margins(&joints), speeds };
-        self.judge(stop, &pose);
+        self.note(stop, &pose);
         Some(pose)
     }
 
-    fn judge(&mut self, stop: &Stop, pose: &Pose) {
+    fn note(&mut self, stop: &Stop, pose: &Pose) {
         for joint in 0..6 {
             let [low, high] = self.arm.limits[joint];
             if pose.margins.limits[joint] < 0.0 {
@@ -146,7 +146,7 @@ impl Reach {
     }
 
     /// The finding that comes first on the way, of those that forbid the program.
-    pub fn first_bad(&self) -> Option<&Finding> {
+    pub fn first_bad(&self) -> Option<&ReachFinding> {
         self.findings.iter().filter(|f| f.trouble.is_fatal()).min_by_key(|f| (f.stop.layer, f.stop.pass, f.stop.point))
     }
 

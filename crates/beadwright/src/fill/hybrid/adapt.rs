@@ -2,7 +2,7 @@
 //! way to its neighbour on either side, within the limits of the process. Metal is laid where there is room for it, and
 //! small gaps close without a bead of their own.
 
-use super::near::Near;
+use super::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
@@ -19,7 +19,7 @@ const OUTLINE: usize = usize::MAX;
 
 /// Gives every pass the widths that its neighbours leave; none reaches out of the island and its allowance.
 pub fn widths(passes: &mut [Path], island: &Polygon, settings: &FillSettings) {
-    let mut near = Near::new(SIGHT * settings.stepover);
+    let mut near = LineIndex::new(SIGHT * settings.stepover);
     for (number, pass) in passes.iter().enumerate() {
         near.add_line(number, &pass.path());
     }
@@ -35,7 +35,7 @@ fn closed(points: &[DVec2]) -> Vec<DVec2> {
     points.iter().chain(points.first()).copied().collect()
 }
 
-fn adapt(number: usize, pass: &mut Path, near: &Near, settings: &FillSettings) {
+fn adapt(number: usize, pass: &mut Path, near: &LineIndex, settings: &FillSettings) {
     let d = settings.stepover;
     let path = pass.path();
     let (mut points, mut widths) = (Vec::new(), Vec::new());

@@ -5,7 +5,7 @@
 //! keeps inside the outline and crosses nothing.
 
 use super::contours::{Contours, Piece};
-use super::near::Near;
+use super::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::PassKind;
 use glam::DVec2;
@@ -26,7 +26,7 @@ const SEAMS: usize = 12;
 
 /// Joins all contours.
 pub fn join(contours: &Contours, outermost: &Region, settings: &FillSettings) -> Vec<Path> {
-    let mut laid = Near::new(LONGEST_END_LINK * settings.stepover);
+    let mut laid = LineIndex::new(LONGEST_END_LINK * settings.stepover);
     for (number, (_, ring)) in contours.complete.iter().enumerate() {
         let closed: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
         laid.add_line(number, &closed);
@@ -39,7 +39,7 @@ pub fn join(contours: &Contours, outermost: &Region, settings: &FillSettings) ->
     passes
 }
 
-fn join_complete(rings: &[(usize, Ring)], laid: &Near, settings: &FillSettings) -> Vec<Path> {
+fn join_complete(rings: &[(usize, Ring)], laid: &LineIndex, settings: &FillSettings) -> Vec<Path> {
     let mut free: Vec<bool> = vec![true; rings.len()];
     let mut passes = Vec::new();
     for start in 0..rings.len() {
@@ -64,7 +64,7 @@ fn chain(
     seam: DVec2,
     rings: &[(usize, Ring)],
     free: &[bool],
-    laid: &Near,
+    laid: &LineIndex,
     settings: &FillSettings,
 ) -> Vec<(usize, DVec2)> {
     let mut chain = vec![(start, seam)];
@@ -82,7 +82,7 @@ fn next_ring(
     seam: DVec2,
     rings: &[(usize, Ring)],
     free: &[bool],
-    laid: &Near,
+    laid: &LineIndex,
     settings: &FillSettings,
 ) -> Option<(usize, DVec2)> {
     let d = settings.stepover;
@@ -114,12 +114,12 @@ fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettin
 }
 
 /// Whether a link crosses no contour; it may end on them.
-fn is_clear(link: [DVec2; 2], laid: &Near) -> bool {
+fn is_clear(link: [DVec2; 2], laid: &LineIndex) -> bool {
     // Pulled off its ends by a hair, so that what it joins does not count.
     !laid.crosses(link[0].lerp(link[1], 1e-3), link[1].lerp(link[0], 1e-3))
 }
 
-fn join_incomplete(pieces: &[Piece], laid: &Near, outermost: &Region, settings: &FillSettings) -> Vec<Path> {
+fn join_incomplete(pieces: &[Piece], laid: &LineIndex, outermost: &Region, settings: &FillSettings) -> Vec<Path> {
     let mut free: Vec<bool> = vec![true; pieces.len()];
     let mut inside_out: Vec<usize> = (0..pieces.len()).collect();
     inside_out.sort_by_key(|&i| std::cmp::Reverse(pieces[i].level));
@@ -152,7 +152,7 @@ fn next_piece(
     level: usize,
     pieces: &[Piece],
     free: &[bool],
-    laid: &Near,
+    laid: &LineIndex,
     outermost: &Region,
     settings: &FillSettings,
 ) -> Option<(usize, bool)> {

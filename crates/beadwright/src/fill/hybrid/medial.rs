@@ -5,7 +5,7 @@
 //! side, so each of the n fills (W − d)/n, and its width follows within the limits of the process: speed keeps the bead
 //! height.
 
-use super::near::Near;
+use super::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
@@ -27,7 +27,7 @@ const SHORTEST_PART: f64 = 0.6;
 
 /// The passes of a narrow piece. `laid` holds all that is laid already, and then these too; `outermost` is where
 /// centre-lines may lie.
-pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut Near, settings: &FillSettings) -> Vec<Path> {
+pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut LineIndex, settings: &FillSettings) -> Vec<Path> {
     let spacing = settings.bead.width / SAMPLES;
     let mut lines: Vec<Line> = Vec::new();
     for ladder in ladders(&piece.clone().into(), spacing).iter().filter(|ladder| !is_knot(ladder)) {
@@ -43,13 +43,13 @@ pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut Near, settings: &Fi
 }
 
 /// The longest part of a line that crosses nothing that is laid, nor itself; it is laid then.
-fn uncrossed(mut line: Line, laid: &mut Near) -> Option<Line> {
+fn uncrossed(mut line: Line, laid: &mut LineIndex) -> Option<Line> {
     let closed = std::mem::take(&mut line.closed);
     if closed {
         line.points.extend(line.points.first().copied());
         line.widths.extend(line.widths.first().copied());
     }
-    let mut own = Near::new(laid.sight_mm());
+    let mut own = LineIndex::new(laid.sight_mm());
     let (mut best, mut start, mut longest, mut length) = (0..0, 0, 0.0, 0.0);
     for k in 0..line.points.len().saturating_sub(1) {
         let (a, b) = (line.points[k], line.points[k + 1]);
@@ -273,8 +273,8 @@ fn hit(piece: &Polygon, from: DVec2, way: DVec2) -> f64 {
 }
 
 /// Joins lines whose ends lie near each other, the nearest first; no link crosses what is laid, or these lines.
-fn join(mut lines: Vec<Line>, reach: f64, laid: &Near) -> Vec<Line> {
-    let mut own = Near::new(laid.sight_mm());
+fn join(mut lines: Vec<Line>, reach: f64, laid: &LineIndex) -> Vec<Line> {
+    let mut own = LineIndex::new(laid.sight_mm());
     lines.iter().for_each(|line| own.add_line(0, &line.points));
     loop {
         let end = |line: &Line, last: bool| if last { line.points.last() } else { line.points.first() }.copied();

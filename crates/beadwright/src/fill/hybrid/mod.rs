@@ -20,7 +20,7 @@ pub mod adapt;
 pub mod chain;
 pub mod contours;
 pub mod medial;
-pub mod near;
+pub mod line_index;
 pub mod pockets;
 pub mod skeleton;
 

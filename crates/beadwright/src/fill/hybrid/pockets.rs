@@ -88,7 +88,7 @@ fn level(region: Region, settings: &FillSettings) -> Level {
             .into_polygons()
             .into_iter()
             .filter(|shape| shape.area() >= hybrid.min_pocket_area)
-            .map(|shape| judge(shape, &back, settings))
+            .map(|shape| classified(shape, &back, settings))
             .collect();
         let laid = if hybrid.literal { back.intersection(&whole) } else { less_kept(&whole, &found) };
         contour.extend(laid.into_polygons());
@@ -103,7 +103,7 @@ fn less_kept(whole: &Region, pockets: &[Pocket]) -> Region {
 }
 
 /// Tells what a pocket is and whether it is kept: channels always, corners from a length on.
-fn judge(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket {
+fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket {
     let hybrid = &settings.hybrid;
     let near = 3.0 * hybrid.tolerance;
     let edge = edge_near(&shape, back, near);

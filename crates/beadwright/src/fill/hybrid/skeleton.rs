@@ -4,7 +4,7 @@
 //! fill and contours keep exactly d2. Narrow pieces get beads along their [medial axis](super::medial); wide ones, and
 //! by the paper all, a zigzag in the direction of their smallest rectangle.
 
-use super::near::Near;
+use super::line_index::LineIndex;
 use super::{ScanAlong, medial};
 use crate::fill::{FillSettings, Path, zigzag};
 use glam::DVec2;
@@ -19,7 +19,7 @@ const ROUNDS: usize = 3;
 /// The passes of all skeleton regions. `contours` are laid already, joined.
 pub fn fill(outermost: &Region, regions: &Region, contours: &[Path], settings: &FillSettings) -> Vec<Path> {
     let mut free = room(outermost, contours, settings);
-    let mut laid = Near::new(settings.stepover);
+    let mut laid = LineIndex::new(settings.stepover);
     contours.iter().for_each(|pass| laid.add_line(0, &pass.path()));
     let mut passes = Vec::new();
     for _ in 0..if settings.hybrid.literal { 1 } else { ROUNDS } {
@@ -37,7 +37,7 @@ fn fill_room(
     free: &Region,
     outermost: &Region,
     regions: &Region,
-    laid: &mut Near,
+    laid: &mut LineIndex,
     settings: &FillSettings,
 ) -> Vec<Path> {
     let mut passes = Vec::new();

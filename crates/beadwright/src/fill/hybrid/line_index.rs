@@ -4,7 +4,7 @@ use glam::{DVec2, IVec2};
 use std::collections::HashMap;
 
 /// Lines by number, cut in pieces, by place.
-pub struct Near {
+pub struct LineIndex {
     size: f64,
     cells: HashMap<IVec2, Vec<Piece>>,
 }
@@ -12,7 +12,7 @@ pub struct Near {
 /// Number of the line, number of the piece in it, and its ends.
 type Piece = (usize, usize, DVec2, DVec2);
 
-impl Near {
+impl LineIndex {
     /// No lines yet; nothing is seen further than `sight` (mm).
     pub fn new(sight: f64) -> Self {
         Self { size: sight, cells: HashMap::new() }

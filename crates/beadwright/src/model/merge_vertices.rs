@@ -7,13 +7,13 @@ use rayon::prelude::*;
 pub(crate) const BLOCK: usize = 32;
 
 /// Vertices found so far, and the table that finds them again.
-pub(crate) struct Welder {
+pub(crate) struct VertexMerger {
     vertices: Vec<[f32; 3]>,
     /// Index + 1 of a vertex, 0 for an empty slot; a power of two in length.
     slots: Vec<u32>,
 }
 
-impl Welder {
+impl VertexMerger {
     /// Room for a closed mesh of that many triangles, which has about half as many vertices.
     pub(crate) fn for_triangles(triangles: usize) -> Self {
         let slots = triangles.max(16).next_power_of_two();
