@@ -5,7 +5,7 @@ use crate::export::Export;
 use crate::form::Parsed;
 use crate::history::History;
 use crate::jobs::{Ask, Job};
-use crate::planner::{Urgency, Planner};
+use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;

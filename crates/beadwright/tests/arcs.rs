@@ -1,24 +1,23 @@
 //! Arcs and straight pieces fitted to planned paths: fewer moves along the same path.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod common;
+
 use beadwright::example;
 use beadwright::model::{Mesh, import};
 use beadwright::pass::{Along, Pass};
 use beadwright::plan::{self, Plan};
-use beadwright::profile::Profile;
 use beadwright::program::{Circle, Instruction, ProgramSettings, Programmer};
 use beadwright::task::Task;
+use common::{model, profile_by};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
 
 fn fitted() -> ProgramSettings {
     ProgramSettings { chord_tolerance: 0.05, arcs: true, ..ProgramSettings::default() }
 }
 
 fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
-    let mut profile = Profile::built_in(profile).unwrap();
-    profile.fill.strategy = strategy.to_owned();
-    plan::plan("part", mesh, &profile, &Task::new()).unwrap()
+    plan::plan("part", mesh, &profile_by(profile, strategy), &Task::new()).unwrap()
 }
 
 /// Instructions of every layer, as planned and fitted.
@@ -117,23 +116,17 @@ fn seconds(instructions: &[Instruction]) -> f64 {
     sum
 }
 
-fn thruster() -> Option<Mesh> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
-    let folder = std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from);
-    let Ok(bytes) = std::fs::read(folder.join("openthruster_prop_cw.stl")) else {
-        eprintln!("skipped: there is no openthruster_prop_cw.stl in {}", folder.display());
-        return None;
-    };
-    let mut mesh = import(&bytes, &Task::new()).unwrap().mesh;
+fn thruster() -> Mesh {
+    let mut mesh = import(&model("openthruster_prop_cw.stl"), &Task::new()).unwrap().mesh;
     mesh.place(3.66, DVec3::ZERO);
-    Some(mesh)
+    mesh
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn propellers_take_a_third_of_the_moves_along_the_same_path() {
     let propeller = example::find("propeller").unwrap().mesh();
-    for (name, mesh) in [("propeller", Some(propeller)), ("thruster", thruster())] {
-        let Some(mesh) = mesh else { continue };
+    for (name, mesh) in [("propeller", propeller), ("thruster", thruster())] {
         for strategy in ["contour", "hybrid"] {
             let plan = planned(&mesh, "cmt-al2319-kuka", strategy);
             let case = format!("{name} {strategy}");

@@ -1,26 +1,21 @@
 //! Checks: every seeded fault is found by the check that is there for it, and clean plans have no finding.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use beadwright::bead::Law;
 use beadwright::check::{self, CHECKS};
-use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::pass::Along;
 use beadwright::plan;
 use beadwright::process::Follow;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use common::profile_by;
 use glam::DVec3;
 
-fn profile(name: &str, strategy: &str) -> Profile {
-    let mut profile = Profile::built_in(name).unwrap();
-    profile.fill.strategy = strategy.to_owned();
-    profile
-}
-
 fn planned(part: &str, profile: &Profile, layers: usize) -> Vec<Layer> {
-    let mesh = example::find(part).unwrap().mesh();
-    let mut plan = plan::plan(part, &mesh, profile, &Task::new()).unwrap();
+    let mut plan = common::planned(part, profile);
     plan.layers.truncate(layers);
     plan.layers
 }
@@ -39,20 +34,20 @@ fn found(layers: &[Layer], profile: &Profile) -> Vec<&'static str> {
 fn clean_plans_have_no_finding() {
     for part in ["cross", "star", "gear", "propeller"] {
         for strategy in ["loop", "hybrid"] {
-            let profile = profile("cmt-al2319-kuka", strategy);
+            let profile = profile_by("cmt-al2319-kuka", strategy);
             let mut found = found(&planned(part, &profile, 10), &profile);
             // To close all voids the hybrid would need passes that are over before their arc is steady.
             found.retain(|check| strategy != "hybrid" || *check != "void");
             assert_eq!(found, [""; 0], "{part} by {strategy}");
         }
     }
-    let profile = profile("cmt-steel-abb", "wall");
+    let profile = profile_by("cmt-steel-abb", "wall");
     assert_eq!(found(&planned("tian", &profile, 18), &profile), [""; 0]);
 }
 
 #[test]
 fn the_torchs_speed_and_the_heat_are_judged_whatever_follows_the_width() {
-    let mut profile = profile("cmt-al2319-kuka", "loop");
+    let mut profile = profile_by("cmt-al2319-kuka", "loop");
     // Beads of the gear are 0.8 to 1.3 widths wide.
     let layers = planned("gear", &profile, 2);
     let speed = profile.process.deposition_speed;
@@ -70,7 +65,7 @@ fn the_torchs_speed_and_the_heat_are_judged_whatever_follows_the_width() {
 
 #[test]
 fn wire_is_balanced_by_the_law_of_the_bead() {
-    let mut profile = profile("cmt-al2319-kuka", "loop");
+    let mut profile = profile_by("cmt-al2319-kuka", "loop");
     profile.bead.law = Law::ConstantRatio;
     let layers = planned("gear", &profile, 2);
     assert!(!found(&layers, &profile).contains(&"wire-balance"));
@@ -177,7 +172,7 @@ const FAULTS: [Fault; 20] = [
 
 #[test]
 fn every_seeded_fault_is_found() {
-    let profile = profile("cmt-al2319-kuka", "hybrid");
+    let profile = profile_by("cmt-al2319-kuka", "hybrid");
     let clean = planned("cross", &profile, 4);
     for (what, seed, check) in FAULTS {
         let (mut layers, mut profile) = (clean.clone(), profile.clone());
@@ -189,7 +184,7 @@ fn every_seeded_fault_is_found() {
 
 #[test]
 fn towers_stacked_starts_and_large_layers_are_found() {
-    let mut profile = profile("cmt-al2319-kuka", "contour");
+    let mut profile = profile_by("cmt-al2319-kuka", "contour");
     let layer = planned("cross", &profile, 1).remove(0);
     let stack = |count: usize| -> Vec<Layer> {
         let place = |k: usize| {
@@ -213,7 +208,7 @@ fn towers_stacked_starts_and_large_layers_are_found() {
 
 #[test]
 fn points_too_dense_for_the_controller_are_found() {
-    let mut profile = profile("cmt-al2319-kuka", "contour");
+    let mut profile = profile_by("cmt-al2319-kuka", "contour");
     let mut layers = planned("cross", &profile, 1);
     let z = layers[0].z;
     // A zigzag of 0.2 mm that no tolerance of 0.05 mm smooths, 28 ms a move at 10 mm/s.

@@ -1,6 +1,9 @@
 //! One small job in every dialect: golden files, and the same poses, arc starts and weld length read back from each.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::with_all_dialects;
 mod readers;
 
 use beadwright::dialect::fanuc::FanucSpeed;
@@ -25,12 +28,7 @@ type Files = BTreeMap<String, String>;
 
 /// All dialects on one process: that of the steel cells, arcs fitted within 0.05 mm.
 fn profile() -> Profile {
-    let built_in = |name| Profile::built_in(name).unwrap();
-    let mut profile = built_in("cmt-steel-robots");
-    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
-    profile.dialects.krl = built_in("cmt-al2319-kuka").dialects.krl;
-    profile.dialects.gcode = built_in("plasma-304-cnc").dialects.gcode;
-    profile.dialects.marlin = built_in("fdm-abs-0.4").dialects.marlin;
+    let mut profile = with_all_dialects("cmt-steel-robots");
     (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
     profile
 }

@@ -1,6 +1,9 @@
 //! Printers: raster angle, merged sub-regions, sparse infill, flow, and the G-code read back.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod common;
+
+use common::{model, profile};
 mod readers;
 mod solids;
 
@@ -23,11 +26,6 @@ use beadwright::task::Task;
 use proptest::prelude::*;
 use solids::runner;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::path::{Path, PathBuf};
-
-fn profile() -> Profile {
-    Profile::built_in("fdm-abs-0.4").unwrap()
-}
 
 /// A small part: a fifth of an example.
 fn plan_of(part: &str, profile: &Profile) -> Plan {
@@ -43,7 +41,7 @@ fn gcode(plan: &Plan, profile: &Profile) -> String {
 #[test]
 fn filament_is_the_deposited_volume() {
     for (part, relative) in [("plate", true), ("plate", false), ("gear", true), ("star", false)] {
-        let mut profile = profile();
+        let mut profile = profile("fdm-abs-0.4");
         profile.dialects.marlin.as_mut().unwrap().relative_extrusion = relative;
         let plan = plan_of(part, &profile);
         let print = readers::marlin::run(&gcode(&plan, &profile));
@@ -62,7 +60,7 @@ fn filament_is_the_deposited_volume() {
 
 #[test]
 fn our_own_reader_reads_the_same() {
-    let profile = profile();
+    let profile = profile("fdm-abs-0.4");
     let plan = plan_of("plate", &profile);
     let program = reading::read(&gcode(&plan, &profile), &mut |_| None, &Options::default()).unwrap();
     let (totals, metrics) = (program.totals(), &plan.summary.metrics);
@@ -75,7 +73,7 @@ fn our_own_reader_reads_the_same() {
 
 #[test]
 fn contours_come_before_the_fill() {
-    let plan = plan_of("plate", &profile());
+    let plan = plan_of("plate", &profile("fdm-abs-0.4"));
     for layer in &plan.layers {
         assert!(layer.passes.is_sorted_by_key(|p| p.kind == PassKind::Infill));
         assert_eq!(layer.passes.iter().filter(|p| p.kind == PassKind::Contour).count(), 6, "outline and five holes");
@@ -84,7 +82,7 @@ fn contours_come_before_the_fill() {
 
 #[test]
 fn sparse_infill_is_solid_at_tops_and_bottoms() {
-    let mut profile = profile();
+    let mut profile = profile("fdm-abs-0.4");
     profile.fill.infill_density = 0.2;
     let plan = plan_of("plate", &profile);
     let infill = |l: &Layer| l.passes.iter().filter(|p| p.kind == PassKind::Infill).map(Pass::length).sum::<f64>();
@@ -103,7 +101,7 @@ fn sparse_infill_is_solid_at_tops_and_bottoms() {
 
 #[test]
 fn the_best_angle_has_no_more_turns_than_any_other() {
-    let profile = profile();
+    let profile = profile("fdm-abs-0.4");
     let settings = profile.fill_settings(0);
     for part in ["plate", "gear", "star", "cross", "propeller"] {
         let mut mesh = example::find(part).unwrap().mesh();
@@ -127,18 +125,16 @@ fn the_best_angle_has_no_more_turns_than_any_other() {
 
 /// The direction of an edge wins over an angle 0.1° beside it that has hardly fewer turns.
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn an_edge_with_hardly_more_turns_wins() {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
-    let folder = std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from);
-    let Ok(bytes) = std::fs::read(folder.join("plate_holes.stl")) else {
-        return eprintln!("skipped: there is no plate_holes.stl in {}", folder.display());
-    };
+    let bytes = model("plate_holes.stl");
     let mesh = import(&bytes, &Task::new()).unwrap().mesh;
-    let layers = Slicer::new(&mesh, profile().slice_options(), &Task::new()).unwrap().all(&Task::new()).unwrap();
+    let layers =
+        Slicer::new(&mesh, profile("fdm-abs-0.4").slice_options(), &Task::new()).unwrap().all(&Task::new()).unwrap();
     let islands = &layers[layers.len() / 2].islands;
     // Lines of 0.32 and 0.6 mm would lie at 89.94 and 89.93° for 0.1 % less turns.
     for width in [0.8, 1.0, 1.2, 1.5] {
-        let profile = profile();
+        let profile = profile("fdm-abs-0.4");
         let mut settings = profile.fill_settings(0);
         settings.stepover *= width;
         for count in [1, 2] {
@@ -150,7 +146,7 @@ fn an_edge_with_hardly_more_turns_wins() {
 
 #[test]
 fn a_turned_part_has_a_turned_angle() {
-    let profile = profile();
+    let profile = profile("fdm-abs-0.4");
     let settings = profile.fill_settings(0);
     let ring = |turn: f64| {
         let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 15.0), (0.0, 15.0)].map(DVec2::from);

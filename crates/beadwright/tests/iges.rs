@@ -1,6 +1,9 @@
 //! IGES files: real ones, hand-made ones for every entity, and broken ones.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod common;
+
+use common::{model, models};
 mod definition;
 mod drafts;
 
@@ -12,7 +15,6 @@ use glam::{DVec3, dvec3};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fs;
-use std::path::{Path, PathBuf};
 
 /// A real file: its name, its unit in mm, and the number of entities of each type.
 type Real = (&'static str, f64, &'static [(u32, usize)]);
@@ -32,20 +34,6 @@ const REAL: [Real; 4] = [
     ),
     ("tubes_siemens.iges", 1000.0, &[(100, 1), (102, 2), (110, 7), (124, 1), (126, 1)]),
 ];
-
-fn models() -> Option<PathBuf> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
-    let folder = std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from);
-    if !folder.is_dir() {
-        eprintln!("skipped: there is no folder {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
-fn real(name: &str) -> Option<Vec<u8>> {
-    models().map(|folder| fs::read(folder.join(name)).unwrap())
-}
 
 /// The only curve of a file with one entity, without warnings.
 fn only(entity: u32, form: i32, parameters: &str) -> Nurbs {
@@ -77,9 +65,10 @@ fn spread(curve: &Nurbs) -> Vec<f64> {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn real_files_give_every_entity_and_curve() {
     for (name, unit, expect) in REAL {
-        let Some(bytes) = real(name) else { return };
+        let bytes = model(name);
         let file = read(&bytes).unwrap();
         let counts: Vec<(u32, usize)> = file.entities.iter().map(|e| (e.entity, e.read + e.unread)).collect();
         assert_eq!(counts, expect, "{name}");
@@ -96,8 +85,9 @@ fn real_files_give_every_entity_and_curve() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn every_shared_iges_file_is_in_the_table() {
-    let Some(folder) = models() else { return };
+    let folder = models();
     let names = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
     let mut iges: Vec<String> = names.filter(|n| n.ends_with(".igs") || n.ends_with(".iges")).collect();
     iges.sort();
@@ -105,10 +95,11 @@ fn every_shared_iges_file_is_in_the_table() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn real_curves_are_those_of_the_definition() {
     let (mut points, mut worst) = (0, 0.0_f64);
     for (name, ..) in REAL {
-        let Some(bytes) = real(name) else { return };
+        let bytes = model(name);
         for part in read(&bytes).unwrap().curves.iter().flat_map(|c| &c.parts) {
             // The recursion takes 2^degree steps for each control point.
             let few = if part.control_points().len() > 60 { 8 } else { 1 };
@@ -124,9 +115,10 @@ fn real_curves_are_those_of_the_definition() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn real_curves_survive_writing() {
     for (name, ..) in REAL {
-        let Some(bytes) = real(name) else { return };
+        let bytes = model(name);
         let parts: Vec<Nurbs> = read(&bytes).unwrap().curves.into_iter().flat_map(|c| c.parts).collect();
         let named: Vec<(&str, &Nurbs)> = parts.iter().map(|c| ("wall", c)).collect();
         let again = read(write(&named, &WriteOptions::default()).as_bytes()).unwrap();
@@ -137,8 +129,9 @@ fn real_curves_survive_writing() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn the_siemens_file_is_in_metres_and_its_arc_in_place() {
-    let Some(bytes) = real("tubes_siemens.iges") else { return };
+    let bytes = model("tubes_siemens.iges");
     let file = read(&bytes).unwrap();
     let curve = |entry| file.curves.iter().find(|c: &&IgesCurve| c.entry == entry).unwrap();
     assert!(file.system.contains("Siemens"));
@@ -159,8 +152,9 @@ fn the_siemens_file_is_in_metres_and_its_arc_in_place() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn curves_of_a_parameter_plane_are_marked_and_keep_their_numbers() {
-    let Some(bytes) = real("rounded_cube.iges") else { return };
+    let bytes = model("rounded_cube.iges");
     let file = read(&bytes).unwrap();
     let parametric = file.curves.iter().filter(|c| c.is_parametric);
     for curve in parametric.clone() {
@@ -504,8 +498,8 @@ proptest! {
         let mut bytes = match which {
             0 | 1 => own(),
             2 => write(&[("a", &cubic()), ("b", &cubic().reversed())], &WriteOptions::default()).into_bytes(),
-            3 => real("tubes_siemens.iges").unwrap_or_else(own),
-            _ => real("rounded_cube.iges").unwrap_or_else(own),
+            3 => fs::read(models().join("tubes_siemens.iges")).unwrap_or_else(|_| own()),
+            _ => fs::read(models().join("rounded_cube.iges")).unwrap_or_else(|_| own()),
         };
         for (place, value) in changes {
             let i = place.index(bytes.len());

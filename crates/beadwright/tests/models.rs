@@ -1,10 +1,13 @@
 //! Real parts from `BEADWRIGHT_MODELS` (else `shared/models` beside the workspace): all are imported and cut.
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
+
+mod common;
 
 use beadwright::model::import;
 use beadwright::slice::{Slice, SliceOptions, Slicer};
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
+use common::models;
 use glam::DVec3;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,16 +32,11 @@ const SOLID: [&str; 13] = [
 /// Files that must be refused, and a word of the reason.
 const REFUSED: [(&str, &str); 1] = [("pulley_t30_truncated.stl", "cut short")];
 
-fn models() -> Option<Vec<PathBuf>> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
-    let folder = std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from);
-    let Ok(entries) = fs::read_dir(&folder) else {
-        eprintln!("skipped: there is no folder {}", folder.display());
-        return None;
-    };
+fn paths() -> Vec<PathBuf> {
+    let entries = fs::read_dir(models()).expect("BEADWRIGHT_MODELS names the folder of shared models");
     let mut paths: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
     paths.sort();
-    Some(paths)
+    paths
 }
 
 fn name(path: &Path) -> String {
@@ -83,8 +81,9 @@ fn check(path: &Path) -> bool {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn every_model_is_cut_or_refused() {
-    let Some(paths) = models() else { return };
+    let paths = paths();
     let stl = paths.iter().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl")));
     for path in stl {
         let compared = check(path);
@@ -93,9 +92,9 @@ fn every_model_is_cut_or_refused() {
 }
 
 #[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
 fn models_in_other_formats_are_recognised() {
-    let Some(paths) = models() else { return };
-    for path in paths {
+    for path in paths() {
         let expect = match path.extension().and_then(|e| e.to_str()) {
             Some("3mf") => "a ZIP archive, such as 3MF",
             Some("gz") => "a gzip archive",

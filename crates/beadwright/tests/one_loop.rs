@@ -1,6 +1,8 @@
 //! One loop an island: invariants at any angle, closed forms, and what the loop is measured by.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use beadwright::bead::{Bead, Law, Section};
 use beadwright::deposit::{Figures, Judge};
 use beadwright::fill::{self, Fill, FillSettings, Path};
@@ -10,11 +12,8 @@ use beadwright::profile::Profile;
 use beadwright::slice::Slicer;
 use beadwright::task::Task;
 use beadwright::{example, pass, plan};
+use common::profile;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-fn profile() -> Profile {
-    Profile::built_in("cmt-al2319-kuka").unwrap()
-}
 
 fn lay(strategy: &str, island: &Polygon, settings: &FillSettings) -> Vec<Path> {
     let Fill { stages, .. } = fill::strategy(strategy).unwrap().fill(island, settings);
@@ -27,7 +26,7 @@ fn looped(island: &Polygon, profile: &Profile) -> Vec<Path> {
 
 fn slice(part: &str) -> Polygon {
     let mesh = example::find(part).unwrap().mesh();
-    let slicer = Slicer::new(&mesh, profile().slice_options(), &Task::new()).unwrap();
+    let slicer = Slicer::new(&mesh, profile("cmt-al2319-kuka").slice_options(), &Task::new()).unwrap();
     slicer.all(&Task::new()).unwrap().swap_remove(2).islands.swap_remove(0)
 }
 
@@ -81,7 +80,7 @@ fn to_boundary(island: &Polygon, p: DVec2) -> f64 {
 
 #[test]
 fn parts_are_filled_by_one_arc_start_at_any_angle() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     // Overfill in %: points of a star are narrower than two beads.
     for (part, overfill) in [("cross", 1.5), ("star", 2.0), ("gear", 1.5), ("propeller", 1.5)] {
         let island = slice(part);
@@ -102,7 +101,7 @@ fn parts_are_filled_by_one_arc_start_at_any_angle() {
 
 #[test]
 fn beads_keep_to_their_window_and_to_the_outline() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let w = profile.bead.width;
     for part in ["cross", "star", "gear", "propeller"] {
         let island = turned(&slice(part), 23.0);
@@ -123,7 +122,7 @@ fn beads_keep_to_their_window_and_to_the_outline() {
 /// A layer takes the metal of its area, less what its rounded rim lacks.
 #[test]
 fn loops_lay_the_metal_of_the_area() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let (bead, law) = (profile.bead(), &profile.bead.law);
     let (w, d) = (bead.width, profile.stepover());
     let disc = Polygon::simple(circle((0.0, 0.0), 60.0, 400, 1.0));
@@ -147,7 +146,7 @@ fn loops_lay_the_metal_of_the_area() {
 
 #[test]
 fn a_disc_is_a_spiral_with_metal_in_its_middle() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     for radius in [20.0, 31.0, 44.5, 58.0] {
         let island = Polygon::simple(circle((0.0, 0.0), radius, 300, 1.0));
         let passes = looped(&island, &profile);
@@ -161,7 +160,7 @@ fn a_disc_is_a_spiral_with_metal_in_its_middle() {
 
 #[test]
 fn a_part_may_lie_anywhere_and_a_quarter_turn_changes_nothing_that_counts() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let (star, by) = (slice("star"), DVec2::new(1234.5, -771.25));
     let place = |datum: DVec2| FillSettings { datum, ..profile.fill_settings(3) };
     let (here, there) = (lay("loop", &star, &place(DVec2::ZERO)), lay("loop", &moved(&star, |p| p + by), &place(by)));
@@ -185,7 +184,7 @@ fn a_part_may_lie_anywhere_and_a_quarter_turn_changes_nothing_that_counts() {
 
 #[test]
 fn islands_of_many_kinds_have_one_arc_start() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let comb = {
         let mut points = vec![(0.0, 0.0), (174.0, 0.0)];
         for tooth in (0..6).rev() {
@@ -224,7 +223,7 @@ fn islands_of_many_kinds_have_one_arc_start() {
 
 #[test]
 fn flips_lie_elsewhere_on_the_next_layer() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let plate = Polygon::simple(rectangle((0.0, 0.0), (150.0, 110.0)));
     let way = |layer: usize| {
         let settings = FillSettings { layer, ..profile.fill_settings(layer) };
@@ -239,7 +238,7 @@ fn flips_lie_elsewhere_on_the_next_layer() {
 
 #[test]
 fn thin_walls_are_welded_by_every_solid_strategy_and_tied_in() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     // A block of 60 mm with a fin of 6 mm, under a bead of 7.54 mm.
     let outline =
         [(0.0, 0.0), (60.0, 0.0), (60.0, 27.0), (120.0, 27.0), (120.0, 33.0), (60.0, 33.0), (60.0, 60.0), (0.0, 60.0)];
@@ -276,7 +275,7 @@ fn thin_walls_are_welded_by_every_solid_strategy_and_tied_in() {
 
 #[test]
 fn programs_have_one_arc_start_a_layer_and_what_does_not_outlast_it_is_left_out() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let mesh = example::find("propeller").unwrap().mesh();
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
     assert_eq!(plan.header.strategy, "loop", "the default");
@@ -294,7 +293,7 @@ fn programs_have_one_arc_start_a_layer_and_what_does_not_outlast_it_is_left_out(
 
 #[test]
 fn noise_of_the_width_does_little() {
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let w = profile.bead.width;
     for part in ["cross", "gear", "propeller"] {
         let island = slice(part);
@@ -355,7 +354,7 @@ fn laws_keep_the_metal() {
 /// The height of a start hump and the depth of a crater are what the profile says, over the lengths that it says.
 #[test]
 fn starts_stand_up_and_ends_sink() {
-    let mut profile = profile();
+    let mut profile = profile("cmt-al2319-kuka");
     let line = pass::Pass {
         kind: pass::PassKind::Contour,
         closed: false,
@@ -384,7 +383,7 @@ fn starts_stand_up_and_ends_sink() {
 #[test]
 fn a_quarter_turn_of_a_square_is_the_square() {
     // What symmetric islands get must not depend on which way they are looked at.
-    let profile = profile();
+    let profile = profile("cmt-al2319-kuka");
     let square = Polygon::simple(rectangle((-40.0, -40.0), (40.0, 40.0)));
     let length = |island: &Polygon| looped(island, &profile).iter().map(Path::length).sum::<f64>();
     let way = DVec2::from_angle(FRAC_PI_2);

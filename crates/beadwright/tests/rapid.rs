@@ -1,6 +1,9 @@
 //! The post `rapid`: a small job as golden files, the variants of the profile, names, speeds, and the job read back.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod common;
+
+use common::profile;
 mod readers;
 
 use beadwright::dialect;
@@ -17,12 +20,8 @@ use std::collections::BTreeMap;
 
 type Files = BTreeMap<String, String>;
 
-fn profile() -> Profile {
-    Profile::built_in("cmt-steel-abb").unwrap()
-}
-
 fn plain() -> Profile {
-    let mut profile = profile();
+    let mut profile = profile("cmt-steel-abb");
     let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.arc, rapid.modules) = (RapidArc::Plain, RapidModules::Call);
     profile
@@ -78,7 +77,7 @@ fn written(part: &str, layers: &[Layer], count: usize, profile: &Profile) -> Fil
 
 #[test]
 fn the_job_is_written_as_before() {
-    readers::golden("rapid", &written("frame", &job(), 2, &profile()));
+    readers::golden("rapid", &written("frame", &job(), 2, &profile("cmt-steel-abb")));
     readers::golden("rapid-plain", &written("frame", &job(), 2, &plain()));
 }
 
@@ -86,7 +85,7 @@ fn the_job_is_written_as_before() {
 fn the_job_reads_back_as_planned() {
     let layers = job();
     let planned: f64 = layers.iter().flat_map(|l| &l.passes).map(Pass::length).sum();
-    for (profile, output) in [(profile(), ""), (plain(), "doArc")] {
+    for (profile, output) in [(profile("cmt-steel-abb"), ""), (plain(), "doArc")] {
         let files = written("frame", &layers, 2, &profile);
         let motion = readers::rapid::run(&files, "frame", output);
         assert!((motion.weld_length() - planned).abs() < 0.01, "{} for {planned}", motion.weld_length());
@@ -119,11 +118,11 @@ fn the_job_reads_back_as_planned() {
 
 #[test]
 fn every_layer_declares_the_few_speeds_that_it_uses() {
-    let files = written("frame", &job(), 2, &profile());
+    let files = written("frame", &job(), 2, &profile("cmt-steel-abb"));
     for layer in ["frame_L001.mod", "frame_L002.mod"] {
         assert_eq!(files[layer].matches("LOCAL PERS welddata ").count(), 4, "{}", files[layer]);
     }
-    let mut coarse = profile();
+    let mut coarse = profile("cmt-steel-abb");
     coarse.dialects.rapid.as_mut().unwrap().speed_step = 50.0;
     let files = written("frame", &job(), 2, &coarse);
     assert_eq!(files["frame_L001.mod"].matches(" wd1:=[8.000,0,[1,7,").count(), 1);
@@ -131,7 +130,7 @@ fn every_layer_declares_the_few_speeds_that_it_uses() {
     // A step too coarse for slow beads does not stop them.
     let mut slow = job();
     slow[0].passes[1].pace = Along::Same(0.05);
-    let motion = readers::rapid::run(&written("frame", &slow, 2, &profile()), "frame", "");
+    let motion = readers::rapid::run(&written("frame", &slow, 2, &profile("cmt-steel-abb")), "frame", "");
     assert!(motion.welds[1].speeds.iter().all(|s| *s == 0.05 || *s == 0.2), "{:?}", motion.welds[1].speeds);
 }
 
@@ -139,7 +138,7 @@ fn every_layer_declares_the_few_speeds_that_it_uses() {
 fn long_and_strange_names_stay_legal_and_distinct() {
     for part in [&*"w".repeat(60), "fine", "7-segment display", "Gr\u{fc}n", "tTorch", "MODULE", "", "layer001", "wd1"]
     {
-        let mut profile = profile();
+        let mut profile = profile("cmt-steel-abb");
         profile.dialects.rapid.as_mut().unwrap().folder = format!("HOME:/{}", "f".repeat(34));
         for count in [2, 20_000] {
             let files = written(part, &job(), count, &profile);
@@ -151,7 +150,7 @@ fn long_and_strange_names_stay_legal_and_distinct() {
 
 #[test]
 fn exact_stops_without_a_zone_and_no_list_where_none_is_wanted() {
-    let mut profile = profile();
+    let mut profile = profile("cmt-steel-abb");
     let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.zone, rapid.pgf, rapid.wire_feed_unit) = (0.0, false, WireFeedUnit::MillimetresPerSecond);
     rapid.orientation = [0.0, 0.7072, 0.0, 0.7072];
@@ -165,7 +164,7 @@ fn exact_stops_without_a_zone_and_no_list_where_none_is_wanted() {
 
 #[test]
 fn data_of_the_controller_are_not_declared_again() {
-    let mut profile = profile();
+    let mut profile = profile("cmt-steel-abb");
     let rapid = profile.dialects.rapid.as_mut().unwrap();
     (rapid.tool_frame, rapid.part_frame) = (None, None);
     let main = &written("frame", &job(), 2, &profile)["frame.mod"];
@@ -174,7 +173,7 @@ fn data_of_the_controller_are_not_declared_again() {
 
 #[test]
 fn the_test_reader_refuses_what_a_controller_would() {
-    let good = written("frame", &job(), 2, &profile());
+    let good = written("frame", &job(), 2, &profile("cmt-steel-abb"));
     let taken = |files: &Files| std::panic::catch_unwind(|| readers::rapid::run(files, "frame", "")).is_ok();
     assert!(taken(&good));
     for (file, old, new) in [

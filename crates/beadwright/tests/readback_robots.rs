@@ -1,6 +1,8 @@
 //! FANUC TP, INFORM and URScript read back: our own programs in every dialect, foreign words, errors, and any lines at all.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod common;
+
 use beadwright::compare::{self, Totals};
 use beadwright::deposit::DepositSettings;
 use beadwright::dialect::fanuc::FanucSpeed;
@@ -12,6 +14,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{dialect, example, simulate};
+use common::with_all_dialects;
 use glam::DVec3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -30,13 +33,7 @@ fn try_read(text: &str) -> Result<ReadProgram, ReadError> {
 
 /// All dialects on the aluminium process, whose beads the hybrid lets grow and shrink.
 fn profile() -> Profile {
-    let built_in = |name| Profile::built_in(name).unwrap();
-    let mut profile = built_in("cmt-al2319-kuka");
-    let robots = built_in("cmt-steel-robots");
-    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
-    (profile.dialects.fanuc, profile.dialects.inform, profile.dialects.urscript) =
-        (robots.dialects.fanuc, robots.dialects.inform, robots.dialects.urscript);
-    profile.dialects.gcode = built_in("plasma-304-cnc").dialects.gcode;
+    let mut profile = with_all_dialects("cmt-al2319-kuka");
     profile.fill.strategy = "hybrid".to_owned();
     profile.dialects.rapid.as_mut().unwrap().speed_step = 0.01;
     profile

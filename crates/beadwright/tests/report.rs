@@ -1,25 +1,25 @@
 //! `report.html` gives back what was planned, loads nothing, and lets no text of the user become markup.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::RepairReport;
 use beadwright::pass::{Along, Pass, PassKind};
-use beadwright::plan::{self, Plan};
+use beadwright::plan::Plan;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::process::Process;
 use beadwright::profile::Profile;
 use beadwright::report::{Report, encode, svg};
-use beadwright::task::Task;
 use beadwright::warning::{Warning, WarningKind};
+use common::profile;
 use std::io::Read;
 
 fn planned(part: &str) -> (Plan, Profile) {
-    let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    let mesh = example::find(part).unwrap().mesh();
-    (plan::plan(part, &mesh, &profile, &Task::new()).unwrap(), profile)
+    let profile = profile("cmt-al2319-kuka");
+    (common::planned(part, &profile), profile)
 }
 
 fn process() -> Process {

@@ -2,6 +2,8 @@
 //! the angle of a turn table.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use beadwright::dialect;
 use beadwright::dialect::krl::KrlArc;
 use beadwright::layer::Layer;
@@ -9,16 +11,9 @@ use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track, part_from_tool};
+use common::with_all_dialects;
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::collections::BTreeMap;
-
-fn profile() -> Profile {
-    let built_in = |name| Profile::built_in(name).unwrap();
-    let mut profile = built_in("cmt-steel-robots");
-    profile.dialects.rapid = built_in("cmt-steel-abb").dialects.rapid;
-    profile.dialects.krl = built_in("cmt-al2319-kuka").dialects.krl;
-    profile
-}
 
 fn job() -> Vec<Layer> {
     let points = vec![DVec3::new(0.0, 0.0, 2.0), DVec3::new(60.0, 0.0, 2.0), DVec3::new(60.0, 40.0, 2.0)];
@@ -85,7 +80,7 @@ const POSTS: [&str; 5] = ["krl", "rapid", "fanuc", "inform", "urscript"];
 #[test]
 fn every_dialect_writes_the_same_turn() {
     for angle in [0.0, 37.5, 100.0, -90.0, 180.0, 315.0] {
-        let mut profile = profile();
+        let mut profile = with_all_dialects("cmt-steel-robots");
         profile.program.torch_angle = angle;
         let expected = DMat3::from_quat(part_from_tool(DVec3::ZERO, angle).rotation);
         POSTS.iter().for_each(|post| all_are(post, &profile, expected));
@@ -99,7 +94,7 @@ fn every_dialect_writes_the_same_turn() {
 fn a_leaning_torch_keeps_its_wire() {
     let lean = DQuat::from_euler(EulerRot::ZYX, 0.3, 0.2, 2.9);
     let (z, y, x) = lean.to_euler(EulerRot::ZYX);
-    let mut profile = profile();
+    let mut profile = with_all_dialects("cmt-steel-robots");
     profile.dialects.krl.as_mut().unwrap().orientation = [z, y, x].map(f64::to_degrees);
     profile.dialects.fanuc.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
     profile.dialects.inform.as_mut().unwrap().orientation = [x, y, z].map(f64::to_degrees);
@@ -121,7 +116,7 @@ fn the_angle_of_reach_is_what_the_program_has() {
         let reach = robot::reach(&cell, cell.part, &Track::of(&job(), &Profile::built_in("cmt-al2319-kuka").unwrap()));
         let angle = reach.turning.program_angle().unwrap();
         assert!((-180.0..=180.0).contains(&angle) && reach.turning.range.0 == reach.turning.range.1);
-        let mut profile = profile();
+        let mut profile = with_all_dialects("cmt-steel-robots");
         profile.program.torch_angle = angle;
         let base_from_part = cell.part.base_from_part();
         let (_, pose) = reach.reached().last().unwrap();
@@ -132,7 +127,7 @@ fn the_angle_of_reach_is_what_the_program_has() {
 
 #[test]
 fn the_table_stands_in_every_pose_or_the_post_refuses() {
-    let mut profile = profile();
+    let mut profile = with_all_dialects("cmt-steel-robots");
     profile.program.table_angle = Some(-35.0);
     let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();
     let poses = |text: &str, mark: &str| text.matches(mark).count();

@@ -1,6 +1,8 @@
 //! Thin walls: what the strategy lays on the parts of Li et al., and what that would build.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use beadwright::deposit::{self, Nominal, Stroke};
 use beadwright::example::{self, blade};
 use beadwright::fill::wall::graph::{Graph, Line};
@@ -11,6 +13,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::slice::Slicer;
 use beadwright::task::Task;
+use common::planned;
 use glam::DVec2;
 use planar::medial::Node;
 use planar::{Polygon, Ring};
@@ -22,10 +25,6 @@ fn profile(width: f64, height: f64, layer: f64) -> Profile {
     profile.layers.height = layer;
     profile.fill.strategy = "wall".to_owned();
     profile
-}
-
-fn planned(name: &str, profile: &Profile) -> Plan {
-    plan::plan(name, &example::find(name).unwrap().mesh(), profile, &Task::new()).unwrap()
 }
 
 fn tian() -> (Plan, Profile) {

@@ -1,7 +1,7 @@
 //! Draws a layer in the coordinates of the part.
 
 use super::heat::{VOID, heat};
-use super::{Eye, Show, Drawing};
+use super::{Drawing, Eye, Show};
 use crate::view3d::palette;
 use beadwright::deposit::picture;
 use beadwright::fill::hybrid::Steps;

@@ -152,7 +152,12 @@ pub fn check<L: Borrow<Layer>>(
 }
 
 /// Runs all checks on a plan that was judged; `rise` is the nominal one of a layer, mm.
-pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, rise: f64, judged: LayerFigures) -> Vec<Finding> {
+pub fn check_figures<L: Borrow<Layer>>(
+    layers: &[L],
+    profile: &Profile,
+    rise: f64,
+    judged: LayerFigures,
+) -> Vec<Finding> {
     let LayerFigures { figures, growth, .. } = judged;
     let layers = layers.iter().map(L::borrow).collect();
     let subject = Subject { layers, profile, rise, figures, growth };

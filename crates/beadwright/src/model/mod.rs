@@ -13,12 +13,12 @@
 
 pub(crate) mod adjacency;
 pub mod iges;
+pub(crate) mod merge_vertices;
 mod part;
 pub mod repair;
 pub mod stl;
 pub mod units;
 pub mod wall_curves;
-pub(crate) mod merge_vertices;
 
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;

@@ -2,7 +2,7 @@
 
 use super::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
 use super::cell::{Cell, PartPlace};
-use super::finding::{ReachFinding, Findings, Trouble};
+use super::finding::{Findings, ReachFinding, Trouble};
 use super::track::{Stop, Track};
 use super::{part_from_tool, turn};
 use rayon::prelude::*;

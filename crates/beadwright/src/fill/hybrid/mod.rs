@@ -19,8 +19,8 @@
 pub mod adapt;
 pub mod chain;
 pub mod contours;
-pub mod medial;
 pub mod line_index;
+pub mod medial;
 pub mod pockets;
 pub mod skeleton;
 

@@ -1,0 +1,51 @@
+//! What many tests begin with: profiles, planned examples, shared models.
+#![allow(dead_code, reason = "each test uses some of it")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
+
+use beadwright::example;
+use beadwright::plan::{self, Plan};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
+use std::path::{Path, PathBuf};
+
+/// A built-in profile.
+pub(crate) fn profile(name: &str) -> Profile {
+    Profile::built_in(name).unwrap()
+}
+
+/// A built-in profile with a strategy.
+pub(crate) fn profile_by(name: &str, strategy: &str) -> Profile {
+    let mut profile = profile(name);
+    profile.fill.strategy = strategy.to_owned();
+    profile
+}
+
+/// A built-in profile with the sections of all dialects.
+pub(crate) fn with_all_dialects(name: &str) -> Profile {
+    let (mut all, robots) = (profile(name), profile("cmt-steel-robots").dialects);
+    all.dialects = profile("cmt-steel-abb").dialects;
+    all.dialects.krl = profile("cmt-al2319-kuka").dialects.krl;
+    all.dialects.gcode = profile("plasma-304-cnc").dialects.gcode;
+    all.dialects.marlin = profile("fdm-abs-0.4").dialects.marlin;
+    (all.dialects.fanuc, all.dialects.inform, all.dialects.urscript) = (robots.fanuc, robots.inform, robots.urscript);
+    all
+}
+
+/// An example part, planned.
+pub(crate) fn planned(part: &str, profile: &Profile) -> Plan {
+    plan::plan(part, &example::find(part).unwrap().mesh(), profile, &Task::new()).unwrap()
+}
+
+/// Where the shared models lie. Tests that need them are ignored where the folder is missing, but fail under CI=true
+/// (`build.rs`).
+pub(crate) fn models() -> PathBuf {
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/models");
+    std::env::var_os("BEADWRIGHT_MODELS").map_or_else(default, PathBuf::from)
+}
+
+/// The bytes of a shared model.
+pub(crate) fn model(name: &str) -> Vec<u8> {
+    let path = models().join(name);
+    std::fs::read(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}. BEADWRIGHT_MODELS names the folder.", path.display()))
+}
