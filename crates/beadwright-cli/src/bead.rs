@@ -1,4 +1,4 @@
-//! `beadwright bead`: a library of measured beads, and the parameters of a wanted one.
+//! `beadwright bead`: a library of measured beads, and the parameters for a wanted one.
 
 use anyhow::Context;
 use beadwright::bead::Overlap;
@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
-    /// Fit width and height of measured single beads; writes the library.
+    /// Fit the width and height of measured single beads, and write the library.
     Fit(Fit),
-    /// Foretell the bead of given parameters.
+    /// Predict the bead for given parameters.
     Predict(Predict),
-    /// Find the parameters of a wanted bead inside the measured range.
+    /// Find the parameters for a wanted bead within the measured range.
     Solve(Solve),
-    /// Write invented measurements as CSV, to try the others with.
+    /// Write invented measurements as CSV, to try out the other commands.
     Example {
         /// File to write.
         #[arg(short, long, default_value = "bead-example.csv", value_name = "FILE")]
@@ -28,9 +28,9 @@ pub(crate) enum Command {
 
 #[derive(clap::Args)]
 pub(crate) struct Fit {
-    /// CSV with one bead a line; the first line names the columns with their units, such as current_a, width_mm.
+    /// CSV with one bead per line; the first line names the columns with their units, such as current_a, width_mm.
     data: PathBuf,
-    /// Columns that are process parameters; all but width and height when left out.
+    /// Columns that are process parameters; all but width and height if left out.
     #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
     inputs: Option<Vec<String>>,
     /// Column with the bead width.
@@ -42,10 +42,10 @@ pub(crate) struct Fit {
     /// Library to write.
     #[arg(short, long, default_value = "bead-library.toml", value_name = "FILE")]
     output: PathBuf,
-    /// Picture of width/height over the first input, a curve for every value of the second.
+    /// Picture of width/height over the first input, with a curve for each value of the second.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }
@@ -59,7 +59,7 @@ pub(crate) struct Predict {
     values: Vec<(String, f64)>,
     #[command(flatten)]
     layering: LayeringArguments,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }
@@ -74,23 +74,23 @@ pub(crate) struct Solve {
     /// Wanted height of a layer, mm.
     #[arg(long, value_name = "MM")]
     layer_height: f64,
-    /// A narrower range of a parameter, such as current=100..150, or one value; may be given several times.
+    /// A narrower range for a parameter, such as current=100..150, or a single value; may be given several times.
     #[arg(long, value_parser = parse_limit, value_name = "NAME=MIN..MAX")]
     limit: Vec<Limit>,
-    /// Deviation of width and layer height up to which the wish counts as met, %.
+    /// Largest deviation of width and layer height that still counts as a match, %.
     #[arg(long, default_value_t = 0.5, value_name = "PERCENT")]
     tolerance: f64,
     #[command(flatten)]
     layering: LayeringArguments,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }
 
 #[derive(clap::Args)]
 struct LayeringArguments {
-    /// Closed layers of neighbouring beads: `tangent`, `inclined-flat-top`, or the stepover in mm. Without it a layer is
-    /// one bead of a wall.
+    /// Overlap of neighbouring beads in closed layers: `tangent`, `inclined-flat-top`, or the stepover in mm. Without
+    /// it, a layer is a single bead of a wall.
     #[arg(long, value_name = "OVERLAP|MM")]
     overlap: Option<String>,
 }
@@ -232,7 +232,7 @@ fn as_json(library: &BeadLibrary, values: &[f64], found: &Prediction, layer_heig
     })
 }
 
-/// Invented data is called so wherever it shows.
+/// Invented data is labelled as such wherever it is shown.
 fn warn(out: &mut impl Write, library: &BeadLibrary) -> std::io::Result<()> {
     if library.synthetic {
         writeln!(out, "SYNTHETIC data for demonstration: no bead was measured.\n")?;

@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     /// Profile that the plan was made with: a built-in name or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// A value of the profile, such as check.max_void=1; may be given several times.
+    /// Change a value of the profile, such as check.max_void=1; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Also check whether the robot of this cell can weld the plan: a built-in name or a TOML file.
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Findings of one check that are printed; all of them stand in the JSON.
+/// Number of findings of one check that are printed; the JSON has all of them.
 const PRINTED: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -81,7 +81,7 @@ fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
     found.iter().map(finding).collect()
 }
 
-/// Name of what the robot is asked.
+/// Name of the check that asks the robot.
 const REACH: &str = "reach";
 
 fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {

@@ -16,27 +16,27 @@ pub(crate) struct Arguments {
     /// Profile: a built-in name or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// A value of the profile; may be given several times.
+    /// Change a value of the profile; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Strategies; all when left out. May be given several times.
+    /// Strategy to compare; all strategies if left out. May be given several times.
     #[arg(long, short, value_name = "NAME")]
     strategy: Vec<String>,
-    /// A program of the same part, to be judged beside them; may be given several times.
+    /// A program for the same part, to judge alongside them; may be given several times.
     #[arg(long, value_name = "FILE")]
     program: Vec<PathBuf>,
     #[command(flatten)]
     reading: program::Reading,
-    /// Layers to be judged, counted from 1, such as 1,5,10-20; all when left out.
+    /// Layers to judge, counted from 1, such as 1,5,10-20; all layers if left out.
     #[arg(long, value_parser = parse_layers, value_name = "LIST")]
     layers: Option<Chosen>,
-    /// Distance of the deposit model's grid points, mm; a twentieth of the bead width when left out.
+    /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid)]
     grid: Option<f64>,
-    /// Page with the table and the height fields.
+    /// HTML page to write, with the table and the height fields.
     #[arg(long, short, default_value = "compare.html", value_name = "FILE")]
     output: PathBuf,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }

@@ -10,8 +10,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Name of the part.
     name: Option<String>,
-    /// File to write; NAME.stl when it is left out. With a name that ends with .igs or .iges, the centre-lines of a thin
-    /// wall.
+    /// File to write; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }

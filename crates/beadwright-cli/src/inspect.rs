@@ -12,12 +12,12 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Arguments {
     /// A model (binary or ASCII STL, IGES), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
-    /// Profile whose lines switch the arc of a program: a built-in name or a TOML file.
+    /// Profile with the lines that switch the arc in a program: a built-in name or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
     #[command(flatten)]
     reading: program::Reading,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whether the file holds a plan or a program. Models are told apart by their content too, and are no programs.
+/// Whether the file holds a plan or a program. Models are also recognised by their content, and are not programs.
 fn is_program(path: &Path) -> anyhow::Result<bool> {
     let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
     let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(false) };

@@ -21,7 +21,7 @@ mod studio;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Plans weld deposition: a model becomes a robot program with a report.
+/// Plans weld deposition: turns a model into a robot program with a report.
 #[derive(Parser)]
 #[command(version, about, max_term_width = 110)]
 struct Arguments {
@@ -31,22 +31,22 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Plan a model: writes the program, plan.json, metrics.json and report.html.
+    /// Plan a model: write the program, plan.json, metrics.json and report.html.
     Plan(plan::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
-    /// Judge a plan or anyone's program by what it would build.
+    /// Judge a plan, or a program from any source, by what it would build.
     Simulate(simulate::Arguments),
-    /// Tell what would go wrong if a plan were welded as it is; without a plan, list the checks.
+    /// Report what would go wrong if a plan were welded as it is; without a plan, list the checks.
     Check(check::Arguments),
-    /// Width and height of measured beads, and the parameters of a wanted one.
+    /// Fit the width and height of measured beads, and find the parameters for a wanted one.
     #[command(subcommand)]
     Bead(bead::Command),
-    /// Whether a robot can weld a plan: joint angles, margins, and a better place for the part.
+    /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),
-    /// Make the papers' experiments again: ours beside theirs.
+    /// Reproduce the papers' experiments: our results beside theirs.
     Reproduce(reproduce::Arguments),
-    /// Tell what a model, a plan or a program holds, and what is wrong with it.
+    /// Show what a model, a plan or a program contains, and what is wrong with it.
     Inspect(inspect::Arguments),
     /// Write one of the example parts as STL; without a name, list them.
     Example(example::Arguments),
@@ -76,7 +76,7 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads our output may stop reading: that is no failure of ours.
+        // Whatever reads our output may stop reading: that is not our failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));

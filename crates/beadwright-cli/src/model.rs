@@ -15,16 +15,16 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Model {
     /// The model: binary or ASCII STL; for `plan`, also IGES with the centre-lines of walls.
     pub(crate) model: PathBuf,
-    /// Unit of the model's coordinates; asked for when the part would be smaller than a few beads.
+    /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]
     pub(crate) units: Option<Units>,
-    /// Enlarges the part.
+    /// Factor by which the part is enlarged.
     #[arg(long, default_value_t = 1.0, value_parser = parse_scale)]
     pub(crate) scale: f64,
-    /// Turns the part about x, then y, then z, in degrees: --turn 90,0,0.
+    /// Turn the part about x, then y, then z, in degrees, such as --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
     pub(crate) turn: DVec3,
-    /// Moves the middle of the part to x = y = 0.
+    /// Move the middle of the part to x = y = 0.
     #[arg(long)]
     pub(crate) centre: bool,
 }
@@ -81,15 +81,15 @@ fn with_bytes<R>(path: &Path, read: impl FnOnce(&[u8]) -> R) -> anyhow::Result<R
     if file.metadata().with_context(context)?.len() == 0 {
         return Ok(read(&[]));
     }
-    // SAFETY: the mapping is read only and lives shorter than this function; a file that another program cuts
-    // off meanwhile ends this process, as it would end any reader of mapped files.
+    // SAFETY: the mapping is read only and does not outlive this function; if another program truncates the file
+    // meanwhile, this process ends, as any reader of mapped files would.
     #[allow(unsafe_code)]
     let bytes = unsafe { Mmap::map(&file) }.with_context(context)?;
     Ok(read(&bytes))
 }
 
 impl Model {
-    /// The solid or the curves, placed. Curves of one height need one to end at, mm.
+    /// The solid or the curves, placed. Curves that all lie at one height need a height to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());
         let model = with_bytes(&self.model, |bytes| model::Model::read(bytes, task))?.with_context(context)?;
@@ -105,7 +105,7 @@ impl Model {
         self.model.file_stem().map_or("part".to_owned(), |stem| stem.to_string_lossy().into_owned())
     }
 
-    /// The model, scaled to mm, turned, and set onto z = 0.
+    /// The model, scaled to mm, turned, and placed on z = 0.
     pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
         let import = read(&self.model, task)?;
         self.placement().solid(import, bead_width).with_context(|| format!("{}", self.model.display()))

@@ -10,6 +10,7 @@ use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
 use beadwright::profile::Profile;
 use beadwright::report::{self, rows};
+use beadwright::{dialect, fill};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
@@ -21,48 +22,53 @@ pub(crate) struct Arguments {
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// Height of a wall that is given by its centre-lines (IGES), mm; else that of the highest of them.
+    /// Height of a wall given by its centre-lines (IGES), mm; that of the highest of them if left out.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
-    /// Strategy instead of the profile's: raster, zigzag, contour, compound, hybrid or wall.
-    #[arg(long, short, value_name = "NAME")]
+    #[arg(long, short, value_name = "NAME", help = strategy_help())]
     strategy: Option<String>,
-    /// Let the strategy hybrid follow the paper to the letter.
+    /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
-    /// Dialect instead of the profile's; may be given several times: krl, gcode, marlin, rapid, fanuc,
-    /// inform, urscript.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = post_help())]
     post: Vec<String>,
-    /// A value of the profile, such as fill.raster_angle=45; may be given several times.
+    /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Write the programs from this layer on, counted from 1, to go on with a build that was stopped; plan.json and the
+    /// Write the programs from this layer on, counted from 1, to continue a build that was stopped; plan.json and the
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     from_layer: u32,
-    /// Write programs that only move, to be run before the first bead: the same ways at the same speeds, but arc, gas and
-    /// wire never on. Their names begin with "dry_"; plan.json and the report stay as they are.
+    /// Write programs that only move the torch, to run before the first bead: the same paths at the same speeds, but
+    /// with arc, gas and wire always off. Their names begin with "dry_"; plan.json and the report stay as they are.
     #[arg(long)]
     dry_run: bool,
-    /// Folder for the files.
+    /// Folder for the files that are written.
     #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]
     output: PathBuf,
     /// Also write a picture of this layer, counted from 1, as SVG.
     #[arg(long, value_name = "LAYER")]
     picture: Vec<usize>,
-    /// Leave the deposit model out: no voids and no height fields in the report, but done sooner.
+    /// Skip the deposit model: faster, but no voids and no height fields in the report.
     #[arg(long)]
     no_deposit: bool,
-    /// Distance of the deposit model's grid points, mm; a twentieth of the bead width when left out.
+    /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
     grid: Option<f64>,
     /// Print the metrics as JSON instead of the summary.
     #[arg(long)]
     json: bool,
-    /// Threads; all of the machine's when left out. The result does not depend on it.
+    /// Number of threads; all of the machine's if left out. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+}
+
+fn strategy_help() -> String {
+    format!("Strategy instead of the profile's: {}", fill::STRATEGIES.map(|strategy| strategy.name()).join(", "))
+}
+
+fn post_help() -> String {
+    format!("Dialect instead of the profile's, may be given several times: {}", dialect::names().join(", "))
 }
 
 fn parse_height(text: &str) -> Result<f64, String> {
@@ -148,7 +154,7 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// Writes what comes last, and moves everything to its place.
+    /// Writes what comes last, and moves everything into place.
     fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
         if let Some(files) = self.files {
             self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total)))?;

@@ -11,14 +11,14 @@ use std::path::Path;
 pub(crate) enum Command {
     /// List the built-in profiles.
     List,
-    /// Print a built-in profile, to be saved and edited.
+    /// Print a built-in profile, to save and edit.
     Show {
         /// Name of the profile.
         name: String,
     },
     /// Check a profile: a built-in name or a file.
     Check {
-        /// Name or file.
+        /// Name of a built-in profile, or a TOML file.
         profile: String,
     },
     /// Print the JSON schema of profiles, for editors.
@@ -46,7 +46,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The profile of a built-in name or a file, with `key=value` settings laid over it.
+/// The profile with a built-in name or from a file, with `key=value` settings applied to it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
     let path = Path::new(profile);
     let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
@@ -69,7 +69,7 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
         };
         edited = lay().with_context(|| format!("--set {setting}"))?;
     }
-    // The text with the settings is not the user's: a line number would mislead.
+    // The text with the settings is not the user's own: a line number would mislead.
     Profile::parse(&edited).map_err(|error| match error {
         ProfileError::Text { reason, .. } => anyhow::anyhow!("--set {}: {reason}", settings.join(" --set ")),
         ProfileError::Value { key, value, reason, .. } => anyhow::anyhow!("{key} = {value} is impossible: {reason}"),
@@ -77,7 +77,7 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
     })
 }
 
-/// Programs in these dialects; where the profile lacks a section, tells which one to copy.
+/// Programs in these dialects; if the profile lacks a section, the error says which one to copy.
 pub(crate) fn programs(names: &[String], job: &Job<'_>) -> anyhow::Result<Programs> {
     Programs::new(names, job).map_err(|error| {
         let DialectError::NoSection { dialect, .. } = error else { return error.into() };

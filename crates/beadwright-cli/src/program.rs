@@ -17,16 +17,16 @@ use beadwright::task::Task;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How a program is understood.
+/// How a program is read.
 #[derive(clap::Args, Default)]
 pub(crate) struct Reading {
-    /// Words that light the arc, besides those that the language knows and those of the profile: --arc-on "M64 P1".
+    /// Words that strike the arc, besides those of the language and of the profile, such as --arc-on "M64 P1".
     #[arg(long, value_name = "CODE")]
     arc_on: Vec<String>,
-    /// Words that end the arc.
+    /// Words that end the arc, besides those of the language and of the profile.
     #[arg(long, value_name = "CODE")]
     arc_off: Vec<String>,
-    /// Bead width, mm, instead of the one that the program or the profile tells.
+    /// Bead width, mm, instead of the one from the program or the profile.
     #[arg(long, value_name = "MM")]
     bead_width: Option<f64>,
 }

@@ -18,25 +18,25 @@ pub(crate) struct Arguments {
     /// The cell: a built-in name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["list", "show"])]
     cell: Option<String>,
-    /// Where the part's origin lies, instead of the cell's place: x,y,z in mm and the turn about the vertical in °.
+    /// Place of the part's origin, instead of the one in the cell: x,y,z in mm and the turn about the vertical in °.
     #[arg(long, value_name = "X,Y,Z[,TURN]", value_parser = parse_place, allow_hyphen_values = true)]
     at: Option<PartPlace>,
-    /// Profile with travel speed and clearance, where the plan's is no built-in one.
+    /// Profile with the travel speed and clearance, if the plan's profile is not a built-in one.
     #[arg(long, short, value_name = "NAME|FILE")]
     profile: Option<String>,
-    /// Search a place of the part with more margin.
+    /// Search for a place of the part that gives more margin.
     #[arg(long)]
     suggest: bool,
-    /// Page with joint angles and margins over the program.
+    /// HTML page to write, with joint angles and margins over the program.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
     /// List the built-in cells.
     #[arg(long)]
     list: bool,
-    /// Print a built-in cell, to be saved and edited.
+    /// Print a built-in cell, to save and edit.
     #[arg(long, value_name = "NAME")]
     show: Option<String>,
 }
@@ -205,7 +205,7 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     Cell::parse(&text).with_context(|| name.to_owned())
 }
 
-/// The profile that was asked for, or the plan's own.
+/// The requested profile, or the plan's own.
 fn plan_profile(arguments: &Arguments, plan: &PlanFile) -> anyhow::Result<Profile> {
     match &arguments.profile {
         Some(name) => profile::load(name, &[]),

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Name of the paper; all when left out.
+    /// Name of the paper; all papers if left out.
     paper: Option<String>,
     /// Folder for the pages.
     #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]

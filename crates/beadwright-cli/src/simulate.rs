@@ -13,30 +13,31 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or URScript; of several files the
-    /// main one.
+    /// plan.json, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or URScript; if it has
+    /// several files, the main one.
     file: PathBuf,
-    /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are told.
+    /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are
+    /// reported.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
     /// Unit of the part's coordinates.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", requires = "model")]
     units: Option<Units>,
-    /// Profile with the bead that the program lays: a built-in name or a TOML file.
+    /// Profile with the bead laid by the program: a built-in name or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// A value of the profile, such as bead.width=5; may be given several times.
+    /// Change a value of the profile, such as bead.width=5; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     #[command(flatten)]
     reading: program::Reading,
-    /// Distance of grid points, mm; a twentieth of the bead width when left out.
+    /// Grid spacing, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid)]
     grid: Option<f64>,
-    /// Page with the height fields.
+    /// HTML page to write, with the height fields.
     #[arg(long, short, default_value = "simulate.html", value_name = "FILE")]
     output: PathBuf,
-    /// Print JSON for machines.
+    /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
 }

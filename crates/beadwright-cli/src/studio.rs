@@ -1,4 +1,4 @@
-//! `beadwright studio`: starts the desktop program that lies beside this one.
+//! `beadwright studio`: starts the desktop program installed beside this one.
 
 use anyhow::{Context, bail};
 use std::ffi::OsString;
@@ -7,12 +7,12 @@ use std::process::{Command, ExitCode};
 #[derive(clap::Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct Arguments {
-    /// Given to the desktop program as they are: a model, a project, options; --help lists them.
+    /// Passed unchanged to the desktop program: a model, a project, options; --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     args: Vec<OsString>,
 }
 
-/// Runs it to its end; gives its exit status.
+/// Runs it to its end and returns its exit status.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let own = std::env::current_exe().context("the place of this program is not known")?;
     let program = own.with_file_name(format!("beadwright-studio{}", std::env::consts::EXE_SUFFIX));

@@ -1,4 +1,4 @@
-//! What a person asked for is done.
+//! Carries out what the user asked for.
 
 use crate::actions::Action;
 use crate::export::Export;
@@ -10,7 +10,7 @@ use eframe::egui::ViewportCommand;
 use std::path::Path;
 
 impl Studio {
-    /// Does what was asked for.
+    /// Carries out an action.
     pub fn act(&mut self, action: Action) {
         match action {
             Action::Open => self.ask(Ask::Open),
@@ -103,14 +103,14 @@ impl Studio {
         }
     }
 
-    /// Works out pockets and skeleton regions of the layer in view.
+    /// Computes the pockets and skeleton regions of the layer in view.
     fn look_closer(&mut self) {
         if let (Some(layer), Some(profile)) = (self.plans.own.layer(self.view.last), &self.plans.own.profile) {
             self.jobs.steps_job = Some(jobs::steps(&self.window.ctx, layer.clone(), profile.clone()));
         }
     }
 
-    /// Works out what the robot of the cell in view reaches.
+    /// Computes what the robot of the selected cell can reach.
     fn begin_reach(&mut self) {
         if let Some(profile) = self.plans.own.profile.clone() {
             let (cell, layers) = (self.view.cell.clone(), self.plans.own.layers.clone());
@@ -118,9 +118,9 @@ impl Studio {
         }
     }
 
-    /// A step of the history was taken.
+    /// Follows an undo or redo; `gone` says whether there was a step to take.
     fn went(&mut self, gone: bool) {
-        // Before the file was opened there was another project: saving must not put that one into the file.
+        // Before this file was opened there was another project, which must not be saved into this file.
         if self.open.project.steps() < self.open.opened {
             self.open.file = None;
         }

@@ -1,5 +1,4 @@
-//! What a person can do. Panels put what was asked for into a queue; menus, keys and the list of keys are made from one
-//! table.
+//! What the user can do. Panels put requests into a queue; menus, keys and the list of keys are made from one table.
 
 use crate::export::Export;
 use crate::jobs::Ask;
@@ -8,22 +7,22 @@ use beadwright::model::Placement;
 use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
 use std::path::PathBuf;
 
-/// Something that is done at once.
+/// Something the user asks the program to do.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Asks for a model or a project.
     Open,
-    /// Writes the project where it lies.
+    /// Writes the project into its file.
     Save,
     /// Asks where to write the project.
     SaveAs,
     /// Asks for a folder, and writes the program into it.
     ExportProgram,
-    /// Takes the last change back.
+    /// Undoes the last change.
     Undo,
-    /// Takes the last undo back.
+    /// Redoes the last undone change.
     Redo,
-    /// Plans anew.
+    /// Plans again.
     Plan,
     /// Stops planning.
     Stop,
@@ -47,45 +46,45 @@ pub enum Action {
     Up,
     /// One layer down.
     Down,
-    /// Lets the torch run, or stops it.
+    /// Plays the torch, or stops it.
     Play,
-    /// Light or dark.
+    /// Switches between light and dark.
     Theme,
-    /// The keys.
+    /// Shows or hides the list of keys.
     Keys,
     /// Ends the program.
     Quit,
     /// Asks for a file.
     Ask(Ask),
-    /// Writes something into the folder in view, or asks for one.
+    /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),
     /// Opens a model or a project.
     OpenFile(PathBuf),
     /// Opens an example part.
     OpenExample(&'static str),
-    /// Speaks another language.
+    /// Switches to another language.
     Speak(Language),
-    /// Lays a value over the profile: its key, and the value as in TOML.
+    /// Sets a value of the profile: its key, and the value as in TOML.
     SetValue(String, String),
-    /// Takes a value out of the profile, so that its default holds.
+    /// Removes a value from the profile, so that its default applies.
     ResetValue(String),
-    /// Takes the text of another profile.
+    /// Loads the text of another profile.
     SetProfile(&'static str),
     /// Places the part.
     Place(Placement),
-    /// Tells how high a wall of curves grows, mm.
+    /// Sets the height of a wall made from curves, mm.
     Height(f64),
     /// Plans with a second strategy too.
     CompareWith(&'static str),
-    /// Takes a sentence away, by its index.
+    /// Removes a message, by its index.
     Dismiss(usize),
-    /// Works out pockets and skeleton regions of the layer in view.
+    /// Computes the pockets and skeleton regions of the layer in view.
     LookCloser,
-    /// Works out what the robot reaches.
+    /// Computes what the robot can reach.
     Reach,
-    /// Brings back the project of a run that did not end well.
+    /// Restores the project of a run that crashed.
     BringBack,
-    /// Lets go of that project.
+    /// Discards that project.
     LetGo,
     /// Closes the window, whatever was changed.
     Leave,
@@ -95,7 +94,7 @@ pub enum Action {
 
 /// An action, its text and its key.
 pub struct Entry {
-    /// What is done.
+    /// The action.
     pub action: Action,
     /// Key of its text.
     pub text: &'static str,
@@ -107,7 +106,7 @@ const fn entry(action: Action, text: &'static str, modifiers: Modifiers, key: Ke
     Entry { action, text, key: Some(KeyboardShortcut::new(modifiers, key)) }
 }
 
-/// All of them.
+/// All entries.
 pub static ENTRIES: [Entry; 22] = [
     entry(Action::Open, "open", Modifiers::COMMAND, Key::O),
     entry(Action::SaveAs, "save-as", Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
@@ -138,22 +137,22 @@ pub fn find(action: &Action) -> Option<&'static Entry> {
     ENTRIES.iter().find(|entry| entry.action == *action)
 }
 
-/// Whether Escape was pressed just now. A number field that is left by it takes what was typed a frame later, since its focus
-/// counts as lost for two frames (egui 0.37); who asks this refuses it.
+/// Whether Escape was pressed just now. A number field left with Escape still takes over what was typed, one frame
+/// later, since its focus counts as lost for two frames (egui 0.37); callers use this to refuse that value.
 pub fn escaped(ctx: &Context) -> bool {
     let (now, then) = (ctx.cumulative_pass_nr(), ctx.data(|data| data.get_temp::<u64>(Id::unique("escaped"))));
     then.is_some_and(|then| now.saturating_sub(then) < 3)
 }
 
-/// The actions whose keys were pressed. Keys without Ctrl belong to a text field while one is being edited, and to a menu
-/// while one is open: Escape leaves them.
+/// The actions whose keys were pressed. While a text field is being edited or a menu is open, keys without Ctrl belong
+/// to it: Escape leaves it.
 pub fn pressed(ctx: &Context) -> Vec<Action> {
     if ctx.input(|input| input.key_pressed(Key::Escape)) {
         let now = ctx.cumulative_pass_nr();
         ctx.data_mut(|data| data.insert_temp(Id::unique("escaped"), now));
     }
     let typing = ctx.egui_wants_keyboard_input() || Popup::is_any_open(ctx);
-    // Escape takes the focus before anything else hears of it, and belongs to the field all the same.
+    // Escape takes the focus away before this code runs, but still belongs to the field.
     let id = Id::unique("typing");
     let before = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(id), typing));
     let typing = typing || before;

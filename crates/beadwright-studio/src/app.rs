@@ -1,4 +1,4 @@
-//! A frame of the window: what has happened is heard, what was asked for is done, and the panels are drawn.
+//! One frame of the window: receive what has happened, do what was asked for, draw the panels.
 
 use crate::actions;
 use crate::jobs;
@@ -7,7 +7,7 @@ use crate::studio::Studio;
 use eframe::egui::{self, ViewportCommand};
 
 impl Studio {
-    /// Takes in what has happened in the background.
+    /// Receives what has happened in the background.
     fn hear(&mut self) {
         for event in self.plans.planner.events() {
             self.plans.own.take(event);
@@ -26,7 +26,7 @@ impl Studio {
         match jobs::take(&mut self.jobs.steps_job) {
             Some(Ok(steps)) => self.jobs.steps = Some(steps),
             Some(Err(error)) => {
-                // Not again: it would only break again.
+                // Do not retry: it would only fail again.
                 self.view.show.regions = false;
                 self.complain(error);
             }
@@ -39,7 +39,7 @@ impl Studio {
         }
     }
 
-    /// Asks before changes are lost with the window.
+    /// Asks before closing the window would lose changes.
     fn hold(&mut self) {
         if self.is_changed() && self.window.ctx.input(|input| input.viewport().close_requested()) {
             self.window.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
@@ -47,7 +47,7 @@ impl Studio {
         }
     }
 
-    /// Keeps the project aside when it has changed.
+    /// Autosaves the project when it has changed.
     fn keep(&mut self) {
         if *self.open.project.now() != self.open.kept {
             self.open.kept = self.open.project.now().clone();
@@ -81,7 +81,7 @@ impl eframe::App for Studio {
 
     fn on_exit(&mut self) {
         self.window.store.keep_settings(&self.window.settings);
-        // What was not decided yet is asked again.
+        // If the user has not decided about the lost project, ask again at the next start.
         match &self.open.lost {
             Some(lost) => drop(self.window.store.keep_project(lost)),
             None => self.window.store.forget_project(),

@@ -1,4 +1,4 @@
-//! What is written: programs, plan, report. The bytes are those of `beadwright plan`, since the library makes them.
+//! Exports programs, plan and report. The bytes are those of `beadwright plan`, since the library makes them.
 
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
@@ -13,7 +13,7 @@ pub enum Export {
     Program(String),
     /// One of the files that belong to the plan, by its name.
     File(&'static str),
-    /// All that the command writes: the programs of the profile's dialects, plan, metrics and report.
+    /// Everything the command writes: the programs in the profile's dialects, plan, metrics and report.
     All,
 }
 
@@ -40,10 +40,10 @@ impl Export {
         }
     }
 
-    /// Writes the files into a folder, all of them or none, and tells their names.
+    /// Writes the files into a folder, all or none, and returns their names.
     ///
     /// # Errors
-    /// A sentence: what [`Self::chunks`] tells, or a file that cannot be written.
+    /// A sentence: the error of [`Self::chunks`], or the file that cannot be written.
     pub fn write(&self, state: &PlanState, folder: &Path) -> Result<Vec<String>, String> {
         let chunks = self.chunks(state)?;
         let written = Folder::new(folder).and_then(|mut folder| {

@@ -1,4 +1,4 @@
-//! What is opened and what is written: models, projects, programs, pictures.
+//! Opening and writing files: models, projects, programs, pictures.
 
 use crate::export::Export;
 use crate::jobs::{self, Ask};
@@ -12,7 +12,7 @@ use std::path::Path;
 impl Studio {
     /// Opens a model or a project.
     pub fn open(&mut self, path: &Path) {
-        // A project keeps the path, and is opened from anywhere.
+        // A project keeps the path and may be opened from any working directory, so the path must be absolute.
         let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
         if is_project {
@@ -66,7 +66,7 @@ impl Studio {
         }
     }
 
-    /// Writes into a folder: a program, a file of the plan, or all that `beadwright plan` writes.
+    /// Writes into a folder: a program, a file of the plan, or everything that `beadwright plan` writes.
     pub fn export(&mut self, what: &Export, folder: &Path) {
         let done = what.write(&self.plans.own, folder);
         self.told(folder, done);

@@ -1,9 +1,9 @@
-//! Letters. The built-in fonts have no Chinese; one of the system's fonts that has is looked for.
+//! Fonts. The built-in fonts have no Chinese characters, so a system font that has them is looked for.
 
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 use std::sync::Arc;
 
-/// Families with Chinese letters, the usual ones of each system.
+/// Font families with Chinese characters that are usual on each system.
 const FAMILIES: [&str; 10] = [
     "Noto Sans CJK SC",
     "Noto Sans SC",
@@ -17,8 +17,8 @@ const FAMILIES: [&str; 10] = [
     "Arial Unicode MS",
 ];
 
-/// Sets the fonts of the window: the built-in ones, of which the one for code has the signs that the other lacks, and behind
-/// them a Chinese font of the system; false if there is none.
+/// Sets the fonts of the window: the built-in text font, then the built-in code font for signs that it lacks, then a
+/// Chinese font of the system; false if there is none.
 pub fn set(ctx: &Context) -> bool {
     let mut fonts = FontDefinitions::default();
     let mut behind = |name: &str, families: &[FontFamily]| {
@@ -36,7 +36,7 @@ pub fn set(ctx: &Context) -> bool {
     chinese.is_some()
 }
 
-/// A font of the system with Chinese letters.
+/// A system font with Chinese characters.
 fn chinese() -> Option<FontData> {
     let mut database = fontdb::Database::new();
     database.load_system_fonts();

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 /// What a field holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kind {
-    /// A number; whole or not.
+    /// A number, whole or decimal.
     Number {
         /// Whether it is a whole number.
         whole: bool,
@@ -19,7 +19,7 @@ pub enum Kind {
     Lines,
     /// Yes or no.
     Switch,
-    /// One of some words, each with what it means.
+    /// One of several words, each with its meaning.
     Choice(Vec<(String, String)>),
     /// A fixed number of numbers.
     Numbers(usize),
@@ -51,7 +51,7 @@ pub struct Section {
     pub fields: Vec<Field>,
 }
 
-/// All sections, those that are changed most often first.
+/// All sections, the most frequently changed ones first.
 pub fn sections() -> &'static [Section] {
     static SECTIONS: OnceLock<Vec<Section>> = OnceLock::new();
     SECTIONS.get_or_init(|| read(&Profile::schema()))
@@ -92,7 +92,7 @@ fn read(schema: &Value) -> Vec<Section> {
     sections
 }
 
-/// A section, and those within it.
+/// A section and its subsections.
 fn section(key: &str, definition: &Value, about: String, defs: &Value) -> Vec<Section> {
     let (mut fields, mut inner) = (Vec::new(), Vec::new());
     let required: Vec<&str> =
@@ -155,7 +155,7 @@ fn kind(property: &Value, defs: &Value) -> Option<Kind> {
     }
 }
 
-/// What a property refers to, also where it may be left out.
+/// The definition that a property refers to, even if the property is optional.
 fn definition<'a>(property: &Value, defs: &'a Value) -> Option<&'a Value> {
     let any = property["anyOf"].as_array().and_then(|any| any.first()).unwrap_or(property);
     let name = any["$ref"].as_str()?.rsplit('/').next()?;
@@ -166,15 +166,15 @@ fn text(value: &Value, key: &str) -> String {
     value[key].as_str().unwrap_or_default().to_owned()
 }
 
-/// A profile with what a form needs of it.
+/// A profile, with what the form needs from it.
 pub struct Parsed {
     /// Its text.
     pub text: String,
     /// The profile.
     pub profile: Profile,
-    /// Its values with all defaults.
+    /// Its values, with all defaults filled in.
     pub values: toml::Table,
-    /// What its numbers can be.
+    /// The limits of its numbers.
     pub limits: Vec<Limit>,
 }
 
@@ -187,7 +187,7 @@ impl Parsed {
     }
 }
 
-/// The value of a key, as it holds with all defaults; none where it is left out.
+/// The value of a key, defaults included; none where it is left out.
 pub fn value(profile: &toml::Table, key: &str) -> Option<toml::Value> {
     let mut parts = key.split('.');
     let first = profile.get(parts.next()?)?;

@@ -1,20 +1,20 @@
 //! Undo and redo.
 
-/// A value with those it had before, and those that were undone.
+/// A value, its earlier values, and those that were undone.
 #[derive(Debug, Clone)]
 pub struct History<T> {
     now: T,
     past: Vec<T>,
     future: Vec<T>,
-    /// What the last change was about, while it may go on: one drag of a slider is one step.
+    /// What the last change was about, while it may still continue: one drag of a slider is one step.
     open: Option<String>,
 }
 
-/// No more steps are kept.
+/// Most steps that are kept.
 const STEPS: usize = 200;
 
 impl<T: Clone + PartialEq> History<T> {
-    /// A value without a past.
+    /// A value without a history.
     pub fn new(now: T) -> Self {
         Self { now, past: Vec::new(), future: Vec::new(), open: None }
     }
@@ -24,7 +24,7 @@ impl<T: Clone + PartialEq> History<T> {
         &self.now
     }
 
-    /// Changes the value. Changes about the same thing are one step until [`History::seal`]. Tells whether it differs.
+    /// Changes the value; true if it differs. Changes about the same thing are one step until [`History::seal`].
     pub fn set(&mut self, about: &str, next: T) -> bool {
         if next == self.now {
             return false;
@@ -40,12 +40,12 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
-    /// The next change is a step of its own.
+    /// Makes the next change a separate step.
     pub fn seal(&mut self) {
         self.open = None;
     }
 
-    /// Takes the last step back; false if there is none.
+    /// Undoes the last step; false if there is none.
     pub fn undo(&mut self) -> bool {
         self.seal();
         let Some(before) = self.past.pop() else { return false };
@@ -53,7 +53,7 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
-    /// Takes back the last undo; false if there is none.
+    /// Redoes the last undone step; false if there is none.
     pub fn redo(&mut self) -> bool {
         self.seal();
         let Some(after) = self.future.pop() else { return false };
@@ -61,17 +61,17 @@ impl<T: Clone + PartialEq> History<T> {
         true
     }
 
-    /// How many steps can be taken back.
+    /// How many steps can be undone.
     pub fn steps(&self) -> usize {
         self.past.len()
     }
 
-    /// Whether a step can be taken back.
+    /// Whether a step can be undone.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Whether an undo can be taken back.
+    /// Whether a step can be redone.
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Small work in the background: one answer, to be fetched when it is there.
+//! Small background jobs: each gives one answer, to be fetched when it is ready.
 
 use beadwright::fill::hybrid::Steps;
 use beadwright::layer::Layer;
@@ -11,10 +11,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-/// Work that gives one answer.
+/// A background job that gives one answer.
 pub struct Job<T>(Receiver<Result<T, String>>);
 
-/// Does work; where it panics, a sentence that asks to report it.
+/// Does the work; if it panics, gives a sentence that asks the user to report it.
 ///
 /// # Errors
 /// The sentence.
@@ -46,7 +46,7 @@ impl<T: Send + 'static> Job<T> {
     }
 }
 
-/// Takes the answer of a job that is done, or the sentence of one that broke, and forgets the job.
+/// Takes the answer of a finished job, or the sentence of one that panicked, and forgets the job.
 pub fn take<T>(job: &mut Option<Job<T>>) -> Option<Result<T, String>> {
     match job.as_ref()?.0.try_recv() {
         Ok(answer) => {
@@ -61,7 +61,7 @@ pub fn take<T>(job: &mut Option<Job<T>>) -> Option<Result<T, String>> {
     }
 }
 
-/// What a file dialog is asked for.
+/// What a file dialog asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ask {
     /// A model or a project to open.
@@ -72,18 +72,18 @@ pub enum Ask {
     Folder,
     /// Where to write a picture.
     SavePicture,
-    /// A profile to take.
+    /// A profile to load.
     OpenProfile,
     /// A bead library to look at.
     OpenBeads,
 }
 
-/// Asks in the system's own dialog; none when the person thinks better of it.
+/// Asks in the system's own dialog; none if the user cancels.
 pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<(Ask, Option<PathBuf>)> {
     let dialog = rfd::AsyncFileDialog::new();
     let named = |extension: &str| dialog.clone().set_file_name(format!("{name}.{extension}"));
     let models = ["stl", "STL", "igs", "iges", "IGS", "IGES", "bwp"];
-    // The dialog is made here, as some systems want it on the first thread, and waited for elsewhere.
+    // The dialog is created here, because some systems require the main thread, and waited for on another thread.
     let answer: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match what {
         Ask::Open => Box::pin(dialog.clone().add_filter("STL, IGES, BWP", &models).pick_file()),
         Ask::OpenProfile | Ask::OpenBeads => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
@@ -102,7 +102,7 @@ pub fn steps(ctx: &Context, layer: Arc<Layer>, profile: Arc<Profile>) -> Job<(us
     })
 }
 
-/// Walks a plan with a robot.
+/// Checks with a robot cell whether a plan can be reached.
 pub fn reach(
     ctx: &Context,
     cell: String,

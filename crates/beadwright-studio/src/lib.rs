@@ -1,22 +1,22 @@
 //! The desktop program of Beadwright: see the part, the beads and the voids, change a parameter, export.
 //!
-//! It has no logic of planning: a [`project`](project::Project) goes to the [`planner`], a thread that calls the library, and
-//! what comes back is put together in a [`state`](state::PlanState) that the views and panels show.
+//! It has no planning logic: a [`project`](project::Project) goes to the [`planner`], a thread that calls the library,
+//! and the results are put together in a [`state`](state::PlanState) that the views and panels show.
 //!
 //! | module | what it holds |
 //! | --- | --- |
 //! | [`studio`] | the program: where everything is put together |
-//! | `app`, `act` | a frame of the window; what was asked for is done |
-//! | [`project`], [`history`] | what is worked on; undo and redo |
-//! | [`planner`], [`state`] | planning in the background, and what it has told |
-//! | [`jobs`] | other work in the background: layers looked at closely, reach, file dialogs |
+//! | `app`, `act` | one frame of the window; carrying out actions |
+//! | [`project`], [`history`] | what the user works on; undo and redo |
+//! | [`planner`], [`state`] | planning in the background, and its results so far |
+//! | [`jobs`] | other background work: steps of the hybrid, reach, file dialogs |
 //! | [`form`] | the profile as a form |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
-//! | `files`, [`export`] | what is opened and what is written |
-//! | [`actions`] | what can be asked for; menus and keys |
-//! | [`settings`], [`text`], [`fonts`] | what is remembered; words; letters |
+//! | `files`, [`export`] | opening and writing files |
+//! | [`actions`] | what the user can do; menus and keys |
+//! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
 
 mod act;
 pub mod actions;

@@ -8,16 +8,16 @@ use eframe::egui::ViewportBuilder;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// See the part, the beads and the voids before wire is burnt; change a parameter; export the robot program.
+/// See the part, the beads and the voids before any wire is burnt, change parameters, export the robot program.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
     /// A model (STL, IGES) or a project (.bwp) to open; or the name of an example part, such as propeller.
     file: Option<PathBuf>,
-    /// The view to begin with.
+    /// The view to start with.
     #[arg(long, value_name = "VIEW")]
     view: Option<View>,
-    /// The panel to begin with.
+    /// The panel to start with.
     #[arg(long, value_name = "PANEL")]
     panel: Option<Panel>,
     /// The highest layer to show, counted from 1.
@@ -26,13 +26,13 @@ struct Arguments {
     /// Show heights and voids in the layer view.
     #[arg(long)]
     heights: bool,
-    /// The strategy beside which another is shown.
+    /// A second strategy to plan and show beside the first.
     #[arg(long, value_name = "STRATEGY")]
     compare_with: Option<String>,
     /// A value of the profile, such as fill.strategy=hybrid; may be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     set: Vec<(String, String)>,
-    /// Folder for settings and the project kept aside, instead of the user's own.
+    /// Folder for settings and the autosaved project, instead of the user's own.
     #[arg(long, value_name = "DIR")]
     store: Option<PathBuf>,
 }
@@ -70,7 +70,7 @@ fn main() -> ExitCode {
     let app: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(begin(cc, &arguments))));
     match eframe::run_native("Beadwright Studio", options, app) {
         Ok(()) => ExitCode::SUCCESS,
-        // Without a window there is only the console to tell it.
+        // Without a window, only the console can say so.
         Err(error) => {
             let reason = error.to_string();
             let reason = reason.trim_end_matches('.');
@@ -86,7 +86,7 @@ fn main() -> ExitCode {
 fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
     let store = arguments.store.clone().map_or_else(Store::of_user, Store::at);
     let mut studio = Studio::new(cc, store);
-    // Before the first change, which takes its place.
+    // Before the first change, whose autosave would overwrite it.
     studio.offer_lost();
     for (key, value) in &arguments.set {
         studio.set_value(key, value);

@@ -1,7 +1,7 @@
-//! Planning in the background: a request goes in, events come out, and a newer request stops the one before.
+//! Planning in the background: a request goes in, events come out, and a newer request stops the previous one.
 //!
-//! A thread of its own reads the model, plans the layer in view, then all layers, judges them and runs the checks. What
-//! it has read stays with it, so that a change of the profile does not read the model again.
+//! A separate thread reads the model, plans the layer in view, then all layers, judges them and runs the checks. It
+//! keeps what it has read, so that a change of the profile does not read the model again.
 
 use crate::jobs;
 use crate::project::{Project, Source};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::SystemTime;
 
-/// What the planner tells; a number says which request it belongs to.
+/// What the planner reports; a number says which request it belongs to.
 pub enum Event {
     /// How far a stage has come, 0 to 1.
     Progress(Stage, f64),
@@ -32,7 +32,7 @@ pub enum Event {
     Part(Arc<Part>, Option<Arc<Mesh>>, Arc<Profile>),
     /// The layer in view, before the others.
     Preview(Arc<Layer>, Arc<LayerBeads>),
-    /// The layers follow.
+    /// The layers begin to arrive.
     Begin(Header),
     /// The next layer.
     Layer(Arc<Layer>, Arc<LayerBeads>),
@@ -40,18 +40,18 @@ pub enum Event {
     Planned(Box<Summary>),
     /// What the deposit model says of a layer, and the height error at every piece, in nominal bead heights.
     Judged(usize, Arc<Judgement>, Arc<[f32]>),
-    /// What it says of all, and what the checks found.
+    /// What it says of all layers together, and what the checks found.
     Checked(Figures, Vec<Finding>),
-    /// Nothing more comes.
+    /// Planning failed; nothing more comes.
     Failed(Failure),
 }
 
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Failure {
-    /// The unit of the model must be told: a sentence that says why.
+    /// The unit of the model must be given: a sentence that says why.
     Units(String),
-    /// The height of a wall must be told.
+    /// The height of a wall must be given.
     Height(String),
     /// Anything else, as a sentence.
     Sentence(String),
@@ -64,12 +64,12 @@ struct Request {
     task: Task,
 }
 
-/// How soon an event wants to be seen.
+/// How soon an event should be shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Urgency {
-    /// At once: something that a person waits for.
+    /// At once: the user is waiting for it.
     Now,
-    /// With others like it.
+    /// Together with others like it.
     Soon,
 }
 
@@ -84,7 +84,7 @@ impl Event {
     }
 }
 
-/// The thread, and what is to be heard of it.
+/// The planning thread and its events.
 pub struct Planner {
     requests: Sender<Request>,
     events: Receiver<(u64, Event)>,
@@ -95,7 +95,7 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// A planner that calls `notify` when there is something to hear.
+    /// A planner that calls `notify` when there are events to fetch.
     pub fn new(notify: impl Fn(Urgency) + Send + Sync + 'static) -> Self {
         let (requests, inbox) = channel::<Request>();
         let (sender, events) = channel();
@@ -105,7 +105,7 @@ impl Planner {
         Self { requests, events, number: 0, task: Task::new(), notify, sender }
     }
 
-    /// Plans a project, the given layer (from 0) first. What is under way stops.
+    /// Plans a project, the given layer (from 0) first, and stops any planning in progress.
     pub fn plan(&mut self, project: &Project, layer: usize) {
         self.task.cancel();
         self.number += 1;
@@ -120,13 +120,13 @@ impl Planner {
         let _ = self.requests.send(request);
     }
 
-    /// Stops what is under way.
+    /// Stops any planning in progress.
     pub fn cancel(&mut self) {
         self.task.cancel();
         self.number += 1;
     }
 
-    /// What has happened of the last request.
+    /// The new events of the last request.
     pub fn events(&mut self) -> Vec<Event> {
         let number = self.number;
         self.events.try_iter().filter(|(of, _)| *of == number).map(|(_, event)| event).collect()
@@ -139,7 +139,7 @@ impl Drop for Planner {
     }
 }
 
-/// What has been read and placed, so that it need not be done again.
+/// What has been read and placed, kept so that it need not be done again.
 #[derive(Default)]
 struct Cache {
     model: Option<(Source, Option<SystemTime>, Model)>,
@@ -147,7 +147,7 @@ struct Cache {
     mesh: Option<(Arc<Part>, Arc<Mesh>)>,
 }
 
-/// What a placed part depends on, beside its model; the bead's width plays a part in the guess of units.
+/// What a placed part depends on besides its model; the bead width is used in guessing the units.
 #[derive(Clone, Copy, PartialEq)]
 struct PartKey {
     placement: Placement,
@@ -158,7 +158,7 @@ struct PartKey {
 fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify) {
     let mut kept = Cache::default();
     while let Ok(mut request) = inbox.recv() {
-        // Only the newest counts.
+        // Only the newest request counts.
         while let Ok(newer) = inbox.try_recv() {
             request = newer;
         }
@@ -173,7 +173,7 @@ fn serve(inbox: &Receiver<Request>, outbox: &Sender<(u64, Event)>, bell: &Notify
             Ok(Ok(()) | Err(Stop::Cancelled)) => {}
             Ok(Err(Stop::Failed(failure))) => send(Event::Failed(failure)),
             Err(sentence) => {
-                // Nobody knows in which state it was left.
+                // A panic may have left it in any state.
                 kept = Cache::default();
                 send(Event::Failed(Failure::Sentence(sentence)));
             }

@@ -1,4 +1,4 @@
-//! What a person works on: a model, where it stands, and a profile. A project file (`.bwp`, TOML) holds it whole.
+//! What the user works on: a model, its placement and a profile. A project file (`.bwp`, TOML) holds all of it.
 
 use beadwright::model::Placement;
 use beadwright::profile::{Profile, ProfileError};
@@ -26,7 +26,7 @@ impl Source {
         }
     }
 
-    /// What a person sees of it: a file name, or the name of the example.
+    /// The name shown to the user: a file name, or the name of the example.
     pub fn label(&self) -> String {
         match self {
             Self::File(path) => path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
@@ -42,7 +42,7 @@ pub struct Project {
     pub source: Option<Source>,
     /// How the model is placed.
     pub placement: Placement,
-    /// Height of a wall that is given by curves of one height, mm.
+    /// Height of a wall given by curves at a single height, mm.
     pub height: Option<f64>,
     /// The profile, as the TOML text that people edit.
     pub profile: String,
@@ -64,10 +64,10 @@ pub enum ProjectError {
     /// Written by a later version.
     #[error("the project has version {0}; this program reads version {VERSION}. Take a newer Beadwright.")]
     Version(u32),
-    /// Both kinds of model, or a model nobody knows.
+    /// It names both kinds of model, or an unknown model.
     #[error("the project names {0}")]
     Model(String),
-    /// Its profile cannot be.
+    /// Its profile is invalid.
     #[error("the project's profile: {0}")]
     Profile(#[from] ProfileError),
 }
@@ -91,11 +91,11 @@ struct File {
 }
 
 impl Project {
-    /// The text of the project file. A model that lies in `folder`, or below it, is named relative to it, so that the folder
+    /// The text of the project file. A model in `folder` or below it is named by its relative path, so that the folder
     /// can be moved.
     ///
     /// # Errors
-    /// What the writer of TOML says, as a sentence.
+    /// The error of the TOML writer, as a sentence.
     pub fn write(&self, folder: Option<&Path>) -> Result<String, String> {
         let relative = |path: &PathBuf| folder.and_then(|f| path.strip_prefix(f).ok()).unwrap_or(path).to_owned();
         let (model, example) = match &self.source {
@@ -108,7 +108,7 @@ impl Project {
             .map_err(|error| format!("the project cannot be written: {error}"))
     }
 
-    /// Reads the text of a project file that lies in `folder`.
+    /// Reads the text of a project file in `folder`.
     ///
     /// # Errors
     /// [`ProjectError`].

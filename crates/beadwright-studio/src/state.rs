@@ -1,4 +1,4 @@
-//! What is known of a plan so far: events of the planner, put together.
+//! What is known of a plan so far, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
 use crate::view3d::Scene;
@@ -18,31 +18,31 @@ pub struct PlanState {
     pub part: Option<Arc<Part>>,
     /// The profile of this plan.
     pub profile: Option<Arc<Profile>>,
-    /// What is the same for all layers, once they follow.
+    /// What all layers have in common; there once the layers begin to arrive.
     pub header: Option<Header>,
     /// The layers planned so far.
     pub layers: Vec<Arc<Layer>>,
-    /// The layer in view, until the others have come as far.
+    /// The layer in view, planned first, until the other layers have come that far.
     pub preview: Option<Arc<Layer>>,
     /// What the deposit model says of each layer.
     pub judgements: Vec<Arc<Judgement>>,
-    /// What it says of all.
+    /// Its figures for all layers together.
     pub total: Option<Figures>,
     /// Totals and warnings, once all layers are there.
     pub summary: Option<Summary>,
     /// What the checks found, at the very end.
     pub findings: Option<Vec<Finding>>,
-    /// What is under way.
+    /// The stage in progress.
     pub progress: Option<(Stage, f64)>,
     /// Why there is no plan.
     pub failure: Option<Failure>,
     /// What the 3-D view shows.
     pub scene: Scene,
-    /// How far the last request has come with what is in view.
+    /// How much of what is in view is already from the last request.
     received: Received,
 }
 
-/// What of a request is in view already; the rest is still that of the request before.
+/// How much of a request is in view already; the rest is still from the previous request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Received {
     #[default]
@@ -52,7 +52,7 @@ enum Received {
 }
 
 impl PlanState {
-    /// A new request is under way; what there is stays in view until something better comes.
+    /// A new request has started; the old plan stays in view until the new one replaces it.
     pub fn restart(&mut self) {
         self.progress = Some((Stage::Import, 0.0));
         self.failure = None;
@@ -65,7 +65,7 @@ impl PlanState {
         self.received == Received::Layers
     }
 
-    /// Takes an event in.
+    /// Takes in an event.
     pub fn take(&mut self, event: Event) {
         match event {
             Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
@@ -116,7 +116,7 @@ impl PlanState {
         self.profile = Some(profile);
     }
 
-    /// What the failed request has not replaced would be taken for what it asked for.
+    /// Clears what the failed request has not replaced, which would otherwise pass for its result.
     fn clear_failed(&mut self) {
         if self.received == Received::Nothing {
             (self.part, self.profile) = (None, None);
@@ -149,7 +149,7 @@ impl PlanState {
         self.header.as_ref().map_or(preview, |header| header.layers).max(self.layers.len())
     }
 
-    /// A layer, if it is planned, or the preview of it.
+    /// A layer if it is planned, or else its preview.
     pub fn layer(&self, index: usize) -> Option<&Arc<Layer>> {
         self.layers.get(index).or_else(|| self.preview.as_ref().filter(|layer| layer.index == index))
     }
@@ -159,7 +159,7 @@ impl PlanState {
         self.findings.is_some()
     }
 
-    /// Whether something is under way.
+    /// Whether planning is in progress.
     pub fn is_busy(&self) -> bool {
         self.progress.is_some()
     }

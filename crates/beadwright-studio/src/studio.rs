@@ -1,4 +1,4 @@
-//! The program: window, project, plans, work in the background, views.
+//! The program: window, project, plans, background work, views.
 
 use crate::actions::Action;
 use crate::export::Export;
@@ -42,45 +42,45 @@ pub struct Window {
     pub(crate) render_state: Option<RenderState>,
     pub(crate) store: Store,
     pub(crate) settings: Settings,
-    /// What went wrong or was done, as sentences, the newest last.
+    /// Sentences on what went wrong or was done, newest last.
     pub(crate) messages: Vec<Message>,
-    /// Whether there are letters for Chinese.
+    /// Whether there is a font with Chinese characters.
     pub(crate) chinese: bool,
-    /// Whether the window is to be closed although there are changes, and it is asked what becomes of them.
+    /// Whether the user wants to close the window despite unsaved changes and is being asked about them.
     pub(crate) closing: bool,
 }
 
-/// The project that is worked on.
+/// The open project.
 pub struct Open {
     pub(crate) project: History<Project>,
-    /// Where it lies.
+    /// Its file.
     pub(crate) file: Option<PathBuf>,
-    /// It as it was opened or written last.
+    /// The project as last opened or saved.
     pub(crate) saved: Project,
-    /// It as it was kept aside last.
+    /// The project as last autosaved.
     pub(crate) kept: Project,
-    /// Steps of the history when it was opened.
+    /// Number of undo steps when it was opened.
     pub(crate) opened: usize,
-    /// The project of a run that did not end well.
+    /// The project of a run that crashed.
     pub(crate) lost: Option<Project>,
-    /// The profile as its form needs it, of the text that it was read from last.
+    /// The profile as the form needs it, parsed from the text last read.
     parsed: Option<Rc<Parsed>>,
-    /// A key whose value cannot be, and why.
+    /// A key whose value was refused, and why.
     pub(crate) refused: Option<(String, String)>,
 }
 
-/// The plan, and one beside it.
+/// The plan, and a second one to compare it with.
 pub struct Plans {
     pub(crate) planner: Planner,
     pub(crate) own: PlanState,
     pub(crate) other: Option<Other>,
 }
 
-/// Other work in the background, and what came of it.
+/// Other background work, and its results.
 #[derive(Default)]
 pub struct Jobs {
     pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
-    /// What a folder is asked for.
+    /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
     pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
     pub(crate) steps: Option<(usize, Vec<Steps>)>,
@@ -90,7 +90,7 @@ pub struct Jobs {
     pub(crate) beads: Option<BeadLibrary>,
 }
 
-/// The program: what panels show. They change the view only; all else they [ask for](Self::request).
+/// The program, as the panels show it. Panels change only the view; everything else they ask for by a queue.
 pub struct Studio {
     pub(crate) window: Window,
     pub(crate) open: Open,
@@ -99,11 +99,11 @@ pub struct Studio {
     pub(crate) view: ViewState,
     pub(crate) solid: View3d,
     pub(crate) flat: View2d,
-    /// What is to be done when the panels are drawn.
+    /// What to do once the panels are drawn.
     pub(crate) queue: Vec<Action>,
 }
 
-/// A sentence in the window.
+/// A message in the window.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     /// Whether something went wrong.
@@ -113,7 +113,7 @@ pub struct Message {
 }
 
 impl Studio {
-    /// The program in a window; `store` remembers things.
+    /// The program in a window; `store` keeps settings and the autosaved project.
     pub fn new(cc: &eframe::CreationContext<'_>, store: Store) -> Self {
         let ctx = cc.egui_ctx.clone();
         let settings = store.settings();
@@ -149,17 +149,17 @@ impl Studio {
         studio
     }
 
-    /// Asks for something to be done when the panels are drawn.
+    /// Asks for something to be done once the panels are drawn.
     pub(crate) fn request(&mut self, action: Action) {
         self.queue.push(action);
     }
 
-    /// Offers the project of a run that did not end well, if there is one.
+    /// Offers to restore the project of a run that crashed, if there is one.
     pub fn offer_lost(&mut self) {
         self.open.lost = self.window.store.lost_project();
     }
 
-    /// Lets go of that project; what is open now is kept aside in its place.
+    /// Discards that project; what is open now is autosaved in its place.
     pub(crate) fn forget_lost(&mut self) {
         self.window.store.forget_project();
         self.open.kept = Project::default();
@@ -179,7 +179,7 @@ impl Studio {
         self.open.project.now()
     }
 
-    /// The project file that is worked on.
+    /// The file of the open project.
     pub fn file(&self) -> Option<&Path> {
         self.open.file.as_deref()
     }
@@ -198,7 +198,7 @@ impl Studio {
         &self.plans.own
     }
 
-    /// The sentences in the window.
+    /// The messages in the window.
     pub fn messages(&self) -> &[Message] {
         &self.window.messages
     }
@@ -208,7 +208,7 @@ impl Studio {
         &mut self.view
     }
 
-    /// Whether nothing is under way.
+    /// Whether nothing is running in the background.
     pub fn is_idle(&self) -> bool {
         let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy());
         !self.plans.own.is_busy() && !other && self.jobs.reach_job.is_none() && self.jobs.steps_job.is_none()
@@ -220,7 +220,7 @@ impl Studio {
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
         let message = Message { error: true, text: text.into() };
-        // What goes wrong again and again, at every step of a drag, is said once.
+        // An error that repeats at every step of a drag is reported once.
         if self.window.messages.last() != Some(&message) {
             self.window.messages.push(message);
         }
@@ -250,7 +250,7 @@ impl Studio {
         Some(Pick { layer, pass, segment: span.segments.start + piece })
     }
 
-    /// Works on another project from now on.
+    /// Switches to another project.
     pub(crate) fn begin(&mut self, project: Project) {
         self.open.project.seal();
         self.open.project.set("open", project);
@@ -276,7 +276,7 @@ impl Studio {
         self.window.ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
-    /// Changes the project, and plans anew if it differs.
+    /// Changes the project, and plans again if it differs.
     pub(crate) fn change(&mut self, about: &str, change: impl FnOnce(&mut Project)) {
         let mut next = self.project().clone();
         change(&mut next);
@@ -285,19 +285,19 @@ impl Studio {
         }
     }
 
-    /// Lays a value over the profile, given as in TOML; what cannot be is told at the field.
+    /// Sets a value of the profile, given as in TOML; an invalid value is reported at its field.
     pub fn set_value(&mut self, key: &str, value: &str) {
         let text = edit::with_value(&self.project().profile, key, value);
         self.set_profile(key, text.map_err(|error| error.to_string()));
     }
 
-    /// Takes a value out of the profile, so that its default holds.
+    /// Removes a value from the profile, so that its default applies.
     pub(crate) fn reset_value(&mut self, key: &str) {
         let text = edit::without_value(&self.project().profile, key);
         self.set_profile(key, text.map_err(|error| error.to_string()));
     }
 
-    /// Takes the text of a profile if it can be.
+    /// Takes over the text of a profile if it is valid.
     pub(crate) fn set_profile(&mut self, about: &str, text: Result<String, String>) {
         let checked = text.and_then(|text| match Profile::parse(&text) {
             Ok(_) => Ok(text),
@@ -312,15 +312,15 @@ impl Studio {
         }
     }
 
-    /// Plans the project anew, the layer in view first.
+    /// Plans the project again, the layer in view first.
     pub fn replan(&mut self) {
         self.view.playing = false;
         self.view.chosen = None;
-        // Answers that are still under way are about the plan before.
+        // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         (self.jobs.steps, self.jobs.steps_job) = (None, None);
         if self.project().source.is_none() {
-            // Undone to the empty window.
+            // Undo has led back to the empty window.
             self.plans.planner.cancel();
             self.plans.own = PlanState::default();
             self.plans.other = None;
@@ -335,7 +335,7 @@ impl Studio {
         }
     }
 
-    /// Plans the part with a second strategy too, to be seen beside the first; none for no second plan.
+    /// Plans the part with a second strategy too, shown beside the first; none removes the second plan.
     pub fn compare_with(&mut self, strategy: Option<&str>) {
         let Some(strategy) = strategy else {
             self.plans.other = None;
@@ -359,7 +359,7 @@ impl Studio {
             self.window.ctx.style_mut_of(theme, |style| {
                 let visuals = &mut style.visuals;
                 visuals.weak_text_color = Some(egui::Color32::from_gray(if visuals.dark_mode { 150 } else { 95 }));
-                // A field to write in is seen without a frame.
+                // Makes text fields stand out without a frame.
                 visuals.extreme_bg_color = egui::Color32::from_gray(if visuals.dark_mode { 8 } else { 226 });
             });
         }
@@ -367,7 +367,7 @@ impl Studio {
     }
 }
 
-/// Draws the window again when the planner has something to tell: at once, or within a while where drawing in software
+/// Redraws the window when the planner has something to report: at once, or after a delay where drawing in software
 /// would hold up planning.
 fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Urgency) + Send + Sync + 'static {
     const WHILE: Duration = Duration::from_millis(500);

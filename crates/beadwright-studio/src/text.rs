@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// A language of the window. What the library tells (errors, findings, notes) is English in both.
+/// A language of the window. Messages of the library (errors, findings, notes) are English in both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Language {
     /// English.
@@ -17,16 +17,16 @@ pub enum Language {
 }
 
 impl Language {
-    /// All of them with their own names.
+    /// All languages, each with its own name for itself.
     pub const ALL: [(Self, &'static str); 2] = [(Self::English, "English"), (Self::Chinese, "中文")];
 
-    /// The text of a key; the key itself where the table lacks it (a test sees to it that it never does).
+    /// The text of a key; the key itself if it is missing from the table (a test makes sure that none is).
     pub fn text(self, key: &'static str) -> &'static str {
         self.find(key).unwrap_or(key)
     }
 
-    /// The text of a word that is put together, such as `raster_angle` of the kind `name`; with
-    /// blanks where the table lacks it.
+    /// The text of a key composed of a kind and a word, such as `name` and `raster_angle`; if the table
+    /// lacks it, the word itself with blanks.
     pub fn word(self, kind: &str, word: &str) -> String {
         let found = self.find(&format!("{kind} {word}"));
         found.map_or_else(|| word.replace(['_', '.'], " "), str::to_owned)

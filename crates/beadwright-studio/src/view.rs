@@ -1,4 +1,4 @@
-//! What is shown, and how: nothing of it belongs to the project.
+//! What is shown, and how. None of it belongs to the project.
 
 use crate::view2d::Show;
 use crate::view3d::{Colour, Scene};
@@ -25,7 +25,7 @@ pub enum Side {
     Findings,
     /// Curves.
     Plots,
-    /// What can be written.
+    /// What can be exported.
     Export,
 }
 
@@ -42,37 +42,37 @@ pub struct ViewState {
     pub last: usize,
     /// How much of the highest layer is shown, 0 to 1 of its pieces.
     pub progress: f64,
-    /// Whether the torch runs.
+    /// Whether the torch is playing.
     pub playing: bool,
-    /// How much faster than the robot.
+    /// How many times faster than the robot the torch plays.
     pub rate: f64,
-    /// Where the torch is, s from the start of the program, while it plays.
+    /// Time the torch has reached while it plays, s from the start of the program.
     pub seconds: f64,
     /// Where the torch is while it plays, mm.
     pub torch: Option<glam::DVec3>,
-    /// What colours tell.
+    /// What the colours mean.
     pub colour: Colour,
     /// Whether the part is shown.
     pub mesh: bool,
-    /// Whether travels, starts and ends are shown of all layers, and not of the highest only.
+    /// Whether travels, starts and ends are shown for all layers, not only for the highest.
     pub all_marks: bool,
-    /// Whether lines that are parallel look so.
+    /// Whether the projection is parallel, not in perspective.
     pub parallel: bool,
     /// What else is shown.
     pub show: Show,
     /// The chosen bead: layer, pass, piece.
     pub chosen: Option<(usize, usize, usize)>,
-    /// The dialect to be written.
+    /// The dialect to write.
     pub dialect: String,
-    /// The folder to be written into; empty for one that is asked for.
+    /// The folder to write into; if empty, the user is asked for one.
     pub folder: String,
-    /// The robot cell to be walked.
+    /// The robot cell to check the plan with.
     pub cell: String,
-    /// What is searched among the parameters.
+    /// The text searched for among the parameters.
     pub search: String,
-    /// Whether the keys are listed.
+    /// Whether the list of keys is shown.
     pub keys: bool,
-    /// The layer that is to be the highest one; the top one where none is wanted, and while there are fewer.
+    /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
     wanted: Option<usize>,
 }
 
@@ -105,12 +105,12 @@ impl Default for ViewState {
 }
 
 impl ViewState {
-    /// Everything of a new part is shown.
+    /// Shows all of a new part.
     pub fn reset(&mut self) {
         *self = Self { wanted: None, first: 0, last: 0, progress: 1.0, chosen: None, torch: None, ..self.clone() };
     }
 
-    /// Keeps the range within the layers there are.
+    /// Keeps the range within the existing layers.
     pub fn follow(&mut self, layers: usize) {
         if layers == 0 {
             return;
@@ -119,7 +119,7 @@ impl ViewState {
         self.first = self.first.min(self.last);
     }
 
-    /// Looks at a layer from now on.
+    /// Makes a layer the one in view.
     pub fn look_at(&mut self, layer: usize) {
         self.last = layer;
         self.first = self.first.min(layer);
@@ -129,7 +129,7 @@ impl ViewState {
         self.playing = false;
     }
 
-    /// Lets the torch run on from where it waits, or else from the beginning of the layer in view; or stops it.
+    /// Plays the torch from where it paused, or else from the start of the layer in view; or stops it.
     pub fn play(&mut self, on: bool, scene: &Scene) {
         self.playing = on;
         let waits = self.torch.is_some() && self.seconds < scene.total_seconds();
@@ -138,7 +138,7 @@ impl ViewState {
         }
     }
 
-    /// Moves the torch on by so many seconds of the person who looks; it stops at the end of the last layer.
+    /// Advances the torch after `passed` seconds of real time; it stops at the end of the last layer.
     pub fn advance(&mut self, passed: f64, scene: &Scene) {
         let total = scene.total_seconds();
         self.seconds = (self.seconds + passed * self.rate).min(total);
@@ -153,7 +153,7 @@ impl ViewState {
         self.playing = self.seconds < total;
     }
 
-    /// One layer up or down.
+    /// Moves one layer up or down.
     pub fn step_layer(&mut self, by: isize, layers: usize) {
         self.look_at(self.last.saturating_add_signed(by).min(layers.saturating_sub(1)));
     }

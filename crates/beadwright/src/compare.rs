@@ -19,7 +19,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use std::convert::Infallible;
 
-/// Which layers are judged, by index from 0; none for all.
+/// Which layers are judged, by index from 0; `None` for all.
 pub type Chosen = Option<BTreeSet<usize>>;
 
 /// One strategy or program.
@@ -27,9 +27,9 @@ pub type Chosen = Option<BTreeSet<usize>>;
 pub struct Entry {
     /// Name of the strategy or of the file.
     pub name: String,
-    /// What it takes.
+    /// Its arc starts, lengths, times and metal.
     pub totals: Totals,
-    /// What it builds, over the judged layers.
+    /// What the deposit model says of the judged layers together.
     pub figures: Figures,
     /// The judged layers.
     pub layers: Vec<JudgedLayer>,
@@ -37,10 +37,10 @@ pub struct Entry {
     pub growth: Vec<Growth>,
 }
 
-/// What a strategy or program takes.
+/// Arc starts, lengths, times and metal of a strategy or program.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Totals {
-    /// Arc starts, one a pass.
+    /// Arc starts, one per pass.
     pub arc_starts: usize,
     /// Length of all beads, mm.
     pub deposited_length_mm: f64,
@@ -52,7 +52,7 @@ pub struct Totals {
     pub metal_volume_mm3: f64,
     /// Turns sharper than 30° within passes.
     pub turns: usize,
-    /// The shortest time for which an arc moves, s; none without passes.
+    /// The shortest time for which the torch moves with the arc on, s; `None` without passes.
     pub shortest_arc_s: Option<f64>,
     /// Time for gas, starting and ending the arc, and for craters, s.
     pub start_stop_time_s: f64,
@@ -69,7 +69,7 @@ pub struct JudgedLayer {
     pub z: f64,
     /// Its figures.
     pub figures: Figures,
-    /// The largest voids and the highest peaks.
+    /// The largest voids.
     pub voids: Vec<Patch>,
     /// The highest peaks.
     pub peaks: Vec<Patch>,
@@ -162,7 +162,7 @@ pub fn strategy(
 }
 
 impl Totals {
-    /// Of a plan.
+    /// The totals of a plan.
     pub fn of_plan(metrics: &Metrics) -> Self {
         Self {
             arc_starts: metrics.arc_starts,
@@ -177,7 +177,8 @@ impl Totals {
         }
     }
 
-    /// Of a program read back; `layers` are its layers. What its starts, ends and corners take follows from the profile.
+    /// The totals of a program read back; `layers` are its layers. The profile gives the times of its starts, ends and
+    /// corners.
     pub fn of_program(totals: &ReadTotals, layers: &[Layer], profile: &Profile) -> Self {
         let nominal = plan::deposit_settings(profile).nominal;
         let mut metrics = Metrics::new(profile);
@@ -226,7 +227,7 @@ pub struct Column {
     pub decimals: usize,
     /// Its value.
     pub value: fn(&Entry) -> f64,
-    /// Whether more is better.
+    /// Whether a greater value is better.
     pub more: bool,
 }
 
@@ -248,12 +249,12 @@ pub const COLUMNS: [Column; 14] = [
     Column { name: "score", decimals: 1, value: Entry::score, more: false },
 ];
 
-/// How the score is made, in words.
+/// How the score is computed, in words.
 pub const SCORE: &str = "score: 10 for each % of void and of metal outside, 1 for each % of overfill, \
                          10 for each arc start a metre of bead; the least is the best.";
 
 impl Entry {
-    /// One figure for what it builds and how it welds: the less the better ([`SCORE`]).
+    /// One figure for the quality of the deposit and the number of arc starts; the lower, the better ([`SCORE`]).
     pub fn score(&self) -> f64 {
         let starts_a_metre = 1e3 * self.totals.arc_starts as f64 / self.totals.deposited_length_mm.max(1.0);
         10.0 * (self.figures.void_percent() + self.figures.outside_percent() + starts_a_metre)

@@ -15,7 +15,7 @@ pub struct Layer {
     pub height: f64,
     /// Outlines of the slice.
     pub islands: Vec<Polygon>,
-    /// Passes in deposition order; between two the arc is off.
+    /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
     /// Area of the slice, mm².
     pub slice_area: f64,

@@ -1,6 +1,6 @@
 //! Beadwright turns a part into a weld-deposition program, and tells beforehand what that program would build.
 //!
-//! A file's bytes become a [`Model`], placed it is a [`Part`]; the part is cut into [slices](slice), every island of a
+//! A file's bytes become a [`Model`], placed it is a [`Part`]; the part is cut into [slices](mod@slice), every island of a
 //! slice is [filled](fill), the passes are put in order, and a [`Plan`] holds the result. A plan is written in a robot's
 //! language by a [`dialect`], judged by the deposit model ([`deposit`]), checked ([`check`](mod@check)) and shown
 //! ([`report`]). All values of the process come from a [`Profile`].

@@ -1,31 +1,31 @@
-//! What the values of a profile can be: a row for every number, with its range, unit and reason.
+//! The limits of the values of a profile: a row for every number, with its range, unit and reason.
 
-/// What a number of a profile can be.
+/// The limits of a number in a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// Full key, such as `bead.width`.
     pub key: &'static str,
-    /// The value, or one to begin with where it is left out.
+    /// The value, or a starting value if the key is left out.
     pub value: f64,
-    /// Least value.
+    /// Smallest possible value.
     pub least: f64,
-    /// Greatest value.
+    /// Largest possible value.
     pub greatest: f64,
     /// The unit, and what the range depends on.
     pub unit: &'static str,
-    /// Why, as part of a sentence.
+    /// The reason for the range, as part of a sentence.
     pub reason: &'static str,
 }
 
 impl Limit {
-    /// Whether the value is possible; one that is no number is not.
+    /// Whether the value is within the limits; NaN is not.
     pub fn holds(&self) -> bool {
         (self.least..=self.greatest).contains(&self.value)
     }
 }
 
-/// A section of the profile whose every key has a default: a row for each, with its default and, for numbers, least and
-/// greatest value, unit and reason.
+/// A section of the profile in which every key has a default: a row for each key, with its default and, for numbers,
+/// the least and greatest value, the unit and the reason.
 macro_rules! section {
     ($(#[$about:meta])* $name:ident $key:literal {
         $($(#[$doc:meta])*
@@ -46,7 +46,7 @@ macro_rules! section {
         }
 
         impl $name {
-            /// What the numbers can be.
+            /// The limits of the numbers.
             pub(crate) fn limits(&self) -> Vec<crate::limit::Limit> {
                 [$($({
                     let (key, value) = (concat!($key, ".", stringify!($field)), self.$field.into());
@@ -78,24 +78,24 @@ pub(crate) fn limit(
 }
 
 /// The reason for the limits of most keys of a dialect.
-pub(crate) const CONTROLLER: &str = "the controller takes no other values, or no cell of the trade needs them";
+pub(crate) const CONTROLLER: &str = "the controller accepts no other values, or no real cell needs them";
 
-/// The least value of what must be above 0.
+/// The least value of numbers that must be above 0.
 pub(crate) const TINY: f64 = 1e-3;
 
-/// A value that cannot be.
+/// An impossible value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Broken {
     /// Full key.
     pub key: String,
-    /// The value as it stands in the profile.
+    /// The value as written in the profile.
     pub value: String,
     /// What would be right.
     pub reason: String,
 }
 
 impl Broken {
-    /// A text that cannot be.
+    /// An impossible text.
     pub(crate) fn text(key: &str, value: &str, reason: impl Into<String>) -> Self {
         Self { key: key.to_owned(), value: format!("\"{value}\""), reason: reason.into() }
     }

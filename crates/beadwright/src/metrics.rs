@@ -29,7 +29,7 @@ pub struct Metrics {
     pub wire_length_m: f64,
     /// Wire, kg.
     pub wire_mass_kg: f64,
-    /// The shortest time for which an arc moves, s; none without passes.
+    /// The shortest time for which the arc is on and moving in a pass, s; `None` without passes.
     pub shortest_arc_s: Option<f64>,
     /// Time for gas, starting and ending the arc, and for craters, s: what every arc start costs.
     pub start_stop_time_s: f64,

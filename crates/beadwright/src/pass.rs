@@ -35,7 +35,7 @@ impl PassKind {
 pub enum Along {
     /// The same everywhere.
     Same(f64),
-    /// One value a point, which holds on the way to the next point.
+    /// One value per point, which holds up to the next point.
     Each(Vec<f64>),
 }
 
@@ -56,7 +56,7 @@ impl Along {
         }
     }
 
-    /// The values changed one by one.
+    /// Every value changed by `change`.
     pub fn map(&self, change: impl Fn(f64) -> f64) -> Self {
         match self {
             Self::Same(value) => Self::Same(change(*value)),
@@ -64,7 +64,7 @@ impl Along {
         }
     }
 
-    /// The values of the path run backwards: every piece keeps its own, also the closing one.
+    /// Reverses the values together with the path: every piece keeps its own, the closing one included.
     pub fn reverse(&mut self) {
         if let Self::Each(values) = self
             && let [pieces @ .., _] = &mut values[..]
@@ -73,7 +73,7 @@ impl Along {
         }
     }
 
-    /// The values with a new point on the piece behind the point of that index.
+    /// Adds a value for a new point on the piece after the point `index`.
     pub fn split(&mut self, index: usize) {
         if let Self::Each(values) = self
             && let Some(&value) = values.get(index)
@@ -82,7 +82,7 @@ impl Along {
         }
     }
 
-    /// The values with the point of that index first.
+    /// Rotates the values so that the point `index` comes first.
     pub fn rotate_left(&mut self, index: usize) {
         if let Self::Each(values) = self {
             let places = index.min(values.len());
@@ -102,8 +102,8 @@ pub struct Pass {
     pub points: Vec<DVec3>,
     /// Bead width, mm.
     pub width: Along,
-    /// Pace, mm/s: the speed at which the nominal wire feed lays the metal of a piece. [`Process::speed_at`] tells that of the
-    /// torch.
+    /// Pace, mm/s: the speed at which the nominal wire feed lays the metal of a piece. [`Process::speed_at`] gives the
+    /// speed of the torch.
     pub pace: Along,
 }
 

@@ -99,7 +99,7 @@ fn list<T>(text: &mut String, items: &[T], mut write: impl FnMut(&mut String, &T
 pub struct PlanFile {
     /// Part, profile and strategy.
     pub header: Header,
-    /// The bead it was made for; none in files that do not tell.
+    /// The settings and bead it was made for; `None` in files that do not say.
     pub settings: Option<DepositSettings>,
     /// Its layers; planned areas and warnings are not in the file.
     pub layers: Vec<Layer>,

@@ -1,9 +1,9 @@
 //! The neutral program: moves, arc on, arc off, wire feed, waits. Posts turn it into a controller's language.
 //!
-//! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one
-//! are dropped: a weld move of no length burns through. Then, if it is asked for, straight pieces and circular arcs are
-//! fitted within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and
-//! no arc: `Weld` then only tells the way, since no `ArcOn` came before it.
+//! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one are
+//! dropped: a weld move of zero length burns through. Then, if requested, straight pieces and circular arcs are fitted
+//! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and no
+//! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
 
 mod settings;
 mod spread;
@@ -21,35 +21,35 @@ use spread::Spread;
 /// Coordinates of a program are multiples of this, mm.
 pub const RESOLUTION_MM: f64 = 1e-3;
 
-/// No two points of a pass lie closer, mm.
+/// No two points of a pass lie closer together than this, mm.
 pub const MIN_MOVE_MM: f64 = 0.01;
 
 /// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next `Travel`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instruction {
-    /// A straight move without arc, at travel speed; ends with an exact stop.
+    /// A straight move with the arc off, at travel speed; ends with an exact stop.
     Travel {
         /// Tool point, mm.
         to: DVec3,
     },
-    /// Lights the arc at the start of a pass.
+    /// Strikes the arc at the start of a pass.
     ArcOn {
         /// Number of the pass in its layer, from 1.
         pass: usize,
-        /// What it is for.
+        /// What the pass is for.
         kind: PassKind,
     },
-    /// The wire feed from here on; nominal at first. It comes where it changes, and only in programs whose profile lets it
-    /// change.
+    /// The wire feed from here on; nominal at first. It appears where the wire feed changes, and only in programs whose
+    /// profile lets it change.
     WireFeed {
-        /// Part of the nominal one.
+        /// Multiple of the nominal wire feed.
         ratio: f64,
     },
     /// A move with the arc on.
     Weld {
         /// Tool point, mm.
         to: DVec3,
-        /// The circle on which it goes there; none for a straight move.
+        /// The circle along which it moves there; `None` for a straight move.
         circle: Option<Circle>,
         /// Deposition speed, mm/s.
         speed: f64,
@@ -60,7 +60,7 @@ pub enum Instruction {
     Crater {
         /// How long, s.
         seconds: f64,
-        /// What the wire feed becomes meanwhile, a part of the nominal one; none where it stays as it is.
+        /// The wire feed meanwhile, as a fraction of the nominal wire feed; `None` where it stays as it is.
         ratio: Option<f64>,
     },
     /// Ends the arc.
@@ -68,7 +68,7 @@ pub enum Instruction {
         /// Number of the pass in its layer, from 1.
         pass: usize,
     },
-    /// The torch waits without arc until the next layer may begin.
+    /// The torch waits with the arc off until the next layer may begin.
     Dwell {
         /// How long, s.
         seconds: f64,
@@ -78,13 +78,14 @@ pub enum Instruction {
 /// A circular arc in a plane of constant height, from where the torch stands; less than half a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
-    /// A point about in its middle, mm. The circle is that through start, this point and end, as they are rounded.
+    /// A point near the middle of the arc, mm. The circle is the one through its start, this point and its end, as
+    /// rounded.
     pub via: DVec3,
     /// Its centre, mm.
     pub centre: DVec3,
     /// Its radius, mm.
     pub radius: f64,
-    /// Angle of the arc, counter-clockwise seen from above where it is over 0, radians.
+    /// Angle of the arc, radians; above 0 it is counter-clockwise as seen from above.
     pub sweep: f64,
 }
 
@@ -94,7 +95,7 @@ impl Circle {
         self.radius * self.sweep.abs()
     }
 
-    /// The word of G-code that runs it: G2 clockwise, G3 counter-clockwise.
+    /// The G-code word that runs it: G2 clockwise, G3 counter-clockwise.
     pub fn word(&self) -> &'static str {
         if self.sweep < 0.0 { "G2" } else { "G3" }
     }
@@ -118,7 +119,7 @@ pub struct Programmer {
     torch: Torch,
     fit: Option<Fit>,
     speed_tolerance: f64,
-    /// What the wire feed was set to last, of the nominal one; none where that is not known.
+    /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
     feed: Option<f64>,
     sets_feed: bool,
     dry: bool,
@@ -126,28 +127,28 @@ pub struct Programmer {
 }
 
 impl Programmer {
-    /// Passes as they are planned; travels go `clearance` (mm) above the higher of their ends.
+    /// Programs passes as they are planned; travels run `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
         let (spread, feed) = (None, None);
         Self { clearance, torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
     }
 
-    /// Passes as they are welded; a dry run has the same moves and no arc.
+    /// Programs passes as they are welded; a dry run has the same moves and no arc.
     pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker();
         let programmer = Self { torch: Torch::of(weld), sets_feed, dry, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
     }
 
-    /// The same with every point of the passes.
+    /// The same programmer, but it keeps every point of the passes.
     pub fn unfitted(self) -> Self {
         Self { fit: None, spread: None, ..self }
     }
 
     /// Fits straight pieces and arcs; without a tolerance every point is kept.
     pub fn with_fit(mut self, program: &ProgramSettings) -> Self {
-        // What dropping close points may have moved comes on top.
+        // Dropping close points may already have moved the path by this much.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
         // Merging points and fitting pieces each take half of it.
         let time = program.min_point_time;
@@ -208,7 +209,7 @@ impl Programmer {
         out.push(Instruction::ArcOff { pass: number });
     }
 
-    /// Sets the wire feed, a part of the nominal one, where it changes.
+    /// Sets the wire feed, as a multiple of the nominal one, where it changes.
     fn set_feed(&mut self, ratio: f64, out: &mut Vec<Instruction>) {
         if self.sets_feed && self.feed != Some(ratio) {
             self.feed = Some(ratio);
@@ -222,8 +223,8 @@ impl Programmer {
     }
 }
 
-/// Gives neighbouring moves whose paces differ by no more than that part one pace: the one that takes the same time
-/// along them together, and so lays the same metal.
+/// Gives neighbouring moves whose paces differ by no more than the fraction `tolerance` a common pace: the one that
+/// takes the same time over all of them, and so lays the same metal.
 fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     let mut start = 1;
     while tolerance > 0.0 && start < moves.len() {
@@ -248,7 +249,7 @@ fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
 /// The end of a move, the pace on it, and its circle if it has one.
 type Stretch = (DVec3, f64, Option<Circle>);
 
-/// The moves from the first point on, fitted. Pieces end where pace or height change.
+/// The moves from the first point on, fitted. Pieces end where pace or height changes.
 fn fitted(moves: &[(DVec3, f64)], fit: &Fit) -> Vec<Stretch> {
     let (mut out, mut start) = (Vec::new(), 0);
     while let Some(&(first, pace)) = moves.get(start + 1) {
@@ -271,7 +272,7 @@ fn fitted(moves: &[(DVec3, f64)], fit: &Fit) -> Vec<Stretch> {
     out
 }
 
-/// The points of a path, rounded, without those too close to the last one; the end point stays in any case.
+/// The points of a path, rounded, without those too close to the last one; the end point is always kept.
 fn distinct(path: Vec<(DVec3, f64)>) -> Vec<(DVec3, f64)> {
     let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
     let end = path.last().map(|(to, _)| round(*to));

@@ -39,11 +39,11 @@ fn layer(studio: &mut Studio, ui: &mut Ui) {
     {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
-    // A layer without islands has none, and is not looked at again.
+    // A layer without islands has no steps; an empty list is kept so that they are not computed again.
     studio.jobs.steps = steps.map(|steps| (layer, steps));
 }
 
-/// The steps of the layer in view, taken out of the program for as long as they are drawn.
+/// The steps of the layer in view, taken out of the program while they are drawn.
 fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
     studio.jobs.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
 }
@@ -91,7 +91,7 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
     });
 }
 
-/// Works out pockets and skeleton regions of the layer in view where they are asked for.
+/// Has the pockets and skeleton regions of the layer in view computed when they are to be shown.
 fn look_closer(studio: &mut Studio) {
     let known = studio.jobs.steps.as_ref().is_some_and(|(of, _)| *of == studio.view.last);
     if studio.view.show.regions && !known && studio.jobs.steps_job.is_none() {
@@ -115,7 +115,7 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
             right.colored_label(right.visuals().error_fg_color, text);
         }
         right.strong(&other.strategy);
-        // Both look at the same place: whichever was moved leads.
+        // Both views show the same place: when one is moved, the other follows.
         if studio.flat.eye() != before {
             other.flat.follow(&studio.flat);
         }

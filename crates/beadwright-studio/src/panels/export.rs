@@ -1,4 +1,4 @@
-//! What can be written.
+//! What can be exported.
 
 use crate::actions::Action;
 use crate::export::Export;

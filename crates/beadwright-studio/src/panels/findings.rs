@@ -5,7 +5,7 @@ use crate::view::Mode;
 use beadwright::check::{CHECKS, Finding};
 use eframe::egui::{CollapsingHeader, Ui};
 
-/// Findings of one check that are listed.
+/// Most findings listed for one check.
 const LISTED: usize = 100;
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -40,7 +40,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     }
 }
 
-/// The finding as a sentence that begins one.
+/// The finding as a sentence, starting with a capital letter.
 fn sentence(finding: &Finding) -> String {
     let text = finding.sentence();
     let mut letters = text.chars();

@@ -1,4 +1,4 @@
-//! Below the views: which layers are shown, how much of the highest, and the torch that runs.
+//! Below the views: which layers are shown, how much of the highest, and the playing torch.
 
 use crate::actions::Action;
 use crate::studio::Studio;
@@ -17,7 +17,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 
 fn range(studio: &mut Studio, ui: &mut Ui, layers: usize) {
     let (mut first, mut last) = (studio.view.first + 1, studio.view.last + 1);
-    // The views of one layer have no lowest one.
+    // Views of a single layer have no lowest layer.
     let solid = studio.view.mode == Mode::Solid;
     let texts = ["first-layer", "last-layer", "layer"].map(|key| studio.t(key));
     if solid {
@@ -47,9 +47,9 @@ fn torch(studio: &mut Studio, ui: &mut Ui) {
     }
 }
 
-/// A slider with its text before it, on a part of the room that is left; tells whether it was moved.
+/// A slider with its label, in `1 / share` of the remaining width; returns whether it was moved.
 fn slider(ui: &mut Ui, text: &str, share: usize, slider: Slider<'_>) -> bool {
-    /// Room for the number behind it.
+    /// Room for the number after it.
     const NUMBER: f32 = 70.0;
     let room = ui.available_width() / share as f32;
     let label = ui.label(text);
@@ -57,7 +57,7 @@ fn slider(ui: &mut Ui, text: &str, share: usize, slider: Slider<'_>) -> bool {
     ui.add(slider).labelled_by(label.id).changed()
 }
 
-/// Moves the torch on while it plays.
+/// Advances the torch while it plays.
 fn advance(studio: &mut Studio, ui: &Ui) {
     if !studio.view.playing {
         return;

@@ -80,7 +80,7 @@ fn examples(studio: &mut Studio, ui: &mut Ui) {
 fn languages(studio: &mut Studio, ui: &mut Ui) {
     for (language, name) in Language::ALL {
         let possible = studio.window.chinese || language == Language::English;
-        // Without a font its own name could not be shown either.
+        // Without a Chinese font, the name 中文 could not be shown either.
         let name = if possible { name } else { "Chinese" };
         let button = ui.add_enabled(possible, Button::selectable(studio.language() == language, name));
         if button.on_disabled_hover_text(studio.t("no-chinese")).clicked() {

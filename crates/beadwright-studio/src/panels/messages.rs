@@ -1,11 +1,11 @@
-//! What went wrong or was done, as sentences that stay until they are closed.
+//! Messages on what went wrong or was done; they stay until they are closed.
 
 use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
 use eframe::egui::{Color32, RichText, ScrollArea, Ui};
 
-/// Lines that are shown at a time.
+/// Greatest height of the messages, points; longer lists scroll.
 const HEIGHT: f32 = 70.0;
 
 /// Whether there is anything to say.
@@ -47,7 +47,7 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
     });
 }
 
-/// What was mended in the model, and what the plan left out.
+/// What was repaired in the model, and what the plan left out.
 fn warnings(studio: &Studio) -> Vec<String> {
     let part = studio.plans.own.part.iter().flat_map(|part| part.warnings());
     let plan = studio.plans.own.summary.iter().flat_map(|summary| {

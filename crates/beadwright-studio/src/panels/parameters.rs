@@ -56,7 +56,7 @@ impl Form<'_> {
         let found =
             |f: &&Field| search.is_empty() || f.key.contains(&search) || f.about.to_lowercase().contains(&search);
         let fields: Vec<&Field> = section.fields.iter().filter(found).collect();
-        // A dialect without a section in this profile has no values to show.
+        // A dialect that has no section in this profile has no values to show.
         let present = section.key.is_empty() || form::value(self.values, &section.key).is_some();
         if fields.is_empty() || !present {
             return;
@@ -104,7 +104,7 @@ impl Form<'_> {
             }
         });
         ui.end_row();
-        // Where it was typed, so that it is seen.
+        // Shown right where the value was typed, so that it is noticed.
         if let Some((_, reason)) = self.studio.open.refused.as_ref().filter(|(key, _)| *key == field.key) {
             let text = format!("{} {reason}", self.studio.t("impossible"));
             ui.label("");
@@ -113,7 +113,7 @@ impl Form<'_> {
         }
     }
 
-    /// What the key means, what it can be, and why.
+    /// What the key means, which values it can have, and why.
     fn hint(&self, field: &Field, limit: Option<&Limit>) -> String {
         let range = limit.map(|l| {
             let (from, to) = (self.studio.t("from"), self.studio.t("to"));
@@ -128,7 +128,7 @@ impl Form<'_> {
     }
 }
 
-/// The widget of a field, and the new value as TOML where it was changed.
+/// The widget of a field, and the new value as TOML if it was changed.
 fn widget(
     ui: &mut Ui,
     field: &Field,
@@ -159,16 +159,16 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     let as_toml = |number: f64| if whole { format!("{number:.0}") } else { format!("{number:?}") };
     let now = value.and_then(|v| v.as_float().or(v.as_integer().map(|i| i as f64)));
     let Some(mut number) = now else {
-        // Left out: a click begins with a value that can be.
+        // The key is left out: a click starts with a valid value.
         let response = ui.small_button("+");
         let changed = response.clicked().then(|| as_toml(limit.map_or(1.0, |l| l.value.clamp(l.least, l.greatest))));
         return (response, changed);
     };
     let (least, greatest) = limit.map_or((f64::MIN, f64::MAX), |l| (l.least, l.greatest));
     let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
-    // Units behind a bracket tell what the range depends on; that belongs in the hint.
+    // A bracket in the unit says what the range depends on; that belongs in the hint.
     let unit = limit.map_or("", |l| unit(l));
-    // What is typed is taken when it is complete, and refused with the reason; what is dragged ends at the range.
+    // A typed value is taken once it is complete, and refused with the reason if invalid; dragging stops at the limits.
     let drag = DragValue::new(&mut number).update_while_editing(false).speed(speed).suffix(format!(" {unit}"));
     let drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(4) };
     let response = ui.add(drag);
@@ -180,7 +180,7 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     (response, changed)
 }
 
-/// What stands behind a number; nothing where the key says it already. What a range depends on stands in brackets, and
+/// The unit shown after a number; empty if the key already names it. A bracket in it says what the range depends on and
 /// belongs in the hint.
 fn unit(limit: &Limit) -> &'static str {
     let unit = limit.unit.split('(').next().unwrap_or_default().trim();

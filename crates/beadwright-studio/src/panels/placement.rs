@@ -1,4 +1,4 @@
-//! Where the part stands: units, scale, turn.
+//! How the part is placed: units, scale, rotation.
 
 use crate::actions;
 use crate::actions::Action;

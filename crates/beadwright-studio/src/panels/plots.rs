@@ -1,4 +1,4 @@
-//! Curves: figures of every layer, beads that were measured, the joints of the robot.
+//! Plots: figures for every layer, measured beads, the robot's joints.
 
 use crate::actions::Action;
 use crate::jobs::Ask;
@@ -8,13 +8,13 @@ use beadwright::robot::{Reach, cell};
 use eframe::egui::{ComboBox, Rangef, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
-/// Points of a curve that are drawn.
+/// Most points drawn for a curve.
 const POINTS: usize = 2000;
 
-/// Points of the screen between numbers at an axis, from hardly seen to clear: plots are small here.
+/// Spacing of the numbers on an axis in screen points, from barely visible to clear; the plots are small here.
 const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
 
-/// Height of a plot.
+/// Height of a plot, points.
 const HEIGHT: f32 = 140.0;
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -48,7 +48,7 @@ fn beads(studio: &mut Studio, ui: &mut Ui) {
     drawn(ui, "lambda", &found);
 }
 
-/// A plot of the library's pages, here.
+/// Draws a plot that the library makes for its pages.
 fn drawn(ui: &mut Ui, id: &str, found: &page::Plot) {
     let plot = Plot::new(id).height(1.5 * HEIGHT).legend(Legend::default()).allow_scroll(false);
     plot.x_axis_label(&*found.x).y_axis_label(&*found.y).show(ui, |plot| {

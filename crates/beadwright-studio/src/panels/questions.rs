@@ -64,7 +64,7 @@ fn lost(studio: &mut Studio, ui: &Ui) {
 
 fn units(studio: &mut Studio, ui: &Ui, text: &str) {
     window(studio.t("units-title")).show(ui.ctx(), |ui| {
-        // The command's options stand behind the first sentences; here the buttons do.
+        // After the first sentences the text names the command's options; here the buttons replace them.
         ui.label(text.split(" Say which").next().unwrap_or(text));
         ui.horizontal(|ui| {
             for (name, units) in Units::ALL {

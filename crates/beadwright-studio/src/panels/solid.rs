@@ -5,7 +5,7 @@ use crate::view3d::{Colour, Pick, palette};
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
-/// What colours can tell, with their texts.
+/// What the colours can show, with their texts.
 const COLOURS: [(Colour, &str); 5] = [
     (Colour::Kind, "colour-kind"),
     (Colour::Order, "colour-order"),
@@ -87,7 +87,7 @@ fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A piece in the layer is one in its pass.
+/// The picked bead, its segment counted within its pass instead of within its layer.
 fn chosen(studio: &Studio, pick: Pick) -> Option<(usize, usize, usize)> {
     let span = studio.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;
     Some((pick.layer, pick.pass, pick.segment - span.segments.start))

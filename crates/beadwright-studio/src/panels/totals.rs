@@ -26,7 +26,7 @@ pub(super) fn show(studio: &Studio, ui: &mut Ui) {
     chosen(studio, ui);
 }
 
-/// The rows that are known of a plan.
+/// The rows known so far for a plan.
 pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
     let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
     let figures: Option<&Figures> = plan.total.as_ref();

@@ -26,7 +26,7 @@ pub fn heat(height: f64) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The height in a pixel, in nominal bead heights; none where there is no metal, or a void.
+/// The height in a pixel, in nominal bead heights; none where there is no metal or a void.
 pub fn height(value: u8) -> Option<f64> {
     let step = picture::FULL_SCALE / f64::from(u8::MAX - picture::FIRST_HEIGHT);
     value.checked_sub(picture::FIRST_HEIGHT).map(|v| f64::from(v) * step)
@@ -38,7 +38,7 @@ pub(super) fn image(map: &Picture) -> ColorImage {
         picture::VOID_PIXEL => VOID,
         value => height(value).map_or(Color32::TRANSPARENT, heat),
     };
-    // The picture has its lowest row first, an image its highest.
+    // The height picture starts with its lowest row, an image with its highest.
     let rows = map.values.chunks(map.width.max(1)).rev();
     ColorImage::new([map.width, map.height], rows.flatten().map(|v| pixel(*v)).collect())
 }

@@ -1,4 +1,4 @@
-//! One layer from above: outline, beads, pockets and skeleton regions, the height field with its voids, a measure.
+//! One layer from above: outline, beads, pockets and skeleton regions, the height field with its voids, a measurement.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -23,7 +23,7 @@ use heat::{VOID, image};
 use pen::Pen;
 use std::sync::Arc;
 
-/// Where one looks: the middle of the view, mm, and its scale, points per mm.
+/// The part of the layer in view: the middle of the view, mm, and its scale, points per mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eye {
     /// Middle of the view, mm.
@@ -37,7 +37,7 @@ pub struct Eye {
 pub struct Show {
     /// Beads with their width.
     pub beads: bool,
-    /// The way of the torch.
+    /// The path of the torch.
     pub paths: bool,
     /// Moves without arc.
     pub travels: bool,
@@ -55,7 +55,7 @@ impl Default for Show {
     }
 }
 
-/// What is looked at.
+/// What the view shows.
 #[derive(Clone, Copy)]
 pub struct Drawing<'a> {
     /// The layer.
@@ -64,7 +64,7 @@ pub struct Drawing<'a> {
     pub judgement: Option<&'a Arc<Judgement>>,
     /// The steps of the hybrid, island by island.
     pub steps: &'a [Steps],
-    /// Pieces of beads that are shown.
+    /// Number of bead segments that are shown.
     pub pieces: usize,
     /// The pass that is chosen.
     pub chosen: Option<usize>,
@@ -72,10 +72,10 @@ pub struct Drawing<'a> {
     pub scale: Option<&'a str>,
 }
 
-/// What a person did in the view.
+/// What the user did in the view.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Done {
-    /// The pass that was clicked on, with its piece; `Some(None)` for a click beside all.
+    /// The pass that was clicked, with its segment; `Some(None)` for a click on no pass.
     pub picked: Option<Option<(usize, usize)>>,
 }
 
@@ -109,34 +109,34 @@ impl Eye {
 }
 
 impl View2d {
-    /// The whole layer is shown again.
+    /// Shows the whole layer again.
     pub fn fit(&mut self) {
         self.eye = None;
     }
 
-    /// A place comes to the middle, mm; near enough to see beads.
+    /// Moves a place (mm) to the middle, zoomed in far enough to see beads.
     pub fn look_at(&mut self, place: DVec2) {
         const NEAR: f64 = 8.0;
         let scale = self.eye.map_or(NEAR, |eye| eye.scale.max(NEAR));
         self.eye = Some(Eye { centre: place, scale });
     }
 
-    /// Looks where another view looks.
+    /// Shows the same place as another view.
     pub fn follow(&mut self, other: &Self) {
         self.eye = other.eye;
     }
 
-    /// Where this view looks; none while all of the layer is shown.
+    /// The place in view; none while the whole layer is shown.
     pub fn eye(&self) -> Option<Eye> {
         self.eye
     }
 
-    /// Forgets what was measured.
+    /// Clears the measurement.
     pub fn clear_measure(&mut self) {
         self.measure.clear();
     }
 
-    /// The distance that was measured, mm.
+    /// The measured distance, mm.
     pub fn measured(&self) -> Option<f64> {
         match self.measure[..] {
             [a, b] => Some(a.distance(b)),
@@ -144,7 +144,7 @@ impl View2d {
         }
     }
 
-    /// Shows a layer in all the room there is.
+    /// Shows a layer in all the available space.
     pub fn show(&mut self, ui: &mut Ui, subject: Drawing<'_>, show: Show, label: &str) -> Done {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
@@ -244,7 +244,7 @@ fn move_eye(eye: &mut Eye, ui: &Ui, response: &egui::Response, rect: Rect) {
     }
 }
 
-/// The pass under a point, with its piece.
+/// The pass under a point, with its segment.
 fn nearest(layer: &Layer, at: DVec2) -> Option<(usize, usize)> {
     let pieces = layer.passes.iter().enumerate().flat_map(|(p, pass)| pass.segments().enumerate().map(move |s| (p, s)));
     let distances = pieces.filter_map(|(pass, (i, s))| {

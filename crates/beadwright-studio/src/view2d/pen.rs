@@ -68,7 +68,7 @@ impl Pen<'_> {
             (pass.kind, pieces)
         });
         let shown: Vec<(PassKind, Vec<Segment>)> = shown.collect();
-        // Under the colours of heights, beads would only hide them.
+        // Beads would only hide the colours of the heights.
         if show.beads && !show.heights {
             for (i, (kind, pieces)) in shown.iter().enumerate() {
                 self.bead(*kind, pieces, subject.chosen == Some(i));
@@ -96,9 +96,9 @@ impl Pen<'_> {
         }
     }
 
-    /// A bead in a pale colour that covers what lies below it, round at its ends and corners.
+    /// A bead in a pale colour that hides what lies below, with round ends and corners.
     fn bead(&self, kind: PassKind, pieces: &[Segment], chosen: bool) {
-        /// Cosine of the turn from which on a corner would show a gap.
+        /// Cosine of the smallest turn at which a corner would show a gap.
         const GAP: f64 = 0.995;
         let ground = self.ui.visuals().panel_fill;
         let ink = ground.lerp_to_gamma(colour(kind), if chosen { 0.8 } else { 0.4 });
@@ -117,7 +117,7 @@ impl Pen<'_> {
         }
     }
 
-    /// A line of a round length.
+    /// A scale bar: a line of a round length.
     pub(super) fn scale_bar(&self) {
         let longest = f64::from(self.rect.width()) / 5.0 / self.eye.scale;
         let power = 10_f64.powf(longest.log10().floor());

@@ -1,6 +1,6 @@
 //! One layer as it is drawn and timed: its segments in print order, the passes, and the travels between them.
 //!
-//! All of it is plain data, made on a worker thread. Numbers are `f32` where only a picture needs them.
+//! This is plain data, made on a worker thread. Numbers that only the picture needs are `f32`.
 
 use beadwright::layer::Layer;
 use beadwright::pass::{Pass, PassKind};
@@ -10,17 +10,17 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Segments of one bounding box.
+/// Segments per bounding box.
 pub(super) const BLOCK: usize = 64;
 
 /// Cosine of the sharpest bend at which two segments are mitred; sharper ones get a round joint. 50°.
 const MITRE_COS: f32 = 0.643;
 
-/// Rough beads leave the true ones by less than this part of the width, and turn from them by less than 20°.
+/// Rough beads deviate from the exact ones by less than this fraction of the width, and by less than 20° in direction.
 pub(super) const ROUGH: f32 = 0.05;
 const ROUGH_COS: f32 = 0.94;
 
-/// At most so many segments more than one become a rough one.
+/// A rough segment stands for at most this many segments plus one.
 const MOST_MERGED: usize = 24;
 
 /// A straight piece of a bead, as the graphics card reads it; mm.
@@ -28,10 +28,10 @@ const MOST_MERGED: usize = 24;
 #[repr(C)]
 pub struct Bead {
     from: [f32; 3],
-    /// Width; below zero where the segment before goes over into this one.
+    /// Width; negative if the previous segment is mitred into this one.
     width: f32,
     to: [f32; 3],
-    /// Height; below zero where this one goes over into the next.
+    /// Height; negative if this segment is mitred into the next.
     height: f32,
 }
 
@@ -99,16 +99,16 @@ pub struct LayerBeads {
     pub(super) cap_segments: Vec<u32>,
     /// The same beads with fewer segments, for a view in motion.
     pub(super) rough: Vec<Bead>,
-    /// The last segment that each of them stands for.
+    /// The last segment that each rough one stands for.
     pub(super) rough_segments: Vec<u32>,
-    /// Lowest and highest corner of what every [`BLOCK`] segments fill, mm.
+    /// Lowest and highest corner of each block of [`BLOCK`] segments, mm.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
     seconds: f64,
 }
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
 
-/// A number that no other caller gets: changes are found by comparing it.
+/// A number that no other caller gets; comparing it shows whether something changed.
 pub(super) fn fresh_id() -> u64 {
     NEXT_ID.fetch_add(1, Ordering::Relaxed)
 }
@@ -150,7 +150,7 @@ impl LayerBeads {
             travel = from.into_iter().chain(approach.legs.into_iter().filter(|_| from.is_some())).collect();
         }
         let mut arc_start = arrival;
-        // A pass without a point takes its place in the numbering and nothing else.
+        // A pass without points only keeps its place in the numbering.
         if pass.start().is_some() {
             let speed = |pace: f64| torch.speed_at(pace);
             let even: f64 = pass.segments().map(|s| s.length() / speed(s.pace)).sum();
@@ -194,7 +194,7 @@ impl LayerBeads {
         }
     }
 
-    /// Makes one segment of several, as long as it stays on the bead.
+    /// Merges several segments into one, as long as it stays on the bead.
     fn roughen(&mut self, segments: Range<usize>) {
         let mut first = segments.start;
         while first < segments.end {
@@ -263,7 +263,7 @@ impl LayerBeads {
     }
 }
 
-/// Whether beads one behind another are about one straight bead.
+/// Whether consecutive beads together are nearly one straight bead.
 fn merges(beads: &[Bead]) -> bool {
     let [first, between @ .., last] = beads else { return true };
     let (start, way) = (first.from(), (last.to() - first.from()).normalize_or_zero());

@@ -5,13 +5,13 @@ use glam::{DMat4, DVec2, DVec3};
 /// Half the angle of view from top to bottom: 17.5°.
 const HALF_VIEW_TAN: f64 = 0.315_299;
 
-/// The part of the picture that a fitted box fills at most.
+/// The fraction of the picture that a fitted box fills at most.
 const FILL: f64 = 0.92;
 
-/// Radians per point of the pointer.
+/// Radians turned per point of pointer movement.
 const TURN_PER_POINT: f64 = 0.008;
 
-/// Views by name.
+/// Standard views.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
     /// From above, y up.
@@ -28,7 +28,7 @@ pub enum StandardView {
     Iso,
 }
 
-/// The eye. Sizes and places in the picture are in points, from its upper left corner, y down.
+/// The eye. Sizes and positions in the picture are in screen points from its upper left corner, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// What it turns about, mm.
@@ -39,7 +39,7 @@ pub struct Camera {
     pub yaw: f64,
     /// Elevation of the eye, −π/2 to π/2.
     pub pitch: f64,
-    /// Whether lines of sight are parallel.
+    /// Whether the projection is parallel.
     pub orthographic: bool,
 }
 
@@ -84,7 +84,7 @@ impl Camera {
         let near = self.distance / 100.0;
         let view = DMat4::look_to_rh(self.eye(), -self.back(), self.up());
         if self.orthographic {
-            // As deep behind the eye as in front of it, so that nothing is cut.
+            // As deep behind the eye as in front of it, so that nothing is cut off.
             let (half, reach) = (self.height() / 2.0, 100.0 * self.distance + 4.0 * self.target.length());
             return DMat4::orthographic_rh(-half * aspect, half * aspect, -half, half, reach, -reach) * view;
         }
@@ -103,7 +103,7 @@ impl Camera {
         Some(DVec2::new(size.x / 2.0 + x * scale, size.y / 2.0 - y * scale))
     }
 
-    /// The line of sight through a place of the picture: where it begins, and its direction of length 1.
+    /// The line of sight through a point of the picture: its origin and its unit direction.
     pub fn ray(&self, at: DVec2, size: DVec2) -> (DVec3, DVec3) {
         let on_plane = self.unproject(at, size);
         if self.orthographic {
@@ -113,27 +113,27 @@ impl Camera {
         (self.eye(), (on_plane - self.eye()).normalize_or(-self.back()))
     }
 
-    /// The point in the plane of the target that is seen at a place of the picture, mm.
+    /// The point in the plane of the target seen at a point of the picture, mm.
     pub fn unproject(&self, at: DVec2, size: DVec2) -> DVec3 {
         let scale = self.height() / size.y;
         let (x, y) = ((at.x - size.x / 2.0) * scale, (size.y / 2.0 - at.y) * scale);
         self.target + self.right() * x + self.up() * y
     }
 
-    /// Turns about the target, as a drag by so many points.
+    /// Turns about the target, following a drag by that many points.
     pub fn orbit(&mut self, drag: DVec2) {
         const UPRIGHT: f64 = std::f64::consts::FRAC_PI_2;
         self.yaw = (self.yaw - drag.x * TURN_PER_POINT).rem_euclid(std::f64::consts::TAU);
         self.pitch = (self.pitch + drag.y * TURN_PER_POINT).clamp(-UPRIGHT, UPRIGHT);
     }
 
-    /// Moves so that the target follows a drag by so many points.
+    /// Moves so that the target follows a drag by that many points.
     pub fn pan(&mut self, drag: DVec2, size: DVec2) {
         let scale = self.height() / size.y;
         self.target += (self.up() * drag.y - self.right() * drag.x) * scale;
     }
 
-    /// Comes `factor` times nearer to a point, which stays where it is seen.
+    /// Moves `factor` times closer to a point, which keeps its position in the picture.
     pub fn zoom(&mut self, factor: f64, towards: DVec3) {
         let distance = (self.distance / factor).clamp(0.5, 1e6);
         self.target = towards + (self.target - towards) * (distance / self.distance);
@@ -169,7 +169,7 @@ impl Camera {
             return;
         }
         self.target = (bounds.0 + bounds.1) / 2.0;
-        // In perspective the middle of a body is not the middle of its picture.
+        // In perspective, the middle of a body is not in the middle of its image.
         for _ in 0..4 {
             self.distance = self.distance_to_see(points, size);
             let seen = points.iter().filter_map(|&c| self.project(c, size));

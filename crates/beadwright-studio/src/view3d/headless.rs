@@ -2,10 +2,10 @@
 
 use eframe::egui_wgpu::{RenderState, RendererOptions, WgpuConfiguration, WgpuSetup};
 
-/// A renderer without a window, on the best adapter there is; `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` are obeyed.
+/// A renderer without a window, on the best adapter available; `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` are respected.
 ///
 /// # Errors
-/// A sentence where there is no adapter.
+/// A sentence if there is no adapter.
 pub fn headless() -> Result<RenderState, String> {
     let configuration = WgpuConfiguration { wgpu_setup: WgpuSetup::without_display_handle(), ..Default::default() };
     pollster::block_on(async {

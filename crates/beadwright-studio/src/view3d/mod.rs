@@ -1,13 +1,13 @@
 //! The 3-D view: model, beads, travels and torch, rendered by wgpu and shown as an egui image.
 //!
-//! A [`Scene`] holds what there is to see, a [`Style`] what of it is shown and how, a [`Camera`] from where.
+//! A [`Scene`] holds what can be shown, a [`Style`] says which of it is shown and how, a [`Camera`] from where.
 //! [`View3d::show`] is the widget and [`View3d::picture`] the same as pixels. Nothing is rendered while nothing changes.
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `beads` | one layer as it is drawn and timed |
-//! | `scene` | the model and the layers that have come |
-//! | `style`, [`palette`] | what is shown, in which colours |
+//! | `scene` | the model and the layers planned so far |
+//! | `style`, [`palette`] | what is shown and in which colours |
 //! | `camera` | where the eye is |
 //! | `pick` | which segment is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |

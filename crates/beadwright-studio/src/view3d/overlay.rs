@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Length of the axes, points.
 const AXIS: f32 = 26.0;
 
-/// The scale bar is at most this long, points.
+/// Greatest length of the scale bar, points.
 const LONGEST_BAR: f64 = 140.0;
 
 /// Paints axes at the lower left and a scale bar at the lower right.
@@ -29,14 +29,14 @@ fn axes(painter: &Painter, origin: Pos2, camera: &Camera, ink: Color32) {
         (DVec3::Y, "y", Color32::from_rgb(92, 178, 92)),
         (DVec3::Z, "z", Color32::from_rgb(84, 140, 232)),
     ];
-    // The nearest last.
+    // Nearest last, so that it is on top.
     axes.sort_by(|a, b| a.0.dot(camera.back()).total_cmp(&b.0.dot(camera.back())));
     for (axis, name, colour) in axes {
         let seen = vec2(axis.dot(camera.right()) as f32, -axis.dot(camera.up()) as f32);
         let tip = origin + seen * AXIS;
         painter.line_segment([origin, tip], Stroke::new(2.0, colour));
         painter.circle_filled(tip, 2.5, colour);
-        // An axis that points at the viewer keeps its name beside it.
+        // The name of an axis that points at the viewer is placed beside it.
         let beside = if seen.length() > 0.3 { seen.normalized() * 10.0 } else { vec2(9.0, -9.0) };
         painter.text(tip + beside, Align2::CENTER_CENTER, name, FontId::proportional(12.0), ink);
     }

@@ -27,17 +27,17 @@ pub fn missing(dark: bool) -> Rgb {
     if dark { [112, 116, 122] } else { [168, 172, 178] }
 }
 
-/// The colour at a part (0 to 1) of a map's range.
+/// The colour at a fraction (0 to 1) of a map's range.
 pub fn at(colour: Colour, part: f64, dark: bool) -> Rgb {
     match colour {
         Colour::Kind => kind(KINDS[((part * STEPS as f64) as usize).min(KINDS.len() - 1)]),
         Colour::HeightError => diverging(part),
-        // The dark end would vanish on a dark ground, the bright end on a bright one.
+        // The dark end would vanish on a dark background, the bright end on a bright one.
         Colour::Order | Colour::Speed | Colour::Time => viridis(if dark { 0.12 + 0.88 * part } else { 0.95 * part }),
     }
 }
 
-/// All colours of a map; of kinds, those in the order of [`KINDS`] and then the last one again.
+/// All colours of a map; for kinds, those in the order of [`KINDS`], with the last one repeated.
 pub fn map(colour: Colour, dark: bool) -> Vec<Rgb> {
     let part = |i: usize| match colour {
         Colour::Kind => i as f64 / STEPS as f64,

@@ -1,8 +1,8 @@
-//! Which segment is seen at a place of the picture.
+//! Which segment is seen at a point of the picture.
 //!
-//! A bead is the tube of an ellipse with round ends. In a space stretched along z until the ellipse is a circle it is
-//! a capsule, and so is found exactly. Boxes keep the search short: those of layers from near to far until the next
-//! one is behind the best hit, and those of blocks of segments in a layer.
+//! A bead is a tube of elliptical cross-section with round ends. In a space stretched along z until the ellipse is a
+//! circle, it is a capsule, so the hit is exact. Bounding boxes keep the search short: those of layers, from near to
+//! far until the next one is behind the best hit, and those of blocks of segments within a layer.
 
 use super::beads::{BLOCK, Bead, LayerBeads};
 use super::camera::Camera;
@@ -26,7 +26,7 @@ struct Ray {
     way: Vec3,
 }
 
-/// The nearest of the shown segments at a place of the picture; `size` and `at` in points.
+/// The nearest of the shown segments at a point of the picture; `size` and `at` in screen points.
 pub fn pick(scene: &Scene, style: &Style, camera: &Camera, size: DVec2, at: DVec2) -> Option<Pick> {
     if !style.beads {
         return None;
@@ -75,7 +75,7 @@ fn nearest(layer: &LayerBeads, shown: usize, ray: &Ray) -> Option<(f32, usize)> 
 }
 
 impl Ray {
-    /// Where it enters a box, mm; `None` where it misses it.
+    /// Distance at which it enters a box, mm; `None` if it misses.
     fn enters(&self, (low, high): (Vec3, Vec3)) -> Option<f32> {
         let (mut first, mut last) = (0.0_f32, f32::INFINITY);
         for axis in 0..3 {
@@ -93,11 +93,11 @@ impl Ray {
         (first <= last).then_some(first)
     }
 
-    /// Where it enters a bead, mm.
+    /// Distance at which it enters a bead, mm; `None` if it misses.
     fn hits(&self, bead: &Bead) -> Option<f32> {
         let (width, height) = (bead.width(), bead.height());
         let stretch = Vec3::new(1.0, 1.0, if height > 0.0 { width / height } else { 1.0 });
-        // From near the bead: f32 would lose the digits of a far eye.
+        // Starts near the bead: with a distant eye, f32 would lose digits.
         let near = (bead.from() - self.origin).dot(self.way);
         let origin = self.origin + self.way * near;
         let middle = Vec3::new(0.0, 0.0, height / 2.0);

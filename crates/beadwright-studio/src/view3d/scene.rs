@@ -1,4 +1,4 @@
-//! What there is to see: a model, and the layers planned so far.
+//! What can be shown: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
 use super::style::Colour;
@@ -30,12 +30,12 @@ fn side_normal(side: usize) -> DVec2 {
     DVec2::from_angle(side as f64 * std::f64::consts::TAU / SIDES as f64)
 }
 
-/// Where the torch is at a time.
+/// Where the torch is at a given time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
     /// The layer, from 0.
     pub layer: usize,
-    /// The segment that is being laid, or that is laid next; the number of segments of the layer that are done.
+    /// The segment being laid or to be laid next, which is also the number of segments of the layer already laid.
     pub segment: usize,
     /// The torch, mm.
     pub point: DVec3,
@@ -62,7 +62,7 @@ impl Scene {
         (self.version, self.mesh_version) = (fresh_id(), fresh_id());
     }
 
-    /// Sets the layer of that index, in any order.
+    /// Sets the layer with that index; layers may come in any order.
     pub fn set_layer(&mut self, index: usize, beads: Arc<LayerBeads>) {
         let count = self.layers.len().max(index + 1);
         self.layers.resize(count, None);
@@ -72,8 +72,7 @@ impl Scene {
         self.version = fresh_id();
     }
 
-    /// Sets a value for each segment of a layer that is there: the error of the height, mm; not a number where it is
-    /// not known.
+    /// Sets a value for each segment of an existing layer: the height error, mm; NaN where it is not known.
     pub fn set_values(&mut self, index: usize, values: Arc<[f32]>) {
         if let Some(place) = self.values.get_mut(index) {
             *place = Some(Values { id: fresh_id(), of: values });
@@ -86,12 +85,12 @@ impl Scene {
         self.mesh.as_ref()
     }
 
-    /// The layers; `None` for those that have not come yet.
+    /// The layers; `None` for those not there yet.
     pub fn layers(&self) -> &[Option<Arc<LayerBeads>>] {
         &self.layers
     }
 
-    /// The layer of that index.
+    /// The layer with that index.
     pub fn layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
         self.layers.get(index)?.as_ref()
     }
@@ -121,7 +120,7 @@ impl Scene {
         mesh.into_iter().chain(beads).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
-    /// Corners of an upright prism of 16 sides around model and beads, mm: what a camera has to see.
+    /// Corners of an upright 16-sided prism around model and beads, mm: what the camera must get into the picture.
     pub fn outline(&self) -> Vec<DVec3> {
         let Some((low, high)) = self.bounds() else { return Vec::new() };
         let mut reach = [f64::NEG_INFINITY; SIDES];
@@ -158,7 +157,7 @@ impl Scene {
         self.present().take_while(|(i, _)| *i < layer).map(|(_, beads)| beads.seconds()).sum()
     }
 
-    /// Where the torch is after that many seconds; at the end of the last layer after all of them.
+    /// Where the torch is after that many seconds; beyond the total time, at the end of the last layer.
     pub fn at_time(&self, seconds: f64) -> Option<Position> {
         let mut left = seconds.max(0.0);
         let last = self.present().rfind(|(_, layer)| !layer.is_empty())?.0;
@@ -202,7 +201,7 @@ fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> 
     let ends = &layer.ends[pass.segments.clone()];
     let segment = pass.segments.start + ends.partition_point(|&end| f64::from(end) <= seconds);
     if segment >= pass.segments.end {
-        // All of it is laid; the torch waits for the gas.
+        // The whole pass is laid; the torch waits for crater filling and gas.
         let last = layer.beads().get(pass.segments.end.checked_sub(1)?)?;
         return at(pass.segments.end, last.to().as_dvec3(), false);
     }
@@ -211,7 +210,7 @@ fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> 
     at(segment, bead.from().as_dvec3().lerp(bead.to().as_dvec3(), part), seconds >= pass.arc_start)
 }
 
-/// The point at a part (0 to 1) of the length of a polyline.
+/// The point at a fraction (0 to 1) of the length of a polyline.
 fn along(points: &[DVec3], part: f64) -> Option<DVec3> {
     let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     let mut left = length * part.clamp(0.0, 1.0);

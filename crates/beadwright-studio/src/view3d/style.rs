@@ -1,4 +1,4 @@
-//! What of the scene is shown, and in which colours.
+//! Which parts of the scene are shown, and in which colours.
 
 use super::pick::Pick;
 use glam::DVec3;
@@ -14,7 +14,7 @@ pub enum Colour {
     Order,
     /// The deposition speed, mm/s.
     Speed,
-    /// The error of the height, mm, as given to [`super::Scene::set_values`].
+    /// The height error, mm, as given to [`super::Scene::set_values`].
     HeightError,
     /// The time since the start of the program, s.
     Time,
@@ -27,7 +27,7 @@ pub struct Style {
     pub colour: Colour,
     /// Whether the model is shown: solid by itself, translucent around beads.
     pub mesh: bool,
-    /// Whether moves without arc are shown.
+    /// Whether travels (moves with the arc off) are shown.
     pub travels: bool,
     /// Whether starts and ends of passes are marked.
     pub starts: bool,
@@ -41,7 +41,7 @@ pub struct Style {
     pub segments_of_last: Option<usize>,
     /// Where the torch is drawn, mm.
     pub torch: Option<DVec3>,
-    /// The pass that stands out, and in it a segment.
+    /// The highlighted pass, and a segment in it.
     pub highlight: Option<Pick>,
     /// Whether the theme is dark.
     pub dark: bool,

@@ -12,16 +12,16 @@ use eframe::egui_wgpu::{RenderState, wgpu};
 use glam::DVec2;
 use std::time::Instant;
 
-/// After the last turn of the wheel the picture is coarse for this long, s.
+/// The picture stays coarse this long after the last turn of the mouse wheel, s.
 const SETTLE: f64 = 0.2;
 
-/// Scenes of more segments are drawn coarsely while they move: with a graphics card, and without.
+/// Scenes with more segments are drawn coarsely while they move: with a graphics card, without one.
 const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
 
-/// Scenes of fewer segments get four samples a pixel on a processor too, once they stand still.
+/// Scenes with fewer segments get four samples per pixel even without a graphics card, once they stand still.
 const SMOOTH_BELOW: usize = 60_000;
 
-/// With more segments nothing is said about the bead under the pointer before it is clicked.
+/// From this many segments on, a bead under the pointer is only identified when it is clicked.
 const HOVER_BELOW: usize = 400_000;
 
 /// What happened in the view.
@@ -29,7 +29,7 @@ const HOVER_BELOW: usize = 400_000;
 pub struct Shown {
     /// The segment that was clicked.
     pub picked: Option<Pick>,
-    /// Whether the view was clicked, on a bead or beside all.
+    /// Whether the view was clicked, on a bead or not.
     pub clicked: bool,
     /// The segment under the resting pointer.
     pub hovered: Option<Pick>,
@@ -39,16 +39,16 @@ pub struct Shown {
     pub response: egui::Response,
 }
 
-/// How long making a picture took, s.
+/// How long it took to make a picture, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
     /// Sending what changed.
     pub upload: f64,
-    /// Rendering, until it was done.
+    /// Rendering, until it was finished.
     pub render: f64,
 }
 
-/// All that decides a picture.
+/// Everything a picture depends on.
 #[derive(Debug, Clone, PartialEq)]
 struct Key {
     camera: Camera,
@@ -71,7 +71,7 @@ struct Frame {
 pub struct View3d {
     /// Where the eye is.
     pub camera: Camera,
-    /// What is shown where there is nothing to draw with.
+    /// The text shown where there is no graphics adapter.
     pub no_adapter: String,
     gpu: Option<Gpu>,
     /// The fine and the coarse picture.
@@ -98,12 +98,12 @@ impl Default for View3d {
 }
 
 impl View3d {
-    /// Fills the picture with the scene when it is shown next, or as soon as there is one.
+    /// Fits the scene into the picture when it is next shown, or as soon as there is one.
     pub fn fit(&mut self) {
         self.fit = true;
     }
 
-    /// The widget: it takes all the space there is. `label` is its name for those who do not see it.
+    /// The widget: it takes all available space. `label` is its name for screen readers.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -148,7 +148,7 @@ impl View3d {
         shown
     }
 
-    /// Turns, moves and zooms as the pointer says; tells whether the view is in motion.
+    /// Turns, moves and zooms with the pointer; returns whether the view is in motion.
     fn steer(&mut self, ui: &Ui, response: &egui::Response, size: DVec2) -> bool {
         let drag = response.drag_delta();
         let drag = DVec2::new(f64::from(drag.x), f64::from(drag.y));
@@ -171,7 +171,7 @@ impl View3d {
         }
         let settling = now - self.wheel_at < SETTLE;
         if settling {
-            // So that the fine picture follows.
+            // So that the fine picture is drawn afterwards.
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(SETTLE));
         }
         response.dragged() || settling
@@ -189,12 +189,12 @@ impl View3d {
         let camera = self.camera;
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         let coarse = moving && scene.segments() > COARSE_FROM[usize::from(gpu.software)];
-        // Rough beads look the same from far away.
+        // From far away, rough beads look the same as exact ones.
         let pixel = camera.height() / f64::from(pixels[1]);
         let exact = scene.segments() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
         let quality =
             if coarse { coarse_quality() } else { fine_quality(gpu.software, moving, scene.segments(), exact) };
-        // Software draws a quarter of the pixels while it moves.
+        // A software renderer draws a quarter of the pixels while the view moves.
         let pixels = if coarse && gpu.software { pixels.map(|n| n.div_ceil(2)) } else { pixels };
         let key = Key { camera, pixels, style: style.clone(), version: scene.version(), quality };
         let frame = &mut self.frames[usize::from(coarse)];
@@ -213,7 +213,7 @@ impl View3d {
         (frame.texture, key, stale)
     }
 
-    /// What lies under the resting pointer; searched once.
+    /// What lies under the resting pointer; looked up only once.
     fn hover(&mut self, key: Key, pos: egui::Pos2, search: impl FnOnce() -> Option<Pick>) -> Option<Pick> {
         if let Some((of, at, found)) = &self.hovered
             && *at == pos
@@ -237,7 +237,7 @@ impl View3d {
     /// The picture as the camera sees it: width, height, and rows of red, green, blue, alpha.
     ///
     /// # Errors
-    /// A sentence where the graphics card does not give it.
+    /// A sentence if the graphics card does not return it.
     pub fn picture(
         &mut self,
         state: &RenderState,
@@ -252,10 +252,10 @@ impl View3d {
         Ok((target.pixels[0], target.pixels[1], gpu.read(&target)?))
     }
 
-    /// Renders a picture as the widget would, without showing it, and tells how long it took.
+    /// Renders a picture as the widget would, without showing it, and returns how long it took.
     ///
     /// # Errors
-    /// A sentence where the graphics card does not answer.
+    /// A sentence if the graphics card does not answer.
     pub fn time_frame(
         &mut self,
         state: &RenderState,
@@ -277,7 +277,7 @@ impl View3d {
     }
 }
 
-/// How far rough beads may leave the true ones, mm.
+/// How far rough beads may deviate from the exact ones, mm.
 fn rough_error(scene: &Scene) -> f64 {
     let bead = scene.layers().iter().flatten().find_map(|layer| layer.beads().first());
     bead.map_or(0.0, |bead| f64::from(ROUGH * bead.width()))
@@ -295,7 +295,7 @@ fn fine_quality(software: bool, moving: bool, segments: usize, exact: bool) -> Q
     Quality { strips: 2, samples, exact, caps: true }
 }
 
-/// Makes a picture known to egui, in the place of the one before.
+/// Registers a picture with egui, replacing the previous one.
 fn register(state: &RenderState, target: &Target, known: Option<egui::TextureId>) -> egui::TextureId {
     let mut renderer = state.renderer.write();
     let filter = wgpu::FilterMode::Linear;

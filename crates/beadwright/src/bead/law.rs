@@ -1,10 +1,10 @@
-//! The bead law: how a bead's height follows its width when the wire feed stays and the speed changes.
+//! The bead law: how a bead's height follows its width when the wire feed is constant and the speed changes.
 //!
-//! The mass balance ties area and speed: area × speed = nominal area × nominal speed. How the metal spreads is the law's.
-//! A constant ratio λ = width/height is what single beads show (λ = 2.5 to 3 is good, Li et al.): width and height both
-//! grow with √area. A window of widths from a to b times the nominal then takes speeds from 1/b² to 1/a² of the nominal
-//! one, at constant height only from 1/b to 1/a: 0.59 to 1.56, or 0.77 to 1.25, for a window of 0.8 to 1.3. At constant
-//! height λ itself leaves its good range with the width; at constant ratio it does not.
+//! The mass balance fixes area × speed = nominal area × nominal speed; the law says how that area splits into width and
+//! height. Single beads show a constant ratio λ = width/height (2.5 to 3 is good, Li et al.): width and height both
+//! grow with √area. For widths from a to b times the nominal width, the speed then ranges from 1/b² to 1/a² times the
+//! nominal speed, at constant height only from 1/b to 1/a: for a = 0.8 and b = 1.3 that is 0.59 to 1.56, or 0.77 to
+//! 1.25. At constant height λ leaves its good range as the width changes; at constant ratio it does not.
 
 use super::Bead;
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// The bead of that width (mm), given the nominal one.
+    /// The bead of `width` (mm), derived from the nominal bead.
     pub fn bead(&self, nominal: &Bead, width: f64) -> Bead {
         let height = match self {
             Self::ConstantHeight => nominal.height,
@@ -37,7 +37,8 @@ impl Law {
         Bead { width, height, section: nominal.section }
     }
 
-    /// The speed at which the nominal wire feed lays a bead of that width (mm), as a part of the nominal speed.
+    /// The pace of a bead of `width` (mm): the speed at which the nominal wire feed lays it, relative to the nominal
+    /// speed.
     pub fn pace(&self, nominal: &Bead, width: f64) -> f64 {
         nominal.area() / self.bead(nominal, width).area()
     }
@@ -49,7 +50,7 @@ impl Law {
             Self::ConstantRatio => return nominal.width * (area / nominal.area()).sqrt(),
             Self::Library(_) => {}
         }
-        // Areas grow with the width.
+        // The area grows with the width.
         let (mut low, mut high) = (0.0, nominal.width);
         while self.bead(nominal, high).area() < area && high < 1e3 * nominal.width {
             high *= 2.0;
@@ -62,7 +63,8 @@ impl Law {
     }
 }
 
-/// The height on the straight line between the beads beside; beyond the measured ones the ratio of the last stays.
+/// Height interpolated between the two neighbouring measured beads. Below the narrowest and above the widest, the bead
+/// keeps the width/height ratio measured there.
 fn interpolated(beads: &[[f64; 2]], width: f64) -> Option<f64> {
     let behind = beads.partition_point(|bead| bead[0] < width);
     match (behind.checked_sub(1).and_then(|i| beads.get(i)), beads.get(behind)) {

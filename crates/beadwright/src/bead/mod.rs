@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`law`] | how the height of a bead follows its width at a constant wire feed |
 //! | [`section`] | the shape of its cross-section |
-//! | [`wall`] | how high walls of one bead a layer grow |
+//! | [`wall`] | how high walls with one bead per layer grow |
 //! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
 
 pub mod law;
@@ -77,7 +77,7 @@ impl Overlap {
     }
 }
 
-/// Metal in against metal laid, per second.
+/// Metal that the wire feeds in compared with metal in the bead, per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassBalance {
     /// Metal from the wire, mm³/s.
@@ -89,17 +89,17 @@ pub struct MassBalance {
 }
 
 impl MassBalance {
-    /// Difference from which the balance counts as broken.
+    /// Relative difference above which the balance counts as broken.
     pub const TOLERANCE: f64 = 0.05;
 
-    /// wire feed × wire area × efficiency against deposition speed × bead area. The wire feed is in m/min, the
+    /// Compares wire feed × wire area × efficiency with deposition speed × bead area. The wire feed is in m/min, the
     /// diameter in mm, the deposition speed in mm/s.
     pub fn new(bead: Bead, wire_feed: f64, wire_diameter: f64, efficiency: f64, deposition_speed: f64) -> Self {
         let wire = wire_feed * 1000.0 / 60.0 * wire_area(wire_diameter) * efficiency;
         Self { wire, bead: deposition_speed * bead.area(), fitting_speed: wire / bead.area() }
     }
 
-    /// Metal of the wire over metal of the bead.
+    /// Metal from the wire divided by metal in the bead.
     pub fn ratio(&self) -> f64 {
         self.wire / self.bead
     }

@@ -1,12 +1,12 @@
-//! How high a wall grows whose layers are one bead each (Li et al., section 1.2).
+//! How high a wall with one bead per layer grows (Li et al., section 1.2).
 //!
 //! The first bead is a cap of width B₁ and height h₁, cut from a circle of radius R. Every further bead has the same
-//! area: a full circle of the same R less what it shares with the circle below. The distance of the two centres is
+//! area: a full circle of the same R less what it shares with the circle below. The distance between the two centres is
 //! the rise h_n of a layer.
 //!
 //! Every ratio λ = B₁/h₁ > 0 has exactly one h_n. Eq (7) prints θ₁ = asin(4h₁B₁/(4h₁² + B₁²)), which is the half angle
 //! of the cap only for λ ≥ 2; θ₁ = 2 atan(2h₁/B₁) is the same there, and right for higher beads too. For λ above
-//! 2.62 the second bead reaches below the foot of the first; the wall above it is not touched by that.
+//! 2.62 the second bead reaches below the foot of the first; that does not affect the wall above it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,7 +18,7 @@ pub struct WallBead {
     rise: f64,
 }
 
-/// Why a wall cannot be foretold.
+/// Why the height of a wall cannot be predicted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum WallError {
     /// Width or height is zero, negative or not a number.
@@ -29,7 +29,7 @@ pub enum WallError {
         /// Height h₁, mm.
         height: f64,
     },
-    /// The ratio of width and height is that of no bead.
+    /// No bead has this ratio of width to height.
     #[error(
         "a bead of width {width} mm and height {height} mm has width/height {ratio:.3}; a wall can be foretold from \
          {min} to {max}. Check the units: both are in mm.", min = WallBead::RATIOS.0, max = WallBead::RATIOS.1
@@ -68,8 +68,8 @@ pub enum WallError {
 }
 
 impl WallBead {
-    /// Least and greatest λ = B₁/h₁ that is taken. The equations have one solution for every λ above 0; what lies
-    /// outside is no bead but a mistaken unit.
+    /// Least and greatest λ = B₁/h₁ that is accepted. The equations have one solution for every λ above 0, but a λ
+    /// outside this range comes from a mistaken unit, not from a bead.
     pub const RATIOS: (f64, f64) = (0.05, 50.0);
 
     /// The wall that begins with a bead of `width` B₁ and `height` h₁ (mm).
@@ -97,7 +97,7 @@ impl WallBead {
     /// The wall of beads of `width` (mm) whose vertical layers rise by `rise` (mm).
     ///
     /// # Errors
-    /// [`WallError::Size`] for an impossible width, [`WallError::Rise`] where no λ that is taken gives that rise.
+    /// [`WallError::Size`] for an impossible width, [`WallError::Rise`] where no accepted λ gives that rise.
     pub fn for_rise(width: f64, rise: f64) -> Result<Self, WallError> {
         if !(width.is_finite() && width > 0.0) {
             return Err(WallError::Size { width, height: rise });

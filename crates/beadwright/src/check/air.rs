@@ -32,7 +32,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Whether a piece leaves the region: judged at places a bead width apart.
+/// Whether a piece leaves the region, judged at points a bead width apart.
 fn outside(near: &Region, s: &Segment, width: f64) -> bool {
     let steps = (s.length() / width).ceil().max(1.0) as usize;
     let place = |k: usize| s.from.lerp(s.to, (k as f64 + 0.5) / steps as f64).truncate();

@@ -11,7 +11,7 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
-/// Widths from and up to which a bead is possible, in nominal widths.
+/// Least and greatest possible width of a bead, in nominal widths.
 const WINDOW: (f64, f64) = (0.5, 1.5);
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {

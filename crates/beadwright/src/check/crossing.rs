@@ -49,7 +49,7 @@ fn in_layer(layer: &Layer) -> Vec<Finding> {
     (0..layer.passes.len()).filter_map(finding).collect()
 }
 
-/// Where two pieces cross in their inner parts.
+/// Where two pieces cross, their ends not counted.
 fn crossing(a: &Piece, b: &Piece) -> Option<DVec2> {
     const INNER: f64 = 1e-6;
     let [p, q, r, s] = [a.geom().from, a.geom().to, b.geom().from, b.geom().to].map(DVec2::from);

@@ -13,7 +13,7 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
-/// Fewer short moves in a row are what controllers look over.
+/// Controllers cope with fewer short moves in a row than this.
 const IN_A_ROW: usize = 3;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
@@ -39,7 +39,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     subject.layers.iter().filter(sound).filter_map(finding).collect()
 }
 
-/// Times of the weld moves of each pass, s.
+/// Time of each weld move, pass by pass, s.
 fn seconds(instructions: &[Instruction]) -> Vec<Vec<f64>> {
     let (mut times, mut at) = (Vec::<Vec<f64>>::new(), DVec3::ZERO);
     for instruction in instructions {

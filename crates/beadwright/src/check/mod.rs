@@ -1,7 +1,7 @@
 //! Checks: what would go wrong if a plan were welded as it is. A check is one file and one line in [`CHECKS`].
 //!
-//! Every check has a name, says what it looks for, why that matters, gives an example and a remedy. Its limits stand in
-//! the profile's section `[check]`.
+//! Every check has a name and says what it looks for, why that matters, how a finding may read and what to do about it.
+//! Its limits are in the profile's section `[check]`.
 
 mod air;
 mod bead_width;
@@ -62,11 +62,11 @@ pub struct Check {
     pub what: &'static str,
     /// Why that matters.
     pub why: &'static str,
-    /// A finding as it may read.
+    /// An example of a finding.
     pub example: &'static str,
     /// What to do.
     pub remedy: &'static str,
-    /// Looks for it.
+    /// Runs the check.
     find: fn(&Subject<'_>) -> Vec<Finding>,
 }
 
@@ -75,7 +75,7 @@ pub struct Check {
 pub struct Finding {
     /// Name of the check.
     pub check: &'static str,
-    /// Index of the layer from 0; none for what concerns the whole plan.
+    /// Index of the layer, from 0; `None` when the finding concerns the whole plan.
     pub layer: Option<usize>,
     /// Index of the pass in its layer, from 0.
     pub pass: Option<usize>,
@@ -85,7 +85,7 @@ pub struct Finding {
     pub text: String,
 }
 
-/// What is checked.
+/// The plan to be checked, with what the deposit model says of it.
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
     profile: &'a Profile,
@@ -100,15 +100,16 @@ pub struct Subject<'a> {
 /// What the deposit model says of a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LayerFigures {
-    /// Of each layer.
+    /// The figures of each layer.
     pub figures: Vec<Figures>,
-    /// Of all layers.
+    /// The figures of all layers together.
     pub total: Figures,
     /// How the stack grows.
     pub growth: Vec<Growth>,
 }
 
-/// Judges a plan layer by layer, as it is welded with a profile, and shows `each` what is found.
+/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's number and judgement to
+/// `each`.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -127,7 +128,7 @@ pub fn judge_layers<L: Borrow<Layer>>(
     let mut figures = Vec::with_capacity(layers.len());
     for (i, layer) in layers.iter().map(L::borrow).enumerate() {
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
-        // Points that are no numbers are found by a check of their own; nothing can be built from them.
+        // Points that are not finite numbers are found by a check of their own; the deposit model cannot handle them.
         let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
         let judgement = sound.then(|| judge.layer(&plan::welded(layer, profile)));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
@@ -151,7 +152,7 @@ pub fn check<L: Borrow<Layer>>(
     Ok(check_figures(layers, profile, settings.nominal.rise, judged))
 }
 
-/// Runs all checks on a plan that was judged; `rise` is the nominal one of a layer, mm.
+/// Runs all checks on a plan that has been judged; `rise` is the nominal rise of a layer, mm.
 pub fn check_figures<L: Borrow<Layer>>(
     layers: &[L],
     profile: &Profile,
@@ -177,7 +178,7 @@ impl Finding {
         Self { check: check.name, layer: Some(layer.index), pass: Some(pass), place, text }
     }
 
-    /// The finding with its place, for people.
+    /// The finding with its place, as a sentence for people.
     pub fn sentence(&self) -> String {
         let layer = self.layer.map(|layer| format!("layer {}", layer + 1));
         let pass = self.pass.map(|pass| format!("pass {}", pass + 1));
@@ -193,7 +194,7 @@ impl Subject<'_> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
     }
 
-    /// Layers of which a figure is above a limit, as findings.
+    /// A finding for each layer whose figure is above the limit.
     fn above(&self, check: &Check, value: fn(&Figures) -> f64, limit: f64, words: &str) -> Vec<Finding> {
         let over = self.layers.iter().zip(&self.figures).filter(|(_, figures)| value(figures) > limit);
         let text = |figures: &Figures| format!("{:.2} % {words}; the limit is {limit} %.", value(figures));

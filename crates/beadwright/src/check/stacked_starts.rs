@@ -13,12 +13,13 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
-/// Starts nearer than this lie above each other, in bead widths.
+/// Starts closer than this count as lying on top of each other, in bead widths.
 const NEAR: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (width, most) = (subject.profile.bead.width, subject.profile.check.stacked_starts as usize);
-    // How many layers, down from this one, have a start at each start of the layer.
+    // The starts of the layer below, each with the number of layers in a row, down from there, that start at that
+    // place.
     let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
     let mut findings = Vec::new();
     for layer in &subject.layers {

@@ -1,7 +1,7 @@
-//! Symmetric positive definite systems with a band, and for closed curves a border, by Cholesky.
+//! Cholesky solver for symmetric positive definite systems with a band and, for closed curves, a border.
 //!
-//! A closed spline's normal equations have a band and corners, where the last unknowns meet the first. Taken as a
-//! border, those last unknowns are eliminated with the Schur complement; the rest stays a plain band.
+//! The normal equations of a closed spline have a band and, where the last unknowns meet the first, corners. These last
+//! unknowns are treated as a border and eliminated with the Schur complement; the rest stays a plain band.
 
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ impl Banded {
         Self { band, core, rows, sides: vec![vec![0.0; core]; border], corner: vec![vec![0.0; border]; border] }
     }
 
-    /// Adds to the element (i, j) and so to (j, i); call it once for a pair.
+    /// Adds to the element (i, j) and so to (j, i); call it once per pair.
     pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
         let (i, j) = (i.max(j), i.min(j));
         match (i.checked_sub(self.core), j.checked_sub(self.core)) {
@@ -109,12 +109,12 @@ impl Factored {
     }
 }
 
-/// Numbers and points are solved for alike.
+/// An element of a right-hand side: a number or a point.
 trait Element: Copy + std::ops::Sub<Output = Self> + std::ops::Mul<f64, Output = Self> {}
 impl Element for f64 {}
 impl Element for DVec3 {}
 
-/// The root of what is left of a diagonal element; none when nothing but rounding is.
+/// Square root of what is left of a diagonal element; `None` when only rounding error is left.
 fn root(rest: f64, whole: f64) -> Option<f64> {
     (rest > 1e-14 * whole).then(|| rest.sqrt())
 }

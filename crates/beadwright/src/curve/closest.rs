@@ -1,4 +1,4 @@
-//! The nearest point of a curve: starts on the nearest chords between samples, then Newton's method beside them.
+//! The nearest point of a curve: Newton's method, started on the nearest chords between samples.
 
 use super::Nurbs;
 use super::sample::nearest_on_segment;
@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Samples in each knot span, per degree.
 const SAMPLES: usize = 8;
 
-/// So many of the nearest chords are followed, of those nearer than their neighbours.
+/// Newton's method starts on at most this many chords: the nearest of those nearer than both their neighbours.
 const FOLLOWED: usize = 8;
 
 /// Distances that differ by this share of the coordinates are equal.
@@ -59,7 +59,7 @@ impl Nurbs {
         breaks.windows(2).flat_map(inside).chain([last]).collect()
     }
 
-    /// Follows the distance down from the middle one of three parameters, never past the outer two.
+    /// Descends from the middle one of three parameters to the least distance, never past the outer two.
     fn descend(&self, target: DVec3, (low, start, high): (f64, f64, f64)) -> Closest {
         let (mut low, mut high, mut u) = (low, high, start);
         let mut best = self.closest_at(target, start);

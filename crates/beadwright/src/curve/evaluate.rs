@@ -17,7 +17,8 @@ impl Nurbs {
         value.truncate() / value.w
     }
 
-    /// First derivative by the parameter, mm; at a knot that of the piece behind it, at the end that of the last.
+    /// First derivative with respect to the parameter, mm; at a knot that of the piece after it, at the end that of the
+    /// last piece.
     pub fn derivative(&self, u: f64) -> DVec3 {
         self.derivatives(u)[1]
     }
@@ -56,7 +57,8 @@ impl Nurbs {
         [value, first, self.de_boor(local, self.degree - 2, span, u)]
     }
 
-    /// `u` inside the domain, and the k with `knots[k] <= u < knots[k + 1]` (at the end, the last that is not empty).
+    /// `u` clamped to the domain, and the k with `knots[k] <= u < knots[k + 1]` (at the end, the last span that is not
+    /// empty).
     pub(super) fn place(&self, u: f64) -> (f64, usize) {
         let (start, end) = self.domain();
         let u = u.clamp(start, end);

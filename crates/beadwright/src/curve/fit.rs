@@ -49,7 +49,7 @@ impl Nurbs {
     }
 }
 
-/// Points with the parameters at which the curve shall meet them.
+/// Points with the parameters at which the curve should meet them.
 struct Data {
     /// Different points; the first of a closed curve is not repeated.
     points: Vec<DVec3>,
@@ -103,7 +103,7 @@ impl Data {
         self.points.iter().copied().chain(self.is_closed.then_some(self.points[0])).collect()
     }
 
-    /// First parameter, averages of so many neighbours, last parameter.
+    /// First parameter, averages of `degree` neighbouring inner parameters, last parameter.
     fn averaged(&self, degree: usize) -> Vec<f64> {
         let (u, last) = (&self.parameters, self.points.len() - 1);
         let inner = u[1..last].windows(degree).map(|w| w.iter().sum::<f64>() / degree as f64);
@@ -153,7 +153,7 @@ impl Data {
         self.points.iter().zip(&self.parameters).map(|(p, &u)| p.distance(curve.point(u))).collect()
     }
 
-    /// Halves the spans that miss the tolerance and hold points enough; whether there was one.
+    /// Halves the spans that miss the tolerance and hold enough points; returns whether there was one.
     fn split(&self, breaks: &mut Vec<f64>, misses: &[f64], error: f64) -> bool {
         let before = breaks.len();
         let mut added = Vec::new();

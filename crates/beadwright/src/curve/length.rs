@@ -21,10 +21,10 @@ const GAUSS_16: [(f64, f64); 8] = [
 /// Halves agree with the whole within this share of the total length.
 const AGREEMENT: f64 = 1e-11;
 
-/// A span is halved at most this often, one part after the other; a cusp takes about forty.
+/// A span is halved at most this many times in succession; a cusp takes about forty.
 const MAX_DEPTH: u32 = 44;
 
-/// A span becomes at most so many pieces.
+/// A span is cut into at most this many pieces.
 const MAX_PIECES: usize = 4096;
 
 /// The arc length along a curve, tabulated.
@@ -41,12 +41,12 @@ impl Nurbs {
         self.arc_length().total()
     }
 
-    /// The table of lengths, for many questions to one curve.
+    /// The table of lengths, for repeated queries on one curve.
     pub fn arc_length(&self) -> ArcLength<'_> {
         let breaks = self.breaks();
         let spans: Vec<(f64, f64, f64)> =
             breaks.windows(2).map(|w| (w[0], w[1], self.quadrature(w[0], w[1]))).collect();
-        // Speeds are no better than the rounding of the coordinates they are differences of.
+        // Speeds are differences of coordinates, so they are no better than the rounding of these.
         let rounding = 4.0 * f64::EPSILON * self.degree as f64 * self.reach();
         let tolerance = (AGREEMENT * spans.iter().map(|s| s.2).sum::<f64>()).max(rounding);
         let mut table = ArcLength { curve: self, parameters: vec![breaks[0]], lengths: vec![0.0] };
@@ -67,7 +67,8 @@ impl Nurbs {
 }
 
 impl ArcLength<'_> {
-    /// Adds the span from `a` to `b` in pieces that agree within a tolerance, until the table is as long as the limit.
+    /// Adds the span from `a` to `b`, halved until halves and whole agree within the tolerance or the table reaches the
+    /// limit.
     fn refine(&mut self, a: f64, b: f64, whole: f64, (tolerance, limit): (f64, usize), depth: u32) {
         let middle = (a + b) / 2.0;
         let (left, right) = (self.curve.quadrature(a, middle), self.curve.quadrature(middle, b));
@@ -98,7 +99,7 @@ impl ArcLength<'_> {
         self.lengths[i] + self.curve.quadrature(self.parameters[i], u)
     }
 
-    /// The parameter at that length from the start, mm; beyond an end, that end.
+    /// The parameter at `length` (mm) from the start; beyond an end, the parameter of that end.
     pub fn parameter(&self, length: f64) -> f64 {
         let length = length.clamp(0.0, self.total());
         let i = self.lengths.partition_point(|&s| s <= length).clamp(1, self.lengths.len() - 1) - 1;
@@ -126,12 +127,12 @@ impl ArcLength<'_> {
         u
     }
 
-    /// The point at that length from the start, mm.
+    /// The point at `length` (mm) from the start.
     pub fn point(&self, length: f64) -> DVec3 {
         self.curve.point(self.parameter(length))
     }
 
-    /// Parameters that cut the curve into so many pieces of equal length (at least 1), both ends included.
+    /// Parameters that cut the curve into `pieces` (at least 1) pieces of equal length, both ends included.
     pub fn equal_parameters(&self, pieces: usize) -> Vec<f64> {
         let (start, end) = self.curve.domain();
         let pieces = pieces.max(1);

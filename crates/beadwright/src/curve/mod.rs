@@ -48,10 +48,10 @@ pub enum CurveError {
     TooFewPoints {
         /// Number given.
         points: usize,
-        /// Of the curve.
+        /// Degree of the curve.
         degree: usize,
     },
-    /// The lists do not belong together.
+    /// The lengths of the lists do not match.
     #[error("the curve has {found} {what} where {expected} belong to its degree and control points. Export it again.")]
     Count {
         /// `knots` or `weights`.
@@ -61,7 +61,7 @@ pub enum CurveError {
         /// Number needed.
         expected: usize,
     },
-    /// A value that is no number.
+    /// A value that is not a finite number.
     #[error("{what} {index} of the curve is not a finite number. Export it again.")]
     NotFinite {
         /// `knot`, `weight`, `control point` or `point`.
@@ -77,7 +77,7 @@ pub enum CurveError {
         /// Its value.
         knot: f64,
     },
-    /// The curve would fall apart.
+    /// A knot is repeated so often that the curve breaks in two.
     #[error(
         "knot {knot} of the curve stands there {times} times; at degree {degree} the curve breaks in two there. \
          Split it in the drawing program and export both."
@@ -87,10 +87,10 @@ pub enum CurveError {
         knot: f64,
         /// Its multiplicity.
         times: usize,
-        /// Of the curve.
+        /// Degree of the curve.
         degree: usize,
     },
-    /// No parameter runs from a start to an end.
+    /// The curve begins and ends at the same parameter.
     #[error("the curve begins and ends at the same parameter ({start}), so it has no length. Export it again.")]
     EmptyDomain {
         /// The parameter.
@@ -112,7 +112,7 @@ pub enum CurveError {
         /// Number needed.
         needed: usize,
     },
-    /// A tolerance that is no positive length.
+    /// A tolerance that is not a positive length.
     #[error("the curve is to be fitted within {error} mm; the tolerance must be a number above 0.")]
     Tolerance {
         /// As given, mm.

@@ -24,8 +24,8 @@ impl Nurbs {
     /// A curve from its degree p, n + p + 1 knots, n weights and n control points (mm).
     ///
     /// # Errors
-    /// [`CurveError`] when the numbers do not belong together, a value is not finite, knots decrease, a weight is
-    /// not above 0, or a knot inside is repeated more than p times (the curve would break there).
+    /// [`CurveError`] when the lengths of the lists do not match, a value is not finite, knots decrease, a weight is
+    /// not above 0, or an inner knot is repeated more than p times (the curve would break there).
     pub fn new(degree: usize, knots: Vec<f64>, weights: Vec<f64>, points: Vec<DVec3>) -> Result<Self, CurveError> {
         let curve = Self { degree, knots, weights, points };
         curve.check_counts()?;
@@ -34,7 +34,7 @@ impl Nurbs {
         Ok(curve)
     }
 
-    /// A polynomial curve with clamped uniform knots from 0 to 1 (equation 4), for where no knots are given.
+    /// A polynomial curve with clamped uniform knots from 0 to 1 (equation 4), for use where no knots are given.
     ///
     /// # Errors
     /// [`CurveError`] as for [`Nurbs::new`].

@@ -39,7 +39,7 @@ impl Nurbs {
         }
         let curve = self.with_multiple_knot(from).with_multiple_knot(to);
         let (degree, knots) = (self.degree, &curve.knots);
-        // The last knot at the start and the first at the end: between them lies what stays.
+        // The last knot at the start and the first at the end: the piece lies between them.
         let first = knots.partition_point(|&t| t <= from) - 1;
         let last = knots.partition_point(|&t| t < to);
         let (low, high) = (first - degree, last);
@@ -62,7 +62,7 @@ impl Nurbs {
         curve
     }
 
-    /// `u` inside the domain, moved onto a knot that is all but equal.
+    /// `u` clamped to the domain and moved onto a knot that is almost equal.
     fn near_knot(&self, u: f64) -> f64 {
         let (start, end) = self.domain();
         let u = u.clamp(start, end);

@@ -7,20 +7,21 @@ use glam::DVec3;
 /// the chord in the middle is seen.
 const PROBES: [f64; 5] = [0.13, 0.31, 0.5, 0.69, 0.87];
 
-/// Chords are taken a little tighter than asked, for what lies between the probes.
+/// Chords are made a little tighter than asked, to allow for the curve between the probes.
 const SAFETY: f64 = 0.9;
 
 /// A piece is halved at most this often.
 const MAX_DEPTH: u32 = 14;
 
-/// At most so many points are taken by equal length.
+/// Most pieces of equal length.
 const MAX_PIECES: f64 = 1e7;
 
 impl Nurbs {
     /// Parameters between which the curve leaves its chords by at most `error`, mm; knots and ends are among them.
     ///
-    /// Every chord is compared with the curve at five places, after each knot span was cut into as many pieces as
-    /// the degree; an `error` below 1e-9 of the curve's extent, or below the rounding of its coordinates, is taken as that.
+    /// Every knot span is first cut into as many pieces as the degree; then every chord is compared with the curve at
+    /// five places. An `error` below 1e-9 of the curve's extent, or below the rounding of its coordinates, is raised to
+    /// that.
     pub fn parameters_by_chord(&self, error: f64) -> Vec<f64> {
         let error = SAFETY * error.max(1e-9 * self.extent()).max(1e-14 * self.reach());
         let breaks = self.breaks();

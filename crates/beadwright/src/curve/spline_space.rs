@@ -1,4 +1,4 @@
-//! All splines of one degree over given knots, open or closed, and the one of them nearest to points.
+//! All splines of one degree over given knots, open or closed, and the one nearest to given points.
 
 use super::banded::Banded;
 use super::{CurveError, Nurbs};
@@ -59,8 +59,8 @@ impl SplineSpace {
         (span - p, values)
     }
 
-    /// The spline nearest to `points` at `parameters` in the sense of least squares; an open one keeps the first and
-    /// the last point. None when the points do not determine it.
+    /// The spline nearest to `points` at `parameters` by least squares; an open one keeps the first and the last point.
+    /// `None` when the points do not determine it.
     pub(super) fn nearest(&self, parameters: &[f64], points: &[DVec3]) -> Option<Result<Nurbs, CurveError>> {
         let rows: Vec<Row> = parameters.iter().map(|&u| self.row(u)).collect();
         let mut control = vec![DVec3::ZERO; self.unknowns];
@@ -104,7 +104,7 @@ impl SplineSpace {
         system
     }
 
-    /// What the curve over `control` leaves of the points, projected on the basis.
+    /// The differences between the points and the curve over `control`, projected onto the basis.
     fn right_side(&self, rows: &[Row], points: &[DVec3], control: &[DVec3], free: usize) -> Vec<DVec3> {
         let mut right = vec![DVec3::ZERO; free];
         for (row, &point) in rows.iter().zip(points) {
@@ -122,7 +122,7 @@ impl SplineSpace {
         (0..=self.degree).map(|a| control[(row.0 + a) % self.unknowns] * row.1[a]).sum()
     }
 
-    /// Number of the unknown behind basis function `a` of a row; none for a given end.
+    /// Index of the unknown that belongs to basis function `a` of a row; `None` for an end that is given.
     fn column(&self, row: &Row, a: usize) -> Option<usize> {
         let index = (row.0 + a) % self.unknowns;
         let free = self.unknowns - 2 * self.fixed();

@@ -1,5 +1,5 @@
-//! The height field of a layer on a grid, worked out in bands of rows: only the pieces of bead that reach a band are
-//! looked at, bands run in parallel, and none is kept unless somebody asks.
+//! The height field of a layer on a grid, computed in bands of rows: each band looks only at the pieces of bead that
+//! reach it, bands run in parallel, and none is kept unless asked for.
 
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
 use crate::bead::Section;
@@ -7,13 +7,13 @@ use glam::{DVec2, I64Vec2};
 use planar::Bounds;
 use rayon::prelude::*;
 
-/// Rows of a band hold about this many points: they stay in the cache.
+/// A band holds about this many points, so that it stays in the cache.
 const BAND_POINTS: usize = 1 << 14;
 
-/// Points at whole multiples of the step, so that the grids of all layers lie on each other.
+/// Points at whole multiples of the step, so that the grids of all layers coincide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
-    /// Distance of neighbouring points, mm.
+    /// Distance between neighbouring points, mm.
     pub step: f64,
     /// The lowest point, in steps.
     pub low: I64Vec2,
@@ -67,7 +67,7 @@ pub struct Band<'a> {
     pub first: usize,
     /// Heights, mm, row after row.
     pub heights: Vec<f64>,
-    /// How many points of how many pieces were worked out.
+    /// Number of points computed, summed over the pieces.
     pub work: usize,
 }
 
@@ -78,8 +78,8 @@ impl Band<'_> {
     }
 }
 
-/// Works out all bands of a layer and hands each to `visit`; its answers come back from the lowest band to the
-/// highest, whatever the number of threads.
+/// Computes all bands of a layer and hands each to `visit`. The answers of `visit` come back in order from the lowest
+/// band to the highest, whatever the number of threads.
 pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) -> R + Sync) -> Vec<R> {
     let frames: Vec<Frame> = strokes.iter().filter_map(Stroke::frame).collect();
     let height = grid.band_rows();

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// What a height field shows; areas in mm², heights in mm.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Figures {
-    /// Area looked at: the outline less its rim.
+    /// Judged area: the outline less its rim.
     #[serde(rename = "judged_area_mm2")]
     pub area: f64,
     /// Area of voids.
@@ -96,22 +96,22 @@ impl Figures {
         self.squares += other.squares;
     }
 
-    /// Void area, % of the area looked at.
+    /// Void area, % of the judged area.
     pub fn void_percent(&self) -> f64 {
         self.percent(self.void)
     }
 
-    /// Low area, % of the area looked at.
+    /// Low area, % of the judged area.
     pub fn low_percent(&self) -> f64 {
         self.percent(self.low)
     }
 
-    /// Overfilled area, % of the area looked at.
+    /// Overfilled area, % of the judged area.
     pub fn overfill_percent(&self) -> f64 {
         self.percent(self.overfill)
     }
 
-    /// Area with metal outside, % of the area looked at.
+    /// Area with metal outside, % of the judged area.
     pub fn outside_percent(&self) -> f64 {
         self.percent(self.outside)
     }

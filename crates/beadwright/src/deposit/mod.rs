@@ -1,11 +1,11 @@
 //! The deposit model: what a layer's passes would build, as a height field, and what is wrong with it.
 //!
-//! Our plans and anyone's programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their
-//! heights ([`stroke`]: the closed form) add up on a [grid](field::Grid) ([`field`]). Nothing but one layer is held.
+//! Our plans and other programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their heights
+//! ([`stroke`]: the closed form) add up on a [grid](field::Grid) ([`field`]). Only one layer is held in memory.
 //!
-//! Inside the outline less a quarter of a bead width, a point is a *void* below [`VOID`] of the nominal bead height,
-//! *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than [`OUTSIDE`] of the
-//! bead beyond the outline and the machining allowance.
+//! Inside the outline, less a rim of a quarter of a bead width, a point is a *void* below [`VOID`] times the nominal
+//! bead height, *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than
+//! [`OUTSIDE`] times the bead height beyond the outline and the machining allowance.
 
 pub mod corner;
 pub mod field;
@@ -27,32 +27,32 @@ use glam::DVec2;
 use patch::Run;
 use planar::{Bounds, Join, Polygon, Region};
 
-/// Below this part of the nominal bead height a point is a void.
+/// Below this fraction of the nominal bead height a point is a void.
 pub const VOID: f64 = 0.35;
-/// Below this part of the nominal bead height, and no void, a point is low: beads a tangent overlap (0.738 w) apart
-/// leave 0.77 of it at the least.
+/// Below this fraction of the nominal bead height, but not a void, a point is low: beads a tangent overlap (0.738 w)
+/// apart leave at least 0.77 of that height.
 pub const LOW: f64 = 0.7;
-/// Above this part of the nominal bead height a point is overfilled.
+/// Above this fraction of the nominal bead height a point is overfilled.
 pub const OVERFILL: f64 = 1.3;
-/// Metal outside counts above this part of the nominal bead height.
+/// Metal outside counts above this fraction of the nominal bead height.
 pub const OUTSIDE: f64 = 0.05;
-/// The edge of a layer is rounded as far as this part of a bead width: no voids are looked for there.
+/// The edge of a layer is rounded over this fraction of a bead width: no voids are looked for there.
 pub const RIM: f64 = 0.25;
-/// Grid points across a bead where nothing else is asked for.
+/// Grid points across a bead, unless another grid is asked for.
 pub const POINTS_ACROSS: f64 = 20.0;
-/// A part whose layers have more points in all gets a coarser grid.
+/// A part whose layers have more points in total than this gets a coarser grid.
 pub const MANY_POINTS: f64 = 5e8;
-/// No layer has more points.
+/// No layer has more points than this.
 pub const MOST_POINTS: f64 = 6.4e7;
 
-/// How to judge.
+/// How layers are judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepositSettings {
     /// The bead that is promised.
     pub nominal: Nominal,
     /// How far metal may lie outside the outline, mm.
     pub machining_allowance: f64,
-    /// Distance of grid points, mm.
+    /// Distance between grid points, mm.
     pub step: f64,
 }
 
@@ -62,8 +62,8 @@ impl DepositSettings {
         Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS }
     }
 
-    /// With a grid for a part of so many layers: up to twice as coarse where all layers together would have more than
-    /// [`MANY_POINTS`], and as coarse as need be where one would have more than [`MOST_POINTS`].
+    /// With a grid for a part of `layers` layers: up to twice as coarse where all layers together would have more than
+    /// [`MANY_POINTS`], and as coarse as needed where one would have more than [`MOST_POINTS`].
     pub fn fitted_to(mut self, bounds: &Bounds, layers: usize) -> Self {
         let area = bounds.size().x * bounds.size().y;
         let many = (area * layers as f64 / MANY_POINTS).sqrt();
@@ -72,7 +72,7 @@ impl DepositSettings {
     }
 }
 
-/// What a layer would be.
+/// The verdict on a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
     /// Areas and heights.
@@ -81,9 +81,9 @@ pub struct Judgement {
     pub voids: Vec<Patch>,
     /// Connected overfilled patches, the highest first.
     pub peaks: Vec<Patch>,
-    /// The height field, coarse, for the eye.
+    /// The height field as a coarse picture.
     pub picture: Option<Picture>,
-    /// How many points of how many strokes were worked out.
+    /// Number of points computed, summed over the strokes.
     pub work: usize,
 }
 
@@ -102,13 +102,13 @@ impl Judge {
         Self { settings, stack: None, picture_pixels: None, total: Figures::default() }
     }
 
-    /// Also adds the layers up, to see how peaks grow; `bounds` holds all layers.
+    /// Also adds up the layers, to see how peaks grow; `bounds` holds all layers.
     pub fn with_stack(mut self, bounds: &Bounds) -> Self {
         self.stack = Some(Stack::new(Grid::covering(bounds, self.settings.nominal.bead.width, self.settings.step)));
         self
     }
 
-    /// Also draws the layers, at most so many pixels wide or high.
+    /// Also draws the layers, at most `pixels` wide or high.
     pub fn with_pictures(mut self, pixels: usize) -> Self {
         self.picture_pixels = Some(pixels);
         self
@@ -183,7 +183,7 @@ fn grid_of(layer: &Layer, strokes: &[Stroke], step: f64) -> Option<Grid> {
     Some(Grid::covering(&bounds, widest / 2.0 + step, step))
 }
 
-/// Where the outline less its rim is, and where metal is outside, as crossings of the grid's rows.
+/// The outline less its rim, and the area where metal is allowed, as crossings of the grid's rows.
 pub(crate) struct Mask {
     core: Vec<Vec<f64>>,
     allowed: Vec<Vec<f64>>,

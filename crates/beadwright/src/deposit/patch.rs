@@ -1,4 +1,4 @@
-//! Connected voids and overfilled patches with their places, and what made the peaks.
+//! Connected voids and overfilled patches with their places, and the causes of the peaks.
 
 use super::field::{Band, Grid};
 use super::stroke::Nominal;
@@ -9,7 +9,7 @@ use glam::DVec2;
 use serde::Serialize;
 use std::ops::Range;
 
-/// What piles metal up.
+/// Why metal piles up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
@@ -23,7 +23,7 @@ pub enum Cause {
     Link,
     /// Several passes meet.
     Junction,
-    /// One pass runs too close beside itself.
+    /// One pass runs too close to itself.
     Closeness,
 }
 
@@ -52,7 +52,7 @@ pub struct Patch {
     pub height: f64,
     /// Its area, mm².
     pub area: f64,
-    /// What made it; only peaks have a cause.
+    /// What caused it; only peaks have a cause.
     pub cause: Option<Cause>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn runs(band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<Run> 
 pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
     let mut parents: Vec<usize> = (0..runs.len()).collect();
-    // Both rows are walked once: a run of this row against those of the last row that end after it begins.
+    // Both rows are walked once: each run is compared with the runs of the row before that end after it begins.
     let (mut row_start, mut last_row) = (0, 0..0);
     for i in 0..runs.len() {
         if runs[i].row != runs[row_start].row {
@@ -138,13 +138,13 @@ pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: 
     peaks.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
     let plain = |(_, patch)| patch;
     let told = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, &layer.passes, nominal), ..patch };
-    // Causes are looked up for the peaks that are told.
+    // Causes are looked up only for the peaks that are reported.
     let rest = peaks.split_off(peaks.len().min(TOLD_PEAKS));
     let peaks = peaks.into_iter().map(told).chain(rest.into_iter().map(plain)).collect();
     (voids.into_iter().map(plain).collect(), peaks)
 }
 
-/// The highest peaks of a layer get a cause.
+/// How many of the highest peaks of a layer get a cause.
 const TOLD_PEAKS: usize = 32;
 
 fn root(parents: &mut [usize], mut i: usize) -> usize {

@@ -9,12 +9,12 @@ use glam::DVec2;
 pub const EMPTY: u8 = 0;
 /// A pixel that holds a void.
 pub const VOID_PIXEL: u8 = 1;
-/// The first of the values that tell a height: the last, 255, is [`FULL_SCALE`] of the nominal bead height.
+/// The lowest value that stands for a height; the highest, 255, is [`FULL_SCALE`] times the nominal bead height.
 pub const FIRST_HEIGHT: u8 = 2;
 /// The greatest height shown, in nominal bead heights.
 pub const FULL_SCALE: f64 = 2.0;
 
-/// One byte a pixel, the lowest row first: [`EMPTY`], [`VOID_PIXEL`], or a height from [`FIRST_HEIGHT`] on.
+/// One byte per pixel, the lowest row first: [`EMPTY`], [`VOID_PIXEL`], or a height from [`FIRST_HEIGHT`] on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// Lower left corner of the lowest pixel, mm.
@@ -36,7 +36,7 @@ pub(super) struct Canvas {
     side: usize,
 }
 
-/// What a grid point is to the picture.
+/// Up to this height, mm, a grid point counts as without metal.
 const NO_METAL: f64 = 1e-6;
 
 impl Canvas {

@@ -13,7 +13,7 @@ pub struct Stack {
     growth: Vec<Growth>,
 }
 
-/// How far the stack stands above and below where it ought to, after a layer; mm.
+/// How far the stack stands above and below its nominal height after a layer, mm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Growth {
     /// The highest peak above the nominal height.
@@ -67,7 +67,7 @@ impl Stack {
     }
 }
 
-/// Height less rise inside the outline less its rim, nothing elsewhere.
+/// Height less rise inside the outline less its rim, zero elsewhere.
 pub(super) fn excess(band: &Band<'_>, mask: &Mask, rise: f64) -> Vec<f32> {
     let mut values = vec![0.0; band.heights.len()];
     let columns = band.grid.columns;

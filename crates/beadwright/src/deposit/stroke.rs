@@ -5,9 +5,9 @@
 //! c [F(q₂) − F(q₁)] with ρ = √(a² − y²), q₁ = −t and q₂ = L − t, both clamped to ±ρ, and
 //! F(q) = ½ (q √(ρ² − q²) + ρ² asin(q/ρ)). Pieces add up: cutting one in two changes nothing, and no volume is lost.
 //!
-//! Other cross-sections come from other footprints alike: an even one, k = h/(2a), builds half an ellipse, F(q) = q; and
-//! k(r) = h/(π √(a² − r²)) builds a flat bead, F(q) = asin(q/ρ), the stadium of a printer taken as wide as its area over
-//! its height.
+//! Other footprints give other cross-sections in the same way: an even one, k = h/(2a), builds half an ellipse,
+//! F(q) = q; and k(r) = h/(π √(a² − r²)) builds a flat bead, F(q) = asin(q/ρ): the stadium of a printer, taken as wide
+//! as its area over its height.
 
 use crate::bead::{Bead, Section};
 use crate::pass::Pass;
@@ -37,8 +37,8 @@ pub struct Nominal {
 }
 
 impl Nominal {
-    /// The bead of that width at that pace (mm/s): the metal per length is that of the nominal bead times the ratio of
-    /// the paces.
+    /// The bead of the given width at the given pace (mm/s): its metal per length is that of the nominal bead times
+    /// nominal pace / pace.
     pub fn bead_at(&self, width: f64, pace: f64) -> Bead {
         let section = self.bead.section;
         let area = self.bead.area() * self.pace / pace;
@@ -65,7 +65,7 @@ impl Stroke {
         self.from.distance(self.to) * self.bead.area()
     }
 
-    /// What does not change from point to point; `None` for a piece of no length or no bead.
+    /// The values that do not change from point to point; `None` for a piece of no length or no bead.
     pub(super) fn frame(&self) -> Option<Frame> {
         let Bead { width, height, section } = self.bead;
         let (way, a) = (self.to - self.from, section.footprint(width, height) / 2.0);
@@ -87,11 +87,11 @@ pub(super) struct Frame {
 
 /// The footprint of a pool: what it adds while it passes.
 pub(super) trait Footprint {
-    /// The share of the height that has been added when the pool has come from 0 to `u` of half its chord, at a place where
+    /// The fraction of the height that is added while the pool moves from 0 to `u` half-chords, at a place where
     /// `inside` = 1 − (y/a)²: half of the whole at u = 1.
     fn swept(inside: f64, u: f64) -> f64;
 
-    /// The share that the whole pool adds.
+    /// The fraction that the whole pool adds.
     fn whole(inside: f64) -> f64;
 }
 
@@ -155,7 +155,7 @@ impl Frame {
         let d = p - self.from;
         let (t, y) = (d.dot(self.along), self.along.perp_dot(d));
         let square = 1.0 - (y / self.a) * (y / self.a);
-        // Off the bead the square is negative and the product nothing.
+        // Off the bead the square is negative and the product zero.
         let inside = square.max(0.0);
         let reach = self.a * inside.max(f64::MIN_POSITIVE).sqrt();
         self.height * (F::swept(inside, (self.length - t) / reach) - F::swept(inside, -t / reach))
@@ -168,7 +168,7 @@ impl Frame {
         self.height * F::whole(1.0 - y * y)
     }
 
-    /// The part of row `y` over which there is metal, and the part of that where the parabola holds; x in mm.
+    /// The stretch of row `y` that gets metal, and the stretch in it that the whole footprint passes over; x in mm.
     pub(super) fn row(&self, y: f64) -> Option<(f64, f64, f64, f64)> {
         let (u, a, dy) = (self.along, self.a, y - self.from.y);
         // Along a row, t = dx u.x + dy u.y and the distance from the line is dy u.x − dx u.y.
@@ -202,7 +202,7 @@ fn meet(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
     (low <= high).then_some((low, high))
 }
 
-/// u √(1 − u²) + asin u for u clamped to ±1: −π/2 to π/2, exact at the ends. Else its error is below 3e-8.
+/// u √(1 − u²) + asin u for u clamped to ±1: −π/2 to π/2, exact at the ends; elsewhere the error is below 3e-8.
 #[inline]
 fn swept(u: f64) -> f64 {
     let u = u.clamp(-1.0, 1.0);

@@ -1,11 +1,11 @@
 //! Dialects: the languages of controllers. A neutral program is written in one of them, and programs in any of them are
 //! read back.
 //!
-//! A dialect is a folder and a line in the table below. The folder holds
+//! A dialect consists of a folder and a line in the table below. The folder holds
 //!
 //! | file | what it is |
 //! | --- | --- |
-//! | `mod.rs` | the row [`DIALECT`](krl::DIALECT), and how the [section](Section) meets the writer |
+//! | `mod.rs` | the row [`DIALECT`](krl::DIALECT), and how the [section](Section) begins a writer |
 //! | `section.rs` | the keys of the profile, with their limits |
 //! | `write.rs` | the [writer](writing::Writer) |
 //! | `read.rs` | the reader |
@@ -31,9 +31,10 @@ pub struct Dialect {
     pub name: &'static str,
     /// The language as people write it; dialects of one language are read alike.
     pub language: &'static str,
-    /// Whether it can write a turn table.
+    /// Whether it can write programs for a turn table.
     pub turns_table: bool,
-    /// Whether a line, trimmed, can only stand in a program of this dialect; never for one that another one reads.
+    /// Whether a trimmed line can occur only in a program of this dialect; always false if another dialect reads its
+    /// programs.
     typical: fn(&str) -> bool,
     /// Reads a program.
     read: fn(&str, &mut FindModule<'_>, &Options) -> Result<ReadProgram, ReadError>,
@@ -42,9 +43,9 @@ pub struct Dialect {
 /// Keys and lines of the templates in a section.
 pub type Templates<'a> = Vec<(&'static str, &'a Vec<String>)>;
 
-/// What a profile says of a dialect.
+/// The section of a profile for one dialect.
 pub trait Section {
-    /// What the numbers can be.
+    /// Limits of the numeric values.
     fn limits(&self) -> Vec<Limit>;
 
     /// The first value that a controller would refuse, or that does not fit the other settings of programs.
@@ -53,13 +54,13 @@ pub trait Section {
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
 
-    /// Takes out what would switch the arc in a dry run, beside the templates.
+    /// Removes, for a dry run, whatever would switch the arc, apart from the templates.
     fn dry_run(&mut self) {}
 
     /// Begins a program.
     ///
     /// # Errors
-    /// [`DialectError`] for a job that asks for more than the dialect can write, or than the section tells.
+    /// [`DialectError`] for a job that asks for more than the dialect can write or the section provides.
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError>;
 }
 
@@ -88,12 +89,12 @@ macro_rules! dialects {
                 }
             }
 
-            /// The sections that are there.
+            /// The sections that are present.
             pub fn iter(&self) -> impl Iterator<Item = &dyn Section> {
                 ALL.iter().filter_map(|dialect| self.get(dialect.name))
             }
 
-            /// Takes out what would switch the arc in a dry run.
+            /// Removes, for a dry run, whatever would switch the arc.
             pub(crate) fn dry_run(&mut self) {
                 $(self.$name.iter_mut().for_each(|section| section.dry_run());)*
             }
@@ -119,13 +120,13 @@ dialects! {
 }
 
 impl Sections {
-    /// What lights and ends the arc in the templates: the last line that lights it and the first that ends it, since gas and
-    /// delays lie before and behind. Lines with placeholders are no codes.
+    /// The codes in the templates that light and end the arc: the last line of those that light it and the first of
+    /// those that end it, since gas and delays come before and after. Lines with placeholders do not count.
     pub fn arc_codes(&self) -> ArcCodes {
         let lines_of = |name: &str| {
             let template = move |(key, lines): (&str, &Vec<String>)| {
                 let plain = lines.iter().filter(|line| !template::has_placeholder(line));
-                // Readers have the sign that ends a statement cut off.
+                // Readers see statements without the `;` that ends them.
                 let codes: Vec<String> = plain.map(|l| l.trim_end().trim_end_matches(';').to_owned()).collect();
                 key.ends_with(name).then_some(codes)
             };

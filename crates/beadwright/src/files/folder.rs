@@ -104,5 +104,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
 
 fn named(path: &Path) -> impl Fn(io::Error) -> FolderError + use<> {
     let path = path.to_owned();
-    move |source| FolderError { path: path.clone(), source }
+    // Errors of temporary files name a place that nobody knows: their kind is enough.
+    let plain = |error: io::Error| if error.raw_os_error().is_some() { error } else { error.kind().into() };
+    move |error| FolderError { path: path.clone(), source: plain(error) }
 }

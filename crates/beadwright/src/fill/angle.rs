@@ -7,14 +7,15 @@ use planar::turns::{Turns, ends_at};
 use planar::{Polygon, Region};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// An edge may have this part more turns than the best angle.
+/// An edge direction may have up to this fraction more turns than the best angle.
 const EDGE_SLACK: f64 = 0.01;
 
 /// The angle, radians, with the fewest turns on a layer and on the next one, whose lines are turned by 90° (eq 9).
 /// `None` where no scan lines are laid.
 ///
-/// The number of turns is known exactly between the directions of edges; along an edge it may be less still, so the
-/// longest edges are tried too. One that has hardly more turns wins over an angle beside it, such as 89.9°.
+/// The number of turns is known exactly for angles between the directions of edges. Exactly along an edge it may be
+/// lower still, so the directions of the longest edges are tried too. One with hardly more turns wins over an angle
+/// close to it, such as 89.9°.
 pub fn best(strategy: &dyn Strategy, layers: &[&[Polygon]], settings: &FillSettings) -> Option<f64> {
     let turned = |layer: usize| if layer % 2 == 1 { FRAC_PI_2 } else { 0.0 };
     let regions: Vec<(f64, Region)> = layers
@@ -31,7 +32,7 @@ pub fn best(strategy: &dyn Strategy, layers: &[&[Polygon]], settings: &FillSetti
     let (between, fewest) = sum.least()?;
     let along = |angle: f64| regions.iter().map(|(turn, region)| ends_at(region, angle + turn, spacing)).sum::<i64>();
     let edges = sum.edges().iter().map(|&(angle, _)| (along(angle), angle));
-    // Edges come with the longest first: it wins among equals.
+    // The longest edges come first: among equals the longest wins.
     let edge = edges.min_by_key(|(count, _)| *count);
     let edge = edge.filter(|(count, _)| *count as f64 <= fewest as f64 * (1.0 + EDGE_SLACK));
     Some(edge.map_or(between, |(_, angle)| angle))

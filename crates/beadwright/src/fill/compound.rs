@@ -1,7 +1,7 @@
-//! Zigzag inside, perimeters outside (Liu et al. 2022). The infill keeps a smaller distance to the innermost
-//! perimeter (0.591 w) than its lines keep among themselves, or pores remain where it turns.
+//! Zigzag inside, perimeters outside (Liu et al. 2022). The infill lies closer to the innermost perimeter (0.591 w)
+//! than its scan lines lie to each other; otherwise pores remain where the zigzag turns.
 //!
-//! Inside the part the infill may be sparse; what is near a top or a bottom stays solid.
+//! The infill may be sparse inside the part; near a top or a bottom it stays solid.
 
 use super::contour::rings;
 use super::thin;
@@ -47,7 +47,7 @@ fn core(innermost: &Region, settings: &FillSettings) -> Region {
 fn infill(core: &Region, settings: &FillSettings) -> Vec<Path> {
     let Some(near_surface) = settings.solid else { return zigzag(core, settings) };
     let solid = core.intersection(near_surface);
-    // Both kinds keep a bead's distance, so they do not lie on each other.
+    // Solid and sparse infill stay a stepover apart, so they do not lie on each other.
     let sparse = core.difference(&solid.offset(settings.stepover, Join::ROUND));
     let mut passes = zigzag(&solid, settings);
     passes.extend(zigzag_spaced(&sparse, settings, Spacing::AtMost(settings.stepover / settings.infill_density)));

@@ -5,6 +5,7 @@
 //!
 //! | strategy | what it lays |
 //! | --- | --- |
+//! | [`one_loop`] | rings that fill an island evenly, joined into one path |
 //! | [`raster`] | parallel scan lines, all in one direction |
 //! | [`zigzag`] | scan lines joined along the boundary |
 //! | [`contour`] | rings parallel to the boundary, until nothing is left |
@@ -59,12 +60,12 @@ pub trait Strategy: Sync {
         Region::default()
     }
 
-    /// What is narrower than this gets no metal, mm.
+    /// Features narrower than this get no metal, mm.
     fn narrowest(&self, settings: &FillSettings) -> f64 {
         settings.wall.width_limits.0
     }
 
-    /// Whether what is narrower gets metal all the same, that then lies beside it too.
+    /// Whether narrower features are welded all the same, with beads that then reach beyond them.
     fn welds_thin_walls(&self) -> bool {
         false
     }
@@ -86,7 +87,7 @@ pub struct Path {
 }
 
 impl Path {
-    /// A closed pass along a ring, as wide as a bead, mm.
+    /// A closed pass along a ring, with a bead of the given width, mm.
     pub fn contour(ring: Ring, width: f64) -> Self {
         let (kind, width) = (PassKind::Contour, Along::Same(width));
         Self { kind, closed: true, points: ring.into_points(), width, reversible: true }
@@ -113,12 +114,12 @@ impl Path {
 pub struct Fill {
     /// Groups of passes to be laid one group after another.
     pub stages: Vec<Vec<Path>>,
-    /// Whether the passes of a stage must stay in the order in which they stand.
+    /// Whether the passes of a stage must be laid in the given order.
     pub fixed_order: bool,
 }
 
 impl Fill {
-    /// Takes in the passes of a neighbour, its outermost contours to the outermost ones here.
+    /// Adds the passes of a neighbour, its outermost contours to the outermost ones here.
     fn add(&mut self, other: Self, order: ContourOrder) {
         let (mut own, mut stages) = (std::mem::take(&mut self.stages), other.stages);
         let count = own.len().max(stages.len());
@@ -152,8 +153,8 @@ pub enum RasterSpacing {
     Even,
     /// Exactly one stepover apart (Liu et al. 2022, eq 11).
     Exact,
-    /// Evenly between the long edges that are parallel to them, one line along each, so that no strip is left beside
-    /// an edge; `raster` takes them as even.
+    /// One line along each long edge that is parallel to the lines, the rest evenly between, so that no strip is left
+    /// beside an edge; `raster` treats this as `even`.
     Fitted,
 }
 
@@ -176,9 +177,9 @@ pub struct FillSettings<'a> {
     pub contour_order: ContourOrder,
     /// Whether the perimeters of `compound` are laid before its infill.
     pub perimeters_first: bool,
-    /// Part of the infill of `compound` that is filled where it may be sparse, 0 to 1.
+    /// Density of the infill of `compound` where it may be sparse: the fraction that is filled, 0 to 1.
     pub infill_density: f64,
-    /// Where the infill is solid nevertheless: near tops and bottoms. `None` where all of it is solid.
+    /// Where a sparse infill is solid all the same: near tops and bottoms. `None` where all of it is solid.
     pub solid: Option<&'a Region>,
     /// How far beads may reach outside the island, mm.
     pub machining_allowance: f64,
@@ -186,7 +187,7 @@ pub struct FillSettings<'a> {
     pub raster_angle: f64,
     /// How scan lines are spread.
     pub raster_spacing: RasterSpacing,
-    /// Shorter passes are left out, mm: the arc is not steady before they are over.
+    /// Passes shorter than this are left out, mm: they would end before the arc is steady.
     pub min_pass_length: f64,
     /// Thresholds of the hybrid.
     pub hybrid: hybrid::HybridSettings,
@@ -194,7 +195,7 @@ pub struct FillSettings<'a> {
     pub wall: wall::WallSettings,
     /// How loops are laid.
     pub one_loop: one_loop::LoopOptions,
-    /// A place that is the same on all layers of a part: what repeats over the layers is measured from it.
+    /// A reference point, the same on all layers of a part; patterns that repeat over the layers are measured from it.
     pub datum: DVec2,
 }
 

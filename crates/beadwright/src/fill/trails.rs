@@ -1,19 +1,20 @@
 //! The fewest paths that lay every edge of a plane graph once and never cross (Li et al., 2.2).
 //!
-//! 1. At every node the edge ends are paired without crossings, so that the paths turn as little as can be; at an odd
-//!    node one end stays free, and a path ends there. (Least sum of squared turns over all non-crossing pairings, by
-//!    dynamic programming over the cyclic order.)
-//! 2. There are then odd/2 open paths, always, and any number of closed ones. A closed path is merged into another
-//!    that it meets at a node: of two pairs that bound one region of the node's disc, (a, b) and (c, d) in cyclic
-//!    order, become (b, c) and (d, a); with a free end f, (a, b) becomes (b, f) and a is free. Neither crosses anything. The
-//!    cheapest merge goes first, until none is left: max(1, odd/2) paths for each connected graph.
+//! 1. At every node the edge ends are paired without crossings, so that the paths turn as little as possible; at a
+//!    node with an odd number of ends, one stays free and a path ends there. (Least sum of squared turns over all
+//!    non-crossing pairings, by dynamic programming over the cyclic order.)
+//! 2. This always leaves odd/2 open paths (odd: number of such nodes), and any number of closed ones. A closed path
+//!    is merged into another path that it meets at a node: two pairs that bound one region of the node's disc, (a, b)
+//!    and (c, d) in cyclic order, become (b, c) and (d, a); with a free end f, (a, b) becomes (b, f) and a is then
+//!    free. Neither change makes a crossing. The cheapest merge goes first, until none is left: max(1, odd/2) paths for
+//!    each connected graph.
 //!
-//! Two pairs of different paths that share a region always exist where two paths meet, since neighbouring regions of the
-//! disc share a pair.
+//! Where two paths meet, a region bounded by a pair of each always exists, since neighbouring regions of the disc share
+//! a pair.
 
 use std::f64::consts::{PI, TAU};
 
-/// One end of an edge, seen from its node: twice the edge's number, and one more at the edge's far end.
+/// One end of an edge, seen from its node: twice the edge's number, plus one at the edge's far end.
 pub type Dart = usize;
 
 /// The other end of the same edge.
@@ -26,7 +27,7 @@ pub fn other_end(dart: Dart) -> Dart {
 pub struct Network {
     /// For every node its darts counter-clockwise, each with the angle (rad) at which it leaves.
     pub stars: Vec<Vec<(Dart, f64)>>,
-    /// For every edge the wall that it belongs to: a merge never turns from one edge of a wall to another.
+    /// For every edge, its wall: a merge never turns from one edge of a wall to another edge of the same wall.
     pub walls: Vec<usize>,
 }
 
@@ -39,7 +40,7 @@ pub struct Trail {
     pub closed: bool,
 }
 
-/// Covers every edge once with as few trails as can be.
+/// Covers every edge once with as few trails as possible.
 pub fn trails(network: &Network) -> Vec<Trail> {
     let mut weave = Weave::new(network);
     while let Some(merge) = weave.best_merge() {
@@ -48,7 +49,7 @@ pub fn trails(network: &Network) -> Vec<Trail> {
     weave.trails
 }
 
-/// Two darts become partners, and two others too, or one of them is left free.
+/// Pairs two darts, and either pairs two others or leaves one free.
 #[derive(Debug, Clone, Copy)]
 struct Merge {
     joined: (Dart, Dart),
@@ -123,7 +124,7 @@ impl<'a> Weave<'a> {
         best.map(|(_, merge)| merge)
     }
 
-    /// The regions of a node's disc: their pairs, each as it is met on a walk around; a free end stands for both.
+    /// The regions of a node's disc, each as the pairs met on a walk around it; a free end is paired with itself.
     fn regions(&self, star: &[(Dart, f64)]) -> Vec<Vec<(Dart, Dart)>> {
         let place = |dart: Dart| star.iter().position(|&(d, _)| d == dart);
         let mut regions = Vec::new();
@@ -143,7 +144,7 @@ impl<'a> Weave<'a> {
         regions
     }
 
-    /// What merges a closed trail with another in a region, and what it costs.
+    /// The merges of a closed trail with another one in a region, each with its cost.
     fn merges(&self, region: &[(Dart, Dart)]) -> Vec<(f64, Merge)> {
         let mut merges = Vec::new();
         for (i, &(a, b)) in region.iter().enumerate() {
@@ -152,7 +153,7 @@ impl<'a> Weave<'a> {
                 if one == other || !(self.trails[one].closed || self.trails[other].closed) {
                     continue;
                 }
-                // Around the region they stand as a, b, c, d.
+                // Their order around the region is a, b, c, d.
                 let candidates = match (a == b, c == d) {
                     (false, false) => vec![Merge { joined: (b, c), rest: (d, Some(a)) }],
                     (true, false) => free_merges(a, (c, d)).to_vec(),
@@ -187,26 +188,26 @@ impl<'a> Weave<'a> {
     }
 }
 
-/// A free end joined to either end of a pair; the other one is free then.
+/// A free end joined to either end of a pair; the other end then becomes free.
 fn free_merges(free: Dart, (a, b): (Dart, Dart)) -> [Merge; 2] {
     [Merge { joined: (b, free), rest: (a, None) }, Merge { joined: (a, free), rest: (b, None) }]
 }
 
-/// How far a path turns that comes in along one dart and leaves along another, rad: 0 straight on, π back.
+/// The turn of a path that comes in along one dart and leaves along another, rad: 0 is straight on, π straight back.
 pub fn turn(a: f64, b: f64) -> f64 {
     let between = (a - b).rem_euclid(TAU);
     PI - between.min(TAU - between)
 }
 
-/// The non-crossing pairing with the least sum of squared turns; of an odd number one dart stays free.
+/// The non-crossing pairing with the least sum of squared turns; if the number of darts is odd, one stays free.
 fn pairing(star: &[(Dart, f64)]) -> Vec<(Dart, Dart)> {
     let count = star.len();
-    // For the darts from `start` on, `length` of them: the least cost, and whom the first is paired with.
+    // For the `length` darts from `start` on: the least cost, and the partner of the first.
     let mut best = vec![vec![(0.0, None); count + 1]; count + 1];
     for length in 1..=count {
         for start in 0..=count - length {
             let end = start + length;
-            // The first one free: the others must be even in number.
+            // If the first stays free, the others must be even in number.
             let mut found = if length % 2 == 1 { (best[start + 1][length - 1].0, None) } else { (f64::INFINITY, None) };
             for with in start + 1..end {
                 let (inside, after) = (with - start - 1, end - with - 1);

@@ -18,7 +18,7 @@ pub struct Colony {
     pub pheromone_weight: f64,
     /// Weight of the nearness, β.
     pub nearness_weight: f64,
-    /// Part of the pheromone that evaporates in a round, ρ.
+    /// Fraction of the pheromone that evaporates in a round, ρ.
     pub evaporation: f64,
     /// Pheromone that an ant lays on its tour, Q, in lengths of the first tour.
     pub amount: f64,

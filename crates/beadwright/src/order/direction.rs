@@ -1,10 +1,11 @@
-//! The other way round on every second layer, so that the low ends of beads come to lie over their high starts.
+//! Passes run the other way on every second layer, so that the low ends of beads lie over the high starts below them.
 
 use super::OrderSettings;
 use crate::fill::{Fill, Path};
 
-/// Turns open passes that may be turned so that they begin at their left end on even layers, at their right end on odd
-/// ones, and stay so. An order alone cannot do it: it lays the same line on every layer the way that is shortest.
+/// Turns open passes, where allowed, so that they begin at their left end on even layers and at their right end on odd
+/// ones, and fixes that direction. Ordering alone cannot do this: it would lay the same line the shortest way on every
+/// layer.
 pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
     if !settings.alternate {
         return;
@@ -20,8 +21,8 @@ pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
     }
 }
 
-/// Turns closed passes round on odd layers; they begin where they began. To be done last, since seams that wander are
-/// measured along the path as the strategy laid it.
+/// Reverses closed passes on odd layers; their starts stay where they were. Must be done last, since seams that move
+/// are measured along the path as the strategy laid it.
 pub(super) fn turn_closed(passes: &mut [Path], settings: &OrderSettings) {
     if !settings.alternate || settings.layer.is_multiple_of(2) {
         return;
@@ -35,10 +36,10 @@ pub(super) fn turn_closed(passes: &mut [Path], settings: &OrderSettings) {
     }
 }
 
-/// Whether a pass ends further left (then lower) than it begins.
+/// Whether a pass ends further left than it begins (or lower, if it runs along y).
 fn runs_left(pass: &Path) -> bool {
     let (Some(first), Some(last)) = (pass.points.first(), pass.points.last()) else { return false };
     let across = last.x - first.x;
-    // Upright lines have no left end.
+    // Lines along y have no left end.
     if across.abs() > 1e-6 { across < 0.0 } else { last.y < first.y }
 }

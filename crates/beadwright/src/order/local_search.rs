@@ -1,9 +1,10 @@
 //! Local search over order, directions and start points together.
 //!
 //! From the nearest-next tour, three moves are tried between stops that lie near each other, until none shortens the
-//! way: run a stretch of the tour backwards (2-opt), put one to three stops elsewhere, also backwards (Or-opt, a single
-//! stop by its best gate there), and enter a stop by another gate. Then stretches of the tour are exchanged at random
-//! and mended again, and what is longer is undone. At last the starts of closed passes slide along their edges.
+//! travel: reverse a stretch of the tour (2-opt), move one to three stops elsewhere, reversed if that is better
+//! (Or-opt; a single stop takes its best gate there), and enter a stop by another gate. Then stretches of the tour are
+//! exchanged at random and the tour is repaired; exchanges that do not shorten it are undone. Finally the starts of
+//! closed passes slide along their edges.
 
 use super::exact;
 use super::nearest;
@@ -13,24 +14,24 @@ use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Moves are tried with so many of the nearest stops.
+/// Moves are tried with this many of the nearest stops.
 const NEAR: usize = 8;
 
-/// Random exchanges for each stop: few stops are cheap and want more. And at most in all.
+/// Random exchanges per stop; with few stops they are cheap, and more are needed. The last value limits the total.
 const KICKS_PER_STOP: usize = 3;
 const FEW_STOPS: usize = 9;
 const KICKS_PER_FEW: usize = 25;
 const MOST_KICKS: usize = 800;
 
-/// A stretch that is exchanged has at most so many stops.
+/// A stretch that is exchanged has at most this many stops.
 const KICK_LENGTH: usize = 12;
 
-/// Shorter gains do not count, mm.
+/// Gains smaller than this do not count, mm.
 const LEAST_GAIN: f64 = 1e-3;
 
 /// A short tour through all stops.
 pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
-    // Too few for exchanges.
+    // Three stops are too few for exchanges: find the optimum.
     let start = if stops.len() <= 3 { exact::tour(stops, ends) } else { nearest::tour(stops, ends) };
     let mut search = Search::new(stops, ends, start);
     let mut queue: Vec<usize> = (0..stops.len()).collect();
@@ -90,7 +91,7 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Whether the second place comes right behind the first.
+    /// Whether place `j` comes right after place `i`.
     fn follows(&self, i: usize, j: usize) -> bool {
         i + 1 == j || (self.ends == Ends::Closed && i + 1 == self.tour.len() && j == 0)
     }
@@ -145,7 +146,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Stops at some places and beside them.
+    /// The stops at some places and next to them.
     fn around<const N: usize>(&self, places: [usize; N]) -> Vec<usize> {
         let last = self.tour.len() - 1;
         let beside = places.into_iter().flat_map(|i| [i.saturating_sub(1), i, (i + 1).min(last)]);
@@ -190,7 +191,7 @@ impl<'a> Search<'a> {
         self.number(i, j + 1);
     }
 
-    /// What the tour is shorter without `length` stops from place `i` on, mm.
+    /// How much shorter the tour is without the `length` stops from place `i` on, mm.
     fn freed(&self, i: usize, length: usize) -> f64 {
         let (n, j) = (self.tour.len(), i + length - 1);
         if j >= n || length >= n {
@@ -200,7 +201,7 @@ impl<'a> Search<'a> {
         gap(before, Some(self.tour[i].enter)) + gap(Some(self.tour[j].leave), after) - gap(before, after)
     }
 
-    /// Takes `length` stops from place `i` on and puts them before or behind the stop at place `to`.
+    /// Moves the `length` stops from place `i` on to before or after the stop at place `to`, if that shortens the tour.
     fn relocate(&mut self, i: usize, length: usize, to: usize, freed: f64) -> Option<(f64, Vec<usize>)> {
         let j = i + length - 1;
         if (i..=j).contains(&to) {
@@ -227,7 +228,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Where a stretch is best entered and left between two points, and whether it runs backwards then.
+    /// How a stretch is best entered and left between two points, and whether it is then reversed.
     fn best_stretch(&self, i: usize, j: usize, from: Option<DVec2>, into: Option<DVec2>) -> (Gate, bool) {
         if i == j {
             return (self.best_gate(self.tour[i].stop, from, into), false);
@@ -260,7 +261,7 @@ impl<'a> Search<'a> {
         self.around([i.min(last), j.min(last), place, place + length - 1])
     }
 
-    /// Exchanges neighbouring stretches at random, mends the tour around their ends, and undoes what is longer.
+    /// Exchanges neighbouring stretches at random, repairs the tour at their ends, and undoes what does not shorten it.
     fn kick(&mut self) {
         let n = self.tour.len();
         if n < 4 {
@@ -344,7 +345,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Starts of closed passes move along their edges, one after another, until they rest.
+    /// Starts of closed passes move along their edges, one after another, until they settle.
     fn slide_starts(&mut self) {
         const MOST_ROUNDS: usize = 20;
         for _ in 0..MOST_ROUNDS {
@@ -368,7 +369,7 @@ impl<'a> Search<'a> {
 
 /// For each stop the stops whose gates lie nearest to its own, with the distance.
 fn near(stops: &[Stop]) -> Vec<Vec<(f64, usize)>> {
-    /// Gates of the stop itself come first; no more than so many gates around each are looked at.
+    /// The gates of the stop itself come first; at most this many gates around each are looked at.
     const MOST_LOOKED_AT: usize = 64;
     let points = |s: usize| stops[s].gates().map(|g| [g.enter.x, g.enter.y]);
     let all = (0..stops.len()).flat_map(|s| points(s).map(move |p| GeomWithData::new(p, s)));

@@ -3,7 +3,7 @@
 //! Islands are finished one after another, the stages of an island in their order. Within a stage, and among the
 //! islands, the order and the start points are chosen together so that the torch travels little: a travelling
 //! salesman who may enter every town at any of its gates. An open pass has two gates; a closed one may begin at any
-//! point, also in the middle of an edge.
+//! point, even in the middle of an edge.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -12,7 +12,7 @@
 //! | [`ant_colony`] | the ant colony of Han et al. 2018 (2.2) |
 //! | [`local_search`] | 2-opt, Or-opt and start points together; the default |
 //! | [`exact`] | the optimum by dynamic programming, for few stops |
-//! | `direction` | the other way round on every second layer |
+//! | `direction` | passes reversed on every second layer |
 
 pub mod ant_colony;
 mod direction;
@@ -63,14 +63,14 @@ impl Method {
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Seam {
-    /// Wherever the way there is short, or where the strategy put it.
+    /// Wherever the travel to it is short, or where the strategy put it.
     #[default]
     Nearest,
-    /// On every layer at the same place, the rearmost (greatest y), where it can be dressed.
+    /// At the same place on every layer, the rearmost (greatest y), where it can be dressed.
     Aligned,
     /// Two bead widths further on every layer.
     Rotate,
-    /// As far as can be from the seams of the layers below: by the golden section of the length on every layer.
+    /// As far as possible from the seams of the layers below: moved on each layer by the golden section of the length.
     Spread,
 }
 
@@ -92,7 +92,7 @@ pub struct OrderSettings {
 impl OrderSettings {
     /// Where a closed pass must begin; `None` where the order may choose.
     fn seam_of(&self, pass: &Path) -> Option<DVec2> {
-        /// What remains of 1 after the golden section: multiples of it spread evenly.
+        /// One minus the golden section: its multiples spread evenly.
         const GOLDEN: f64 = 0.381_966_011_250_105;
         if !pass.closed || self.seam == Seam::Nearest {
             return None;
@@ -109,14 +109,13 @@ impl OrderSettings {
         planar::polyline::point_at(&path, at.rem_euclid(length.max(f64::MIN_POSITIVE)))
     }
 
-    /// The stop that a pass is, with its seam where it must be.
+    /// The pass as a stop, with its seam fixed where it must be.
     fn stop(&self, pass: &Path) -> Stop {
         self.seam_of(pass).map_or_else(|| Stop::of(pass), |seam| Stop::anywhere([seam]))
     }
 }
 
-/// Puts the passes of a layer in order. `torch` is where the torch stands before and after; without one it counts as
-/// standing in the origin.
+/// Puts the passes of a layer in order. `torch` is where the torch stands before and after (`None`: the origin).
 pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Path> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
     direction::settle_open(&mut islands, settings);
@@ -166,7 +165,7 @@ fn begin_at_seam(pass: Path, settings: &OrderSettings) -> Path {
     }
 }
 
-/// The pass, begun at that point of it.
+/// The pass, starting at the given point of it.
 pub fn begin_at(mut pass: Path, start: DVec2) -> Path {
     if pass.closed {
         let index = vertex_at(&mut pass, start);

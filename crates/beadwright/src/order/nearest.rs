@@ -15,9 +15,9 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     tour
 }
 
-/// For every gate of every stop as the seed, the walk to the nearest gate of a stop not yet visited; the shortest of
-/// these closed tours is kept. A curved ring begins where the line from its middle (its pseudo-vertex) to the place
-/// before meets it.
+/// Walks from every gate of every stop, always on to the nearest gate of a stop not yet visited, and keeps the shortest
+/// of these closed tours. A curved ring begins where the line from its middle (its pseudo-vertex) to the previous place
+/// meets it.
 pub fn improved(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     let curves: Vec<Option<DVec2>> = stops.iter().map(pseudo_vertex).collect();
     let mut best: Option<(f64, Vec<Visit>)> = None;
@@ -62,7 +62,7 @@ fn pseudo_vertex(stop: &Stop) -> Option<DVec2> {
     }
 }
 
-/// Where the line from the pseudo-vertex to the place before meets the ring.
+/// Where the line from the pseudo-vertex to the previous place meets the ring.
 fn meeting(stop: &Stop, middle: DVec2, before: DVec2) -> Gate {
     let Stop::Ring { path, .. } = stop else { return stop.best_gate(Some(before), None) };
     let way = before - middle;

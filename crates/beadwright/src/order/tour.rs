@@ -1,9 +1,10 @@
-//! Stops, gates and tours: a travelling salesman's problem in which every town has several gates.
+//! Stops, gates and tours: a travelling salesman problem in which every town has several gates.
 
 use crate::fill::Path;
 use glam::DVec2;
 
-/// Most vertices of a closed pass at which the search lets it begin; in the end its start moves along the whole path.
+/// The search lets a closed pass begin at no more than this many of its vertices; in the end its start moves along the
+/// whole path.
 const MOST_GATES: usize = 48;
 
 /// Where a stop is entered and left.
@@ -20,7 +21,7 @@ impl Gate {
         Self { enter: point, leave: point }
     }
 
-    /// The other way round.
+    /// Entry and exit swapped.
     pub fn flipped(self) -> Self {
         Self { enter: self.leave, leave: self.enter }
     }
@@ -38,7 +39,7 @@ pub enum Stop {
     },
     /// Entered at one end and left at the other.
     Line {
-        /// As it stands.
+        /// Entry and exit in its own direction.
         gate: Gate,
         /// Whether it may be laid from its end to its start.
         reversible: bool,
@@ -78,7 +79,7 @@ pub enum Ends {
 }
 
 impl Stop {
-    /// The stop that a pass is.
+    /// A pass as a stop.
     pub fn of(pass: &Path) -> Self {
         let first = pass.points.first().copied().unwrap_or_default();
         if pass.closed {
@@ -141,7 +142,7 @@ fn thinned(path: &[DVec2]) -> Vec<DVec2> {
     (0..MOST_GATES).map(|k| path[(k as f64 * count / MOST_GATES as f64) as usize]).collect()
 }
 
-/// Distance between two places; none where one is free.
+/// Distance between two places, mm; 0 where either is free.
 pub fn gap(from: Option<DVec2>, to: Option<DVec2>) -> f64 {
     from.zip(to).map_or(0.0, |(a, b)| a.distance(b))
 }
@@ -167,7 +168,7 @@ fn turning_point(a: DVec2, b: DVec2, from: DVec2, to: DVec2) -> DVec2 {
     a + along * t.clamp(0.0, length)
 }
 
-/// Length of all ways between the stops of a tour, mm.
+/// Length of all travels of a tour, mm.
 pub fn length(tour: &[Visit], ends: Ends) -> f64 {
     let between: f64 = tour.windows(2).map(|w| w[0].leave.distance(w[1].enter)).sum();
     let (Some(first), Some(last)) = (tour.first(), tour.last()) else { return 0.0 };

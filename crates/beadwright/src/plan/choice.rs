@@ -11,16 +11,16 @@ use planar::{Join, Region};
 pub struct Choice {
     /// With the chosen strategy.
     pub profile: Profile,
-    /// Why it is another than the profile's, as a sentence.
+    /// Why the strategy differs from the profile's, as a sentence.
     pub note: Option<String>,
 }
 
-/// A part is looked at in so many heights.
+/// Number of heights at which a part is looked at.
 const HEIGHTS: usize = 15;
-/// Up to this part of the area there may be room for two beads: where thin walls meet they are thicker.
+/// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
 
-/// Chooses. Curves are always welded by the strategy for walls; a part is where the profile says `loop` and all of the
+/// Chooses the strategy. Curves are always welded with `wall`. A solid is too, if the profile says `loop` and the whole
 /// part is thin wall, unless the strategy is to be `kept`.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! A slice with its passes, and what a bead cannot reach of it.
+//! A slice with its passes, and the places in it that a bead cannot reach.
 
 use super::scan_lines::Planned;
 use crate::fill::{Fill, FillSettings, Path, Strategy};
@@ -35,7 +35,7 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         }
         let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
         if reached > 0.0 && fill.stages.iter().all(Vec::is_empty) {
-            // Wide enough for a bead, but neither a ring nor a wall.
+            // Wide enough for a bead, but with room for neither a ring nor a wall.
             let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
             let (kind, size) = (WarningKind::IslandTooSmall, island.area());
             slice.warnings.push(Warning { kind, layer: slice.index, place, size });
@@ -51,7 +51,7 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
     Filled { slice, fills, planned_area }
 }
 
-/// Leaves out passes that are too short to weld, and tells so.
+/// Leaves out passes that are too short to weld, with a warning.
 pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize, warnings: &mut Vec<Warning>) {
     let (shortest, soonest) = (profile.fill.min_pass_length, profile.soonest_arc_end());
     stage.retain(|pass| {
@@ -81,12 +81,12 @@ fn arc_time(pass: &Path, profile: &Profile) -> f64 {
 /// A feature is reported from this area on, in squared bead widths.
 const THIN_FEATURE: f64 = 0.25;
 
-/// Area of an island that a bead of that width can reach without leaving it, mm²; warns of what it cannot reach.
+/// Area of an island that a bead of the given width can reach without leaving it, mm²; warns of places it cannot reach.
 ///
-/// That area is the opening of the island by a disc of the bead's width. With C the outermost centre-lines and r
-/// half a width it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is connected like the
-/// island; where C has come apart at a neck, its parts may reach the same points. So the shapes need to be computed
-/// only at necks, and where the number says that something is lost.
+/// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
+/// centre-lines and r half a width, it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is
+/// connected like the island; where C has come apart at a neck, its parts may reach the same points. So the shapes are
+/// computed only at necks, and where this figure shows that something is lost.
 fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
     let r = width / 2.0;
     let area = island.area();

@@ -7,10 +7,10 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | [`choice`] | which strategy a part is planned with |
-//! | `filled` | a slice with its passes, and what a bead cannot reach of it |
+//! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
-//! | [`preview`] | one layer before the others |
-//! | `scan_lines` | best raster angles, and what of a sparse infill is solid |
+//! | [`preview`] | one layer ahead of the others |
+//! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 pub mod choice;
 mod filled;
@@ -45,8 +45,8 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::convert::Infallible;
 
-/// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the profile has
-/// them.
+/// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
+/// profile has them.
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let ends = &profile.start_stop;
     if !ends.changes_passes() {
@@ -63,7 +63,7 @@ pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     DepositSettings::new(nominal, profile.fill.machining_allowance)
 }
 
-/// As [`deposit_settings`], with a grid that fits a part of that extent, mm.
+/// Like [`deposit_settings`], with a grid fitted to a part of the given extent, mm.
 pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> DepositSettings {
     let bounds = Bounds { min: low.truncate(), max: high.truncate() };
     deposit_settings(profile).fitted_to(&bounds, (high.z / profile.layers.height) as usize)
@@ -173,7 +173,7 @@ pub trait Sink {
 /// Keeps the layers of a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Collect {
-    /// What is the same for all layers; none before the plan begins.
+    /// What is the same for all layers; `None` before the plan begins.
     pub header: Option<Header>,
     /// The layers so far.
     pub layers: Vec<Layer>,
@@ -193,8 +193,8 @@ impl Sink for Collect {
     }
 }
 
-/// Plans a part that stands on z = 0, a solid or a wall given by curves, and keeps all layers. `name` is for files and
-/// headings.
+/// Plans a part that stands on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
+/// for files and headings.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -210,11 +210,11 @@ pub fn plan<'a>(
     Ok(Plan { header, layers: collect.layers, summary })
 }
 
-/// Plans a part and hands every layer to `sink`. The result does not depend on the number of threads: layers are filled in
-/// parallel, but ordered and handed over one after another.
+/// Plans a part and hands every layer to `sink`. The result does not depend on the number of threads: layers are filled
+/// in parallel, but ordered and handed over one after another.
 ///
 /// # Errors
-/// [`PlanError`], with what the sink failed with among them.
+/// [`PlanError`], including the sink's own errors.
 pub fn plan_into<'a, S: Sink + Send>(
     name: &str,
     part: impl Into<PartRef<'a>>,
@@ -228,10 +228,10 @@ pub fn plan_into<'a, S: Sink + Send>(
     }
 }
 
-/// Plans a solid with a strategy of one's own, whatever the profile says, and hands every layer to `sink`.
+/// Plans a solid with a given strategy, whatever the profile says, and hands every layer to `sink`.
 ///
 /// # Errors
-/// [`PlanError`], with what the sink failed with among them.
+/// [`PlanError`], including the sink's own errors.
 pub fn plan_with<S: Sink + Send>(
     name: &str,
     mesh: &Mesh,
@@ -284,7 +284,7 @@ fn slabs_of<E>(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>,
     })
 }
 
-/// One bead thick, up to a height, mm.
+/// Plans a wall one bead thick along curves, up to `height` (mm).
 fn plan_curves<S: Sink + Send>(
     name: &str,
     curves: &WallCurves,
@@ -339,7 +339,7 @@ fn run<S: Sink + Send>(
     Ok(Summary { metrics, warnings, notes: profile.notes() })
 }
 
-/// The centre-lines of a layer as passes; what they cover stands for the slice.
+/// The centre-lines of a layer as passes; the area they cover stands in for the slice.
 fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
     let (settings, width) = (profile.fill_settings(index), profile.bead.width);
     let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
@@ -365,7 +365,7 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     Filled { slice, fills: vec![fill], planned_area }
 }
 
-/// Round ends of what a curve covers are this exact, mm.
+/// Accuracy of the round ends of the area that a curve covers, mm.
 const COVER_TOLERANCE_MM: f64 = 0.02;
 
 fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
@@ -400,7 +400,7 @@ impl<S: Sink> Emitter<'_, S> {
             kind: path.kind,
             closed: path.closed,
             points: path.points.into_iter().map(|p| p.extend(z)).collect(),
-            // The wire feed stays: a wider bead is laid more slowly.
+            // The wire feed stays the same: a wider bead is laid more slowly.
             pace: path.width.map(|width| pace * law.pace(&nominal, width)),
             width: path.width,
         };

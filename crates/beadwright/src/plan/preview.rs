@@ -1,4 +1,4 @@
-//! One layer before the others: what a person looks at while the rest is planned.
+//! One layer ahead of the others, to look at while the rest is planned.
 
 use super::filled::{Filled, fill_planned};
 use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_of, strategy_of, weld_curves};
@@ -57,7 +57,7 @@ struct Window<'a> {
     slabs: &'a [Slab],
 }
 
-/// The layers that a layer's fill depends on. It begins at an even layer, since best angles belong to pairs.
+/// The layers that a layer's fill depends on. They begin at an even layer, since best angles are chosen for pairs.
 fn window<'a>(slabs: &'a [Slab], index: usize, profile: &Profile) -> Window<'a> {
     let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best);
     let solid = if profile.fill.infill_density < 1.0 { profile.fill.solid_layers as usize } else { 0 };

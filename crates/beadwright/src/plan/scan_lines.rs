@@ -1,4 +1,4 @@
-//! What the scan lines of a layer depend on beside its own islands: the layer it is paired with, and what lies above
+//! What the scan lines of a layer depend on besides its own islands: the layer it is paired with, and the layers above
 //! and below.
 
 use crate::fill::{self, Strategy};
@@ -9,7 +9,7 @@ use planar::{Join, Polygon, Region};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// A slice, and what its fill depends on beside it.
+/// A slice, and what its fill depends on besides the slice itself.
 pub(super) struct Planned {
     pub(super) slice: Slice,
     /// The best raster angle, radians, where the profile asks for it.
@@ -75,7 +75,7 @@ fn solid_regions(
         }
         let near = (own - reach..=own + reach).filter(|&other| other != own);
         let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
-        // Solid infill holds on to the sparse infill around it.
+        // Grown, so that the solid infill holds on to the sparse infill around it.
         Some(bare.offset(2.0 * profile.bead.width, Join::ROUND))
     };
     Ok((0..slices.len()).into_par_iter().map(solid).collect())

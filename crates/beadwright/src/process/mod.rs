@@ -1,4 +1,4 @@
-//! The process: wire, arc, speed, gas, moves without arc, and how passes begin and end; sections of a profile.
+//! The process: wire, arc, speed, gas, moves with the arc off, and how passes begin and end; sections of a profile.
 
 mod start_stop;
 
@@ -21,7 +21,7 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// What the numbers can be.
+    /// The limits of the numbers.
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
             "wire.diameter": self.diameter, 0.1, 10.0, "mm",
@@ -40,45 +40,46 @@ pub struct Process {
     pub wire_feed_speed: f64,
     /// Speed of the torch while the arc burns, mm/s.
     pub deposition_speed: f64,
-    /// What changes where a bead is wider or narrower than nominal, or hotter: `speed` of the torch, or `wire-feed`;
-    /// default speed.
+    /// What changes where a bead is wider, narrower or hotter than nominal: the `speed` of the torch or the
+    /// `wire-feed`; default speed.
     #[serde(default)]
     pub follow: Follow,
-    /// Part of the wire that ends in the bead, 0 to 1.
+    /// Fraction of the wire that ends up in the bead, 0 to 1.
     pub efficiency: f64,
     /// Arc current, A; optional, for the heat input.
     pub current: Option<f64>,
     /// Arc voltage, V; optional, for the heat input.
     pub voltage: Option<f64>,
-    /// Wait after the arc is on before the torch moves, s.
+    /// Time the torch waits after the arc is switched on before it moves, s.
     pub arc_start_delay: f64,
-    /// Wait after the arc is off before the torch leaves, s.
+    /// Time the torch waits after the arc is switched off before it leaves, s.
     pub arc_end_delay: f64,
     /// Shielding gas, for the report.
     pub gas: String,
     /// Gas flow, L/min.
     pub gas_flow: f64,
-    /// Gas before the arc, s.
+    /// Time for which gas flows before the arc is switched on, s.
     pub gas_preflow: f64,
-    /// Gas after the arc, s.
+    /// Time for which gas flows after the arc is switched off, s.
     pub gas_postflow: f64,
     /// Contact tip to work distance, mm.
     pub ctwd: f64,
 }
 
 impl Process {
-    /// What the numbers can be.
+    /// The limits of the numbers.
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
-            "process.wire_feed_speed": self.wire_feed_speed, TINY, 100.0, "m/min", "wire feeders end at about 30 m/min";
+            "process.wire_feed_speed": self.wire_feed_speed, TINY, 100.0, "m/min",
+                "wire feeders reach about 30 m/min at most";
             "process.deposition_speed": self.deposition_speed, TINY, 2000.0, "mm/s",
-                "without speed there is no bead; printers end at some hundred mm/s";
-            "process.efficiency": self.efficiency, 0.01, 1.0, "of the wire",
-                "no more metal can be laid than wire is fed";
+                "without speed there is no bead; printers reach a few hundred mm/s";
+            "process.efficiency": self.efficiency, 0.01, 1.0, "(fraction of the wire)",
+                "no more metal can be laid than is fed as wire";
             "process.arc_start_delay": self.arc_start_delay, 0.0, 60.0, "s",
-                "standing longer with the arc on burns through";
+                "standing still longer with the arc on burns through";
             "process.arc_end_delay": self.arc_end_delay, 0.0, 60.0, "s",
-                "standing longer with the arc on burns through";
+                "standing still longer with the arc on burns through";
             "process.gas_flow": self.gas_flow, 0.0, 200.0, "L/min",
                 "above 25 L/min the flow becomes turbulent and draws air in";
             "process.gas_preflow": self.gas_preflow, 0.0, 60.0, "s",
@@ -87,14 +88,15 @@ impl Process {
                 "a minute covers the coldest start; more only costs gas";
             "process.ctwd": self.ctwd, 0.0, 100.0, "mm", "beyond 30 mm the gas no longer covers the arc";
             "process.current": self.current.unwrap_or(1.0), TINY, 2000.0, "A",
-                "no power source of the trade gives more";
-            "process.voltage": self.voltage.unwrap_or(1.0), TINY, 500.0, "V", "no power source of the trade gives more";
+                "no power source on the market delivers more";
+            "process.voltage": self.voltage.unwrap_or(1.0), TINY, 500.0, "V",
+                "no power source on the market delivers more";
         }
     }
 }
 
 impl Process {
-    /// Speed of the torch at a pace of the metal, mm/s.
+    /// Speed of the torch at a given pace of the metal, mm/s.
     pub fn speed_at(&self, pace: f64) -> f64 {
         match self.follow {
             Follow::Speed => pace,
@@ -102,7 +104,7 @@ impl Process {
         }
     }
 
-    /// Wire feed at a pace of the metal (mm/s), of the nominal one.
+    /// Wire feed at a given pace of the metal (mm/s), as a multiple of the nominal wire feed.
     pub fn feed_at(&self, pace: f64) -> f64 {
         match self.follow {
             Follow::Speed => 1.0,
@@ -110,42 +112,42 @@ impl Process {
         }
     }
 
-    /// Heat per length of bead at a pace of the metal, J/mm: current × voltage / pace. It grows with the metal whichever
-    /// of the two follows, since current follows the wire in the arcs that are used here (synergic lines, CMT). `None`
-    /// where current or voltage are not given.
+    /// Heat per length of bead at a given pace of the metal, J/mm: current × voltage / pace. It grows with the metal
+    /// whether the speed or the wire feed changes, since the current follows the wire feed in the arcs used here
+    /// (synergic lines, CMT). `None` if current or voltage is not given.
     pub fn heat_at(&self, pace: f64) -> Option<f64> {
         Some(self.current? * self.voltage? / pace)
     }
 }
 
-/// What keeps the metal of a bead in balance where it is not the nominal one.
+/// What keeps the metal of a bead in balance where it differs from the nominal bead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Follow {
-    /// The torch goes slower or faster; the wire comes at its nominal speed.
+    /// The torch moves slower or faster; the wire is fed at its nominal speed.
     #[default]
     Speed,
-    /// The wire comes faster or slower; the torch goes at its nominal speed.
+    /// The wire is fed faster or slower; the torch moves at its nominal speed.
     WireFeed,
 }
 
-/// Moves without arc.
+/// Moves with the arc off.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Travel {
-    /// Speed, mm/s.
+    /// Speed of the moves, mm/s.
     pub speed: f64,
-    /// Height of the move above the layer, mm.
+    /// Height of the moves above the layer, mm.
     pub clearance: f64,
 }
 
 impl Travel {
-    /// What the numbers can be.
+    /// The limits of the numbers.
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
-            "travel.speed": self.speed, TINY, 3000.0, "mm/s", "robots end at 2 to 3 m/s";
+            "travel.speed": self.speed, TINY, 3000.0, "mm/s", "robots reach 2 to 3 m/s at most";
             "travel.clearance": self.clearance, 0.0, 1000.0, "mm", "below 0 the torch would run into the part";
         }
     }

@@ -4,7 +4,7 @@ use crate::bead::{Law, Section};
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// The single bead.
+/// Shape of a single bead.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -16,18 +16,19 @@ pub struct BeadSection {
     /// Cross-section: `parabola`, `ellipse`, or `stadium` for the flat beads of printers; default parabola.
     #[serde(default)]
     pub section: Section,
-    /// How the height follows the width at a constant wire feed: `constant-height`, `constant-ratio`, or measured beads as
-    /// `{ library = [[width, height], …] }` in mm; default constant-height.
+    /// How a bead's height changes with its width at a constant wire feed: `constant-height`, `constant-ratio`, or
+    /// measured beads as `{ library = [[width, height], …] }` in mm; default constant-height.
     #[serde(default)]
     pub law: Law,
 }
 
 impl BeadSection {
-    /// What the numbers can be.
+    /// The limits of the numbers.
     pub(super) fn limits(&self) -> Vec<Limit> {
         limits! {
-            "bead.width": self.width, 0.05, 100.0, "mm", "from a printer's line to the widest weave";
-            "bead.height": self.height, 0.01, 50.0, "mm", "a bead that is higher than wide falls over";
+            "bead.width": self.width, 0.05, 100.0, "mm",
+                "this covers everything from a printer's line to the widest weave";
+            "bead.height": self.height, 0.01, 50.0, "mm", "a bead that is higher than it is wide falls over";
         }
     }
 }

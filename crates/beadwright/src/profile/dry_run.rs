@@ -3,8 +3,9 @@
 use super::Profile;
 
 impl Profile {
-    /// The profile for programs that only move: the same ways at the same speeds, but arc, gas and wire never on. The
-    /// lines that light and end the arc are left out; `start`, `layer_start`, `header`, `end` and `footer` stay.
+    /// The profile for programs that only move: the same paths at the same speeds, but with arc, gas and wire always
+    /// off. The lines that strike and end the arc are left out; `start`, `layer_start`, `header`, `end` and `footer`
+    /// stay.
     pub fn dry_run(mut self) -> Self {
         self.dry_run = true;
         self.name.push_str(", DRY RUN");

@@ -1,13 +1,13 @@
-//! Values laid over the text of a profile; comments and order of the text stay.
+//! Changes values in the text of a profile; its comments and its order are kept.
 
 use super::{Profile, ProfileError};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-/// The text of a profile with one more value, such as `45` for `fill.raster_angle`; a value that is no TOML is taken as text.
-/// Nothing is checked but that the key can stand there: [`Profile::parse`] does that.
+/// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is taken as
+/// text. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
 ///
 /// # Errors
-/// [`ProfileError::Key`] for a key within a value, [`ProfileError::Text`] when the text is no TOML.
+/// [`ProfileError::Key`] for a key inside a value that is not a table, [`ProfileError::Text`] if the text is not TOML.
 pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileError> {
     let mut document = document(text)?;
     let mut value: Value = value.trim().parse().unwrap_or_else(|_| value.trim().into());
@@ -19,7 +19,7 @@ pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileE
         let missing = if i + 1 < parts.len() { Item::Table(Table::new()) } else { Item::None };
         item = table.entry(part).or_insert(missing);
     }
-    // What stands behind the old value, a comment as a rule, stays behind the new one.
+    // What follows the old value, usually a comment, is kept after the new one.
     if let Some(old) = item.as_value() {
         *value.decor_mut() = old.decor().clone();
     }
@@ -27,10 +27,10 @@ pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileE
     Ok(document.to_string())
 }
 
-/// The text of a profile without a value, so that its default holds.
+/// The text of a profile with a value removed, so that its default applies.
 ///
 /// # Errors
-/// [`ProfileError::Text`] when the text is no TOML.
+/// [`ProfileError::Text`] if the text is not TOML.
 pub fn without_value(text: &str, key: &str) -> Result<String, ProfileError> {
     let mut document = document(text)?;
     let (section, name) = key.rsplit_once('.').unwrap_or(("", key));

@@ -1,4 +1,4 @@
-//! What values can be: the rows of all sections, and the few rules that tie keys together.
+//! The limits of values: the rows of all sections, and the few rules that tie keys together.
 
 use super::Profile;
 use crate::dialect::{self, PLACEHOLDERS};

@@ -1,7 +1,7 @@
-//! Profiles: everything that belongs to a process, a material and a cell, as a TOML file people can edit.
+//! Profiles: everything that belongs to a process, a material and a cell, as a TOML file that people can edit.
 //!
-//! There are no hidden process values: every key below [`Profile`] must stand in the file, except those marked
-//! optional. Unknown keys and impossible values are refused with their line (`read.rs`, `limits.rs`).
+//! There are no hidden process values: every key below [`Profile`] must be in the file, except those marked optional.
+//! Unknown keys and impossible values are refused with their line number (`read.rs`, `limits.rs`).
 
 mod bead;
 mod check;
@@ -59,9 +59,9 @@ pub const BUILT_IN: [(&str, &str); 5] = [
 pub struct Profile {
     /// Name by which the profile is chosen.
     pub name: String,
-    /// One line for lists.
+    /// One-line description for lists.
     pub description: String,
-    /// Dialects written when none is asked for: `krl`, `gcode`, `marlin`, `rapid`, `fanuc`, `inform`, `urscript`.
+    /// Names of the dialects in which programs are written if none is requested, such as `krl`.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
@@ -76,10 +76,10 @@ pub struct Profile {
     /// Thresholds of the strategy `hybrid`; optional.
     #[serde(default)]
     pub hybrid: HybridSection,
-    /// How the strategy `loop` lays; optional.
+    /// How the strategy `loop` lays beads; optional.
     #[serde(default, rename = "loop")]
     pub one_loop: LoopSection,
-    /// How the strategy `wall` lays; optional.
+    /// How the strategy `wall` lays beads; optional.
     #[serde(default)]
     pub wall: WallSection,
     /// Order of passes; optional.
@@ -91,7 +91,7 @@ pub struct Profile {
     /// Limits of `beadwright check`; optional.
     #[serde(default)]
     pub check: CheckLimits,
-    /// Moves without arc.
+    /// Moves with the arc off.
     pub travel: Travel,
     /// How paths become moves of a program; optional.
     #[serde(default)]
@@ -99,13 +99,13 @@ pub struct Profile {
     /// How passes begin and end, and how long layers wait; optional.
     #[serde(default)]
     pub start_stop: StartStop,
-    /// Acceleration, for machines whose time depends on it; optional.
+    /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
-    /// What the dialects need; each has a section of its own.
+    /// Settings of the dialects; each has a section of its own.
     #[serde(flatten, skip_deserializing)]
     #[cfg_attr(feature = "schema", schemars(!skip_deserializing))]
     pub dialects: Sections,
-    /// Whether programs only move: a way of writing them, no value of the file.
+    /// Whether programs only move the torch: a way of writing them, not a value in the file.
     #[serde(skip)]
     dry_run: bool,
 }
@@ -142,7 +142,7 @@ impl Profile {
         schemars::schema_for!(Self).to_value()
     }
 
-    /// What the numbers of this profile can be, for forms.
+    /// The limits of this profile's numbers, for forms.
     pub fn limits(&self) -> Vec<Limit> {
         limits::limits(self)
     }
@@ -153,10 +153,10 @@ impl Profile {
         Bead { width, height, section }
     }
 
-    /// The wall whose heights tell where the layers lie; `None` where they are one thickness apart.
+    /// The wall whose heights determine where the layers lie; `None` where they are one thickness apart.
     ///
     /// # Errors
-    /// [`WallError`] for a bead of which no wall can be foretold.
+    /// [`WallError`] for a bead from which no wall can be predicted.
     pub fn wall_bead(&self) -> Result<Option<WallBead>, WallError> {
         let foretold = match self.layers.foretell {
             Foretell::Auto => self.fill.strategy == "wall",
@@ -174,7 +174,7 @@ impl Profile {
         }
     }
 
-    /// Wire against bead.
+    /// Balance of the wire fed and the bead laid.
     pub fn mass_balance(&self) -> MassBalance {
         let Process { wire_feed_speed, efficiency, deposition_speed, .. } = self.process;
         MassBalance::new(self.bead(), wire_feed_speed, self.wire.diameter, efficiency, deposition_speed)
@@ -222,8 +222,8 @@ impl Profile {
         }
     }
 
-    /// A pass that is over sooner than this, s, is over before its arc is steady. Where the hybrid follows its paper to the
-    /// letter it lays such passes all the same.
+    /// A pass that takes less time than this, s, ends before its arc is steady. A hybrid that follows its paper to the
+    /// letter lays such passes all the same.
     pub fn soonest_arc_end(&self) -> f64 {
         if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
     }
@@ -234,19 +234,19 @@ impl Profile {
         OrderSettings { method, seam, alternate, layer, bead_width: self.bead.width }
     }
 
-    /// What welding takes.
+    /// Settings for welding.
     pub fn weld_settings(&self) -> WeldSettings {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
         WeldSettings { process, ends, travel: self.travel.clone(), motion: self.motion }
     }
 
-    /// Makes the instructions of layers.
+    /// The programmer that makes the instructions of layers.
     pub fn programmer(&self) -> Programmer {
         Programmer::of(&self.weld_settings(), &self.program, self.dry_run)
     }
 
-    /// What a program of a part needs besides its layers. In a dry run the part's name says so, in front, since long names
-    /// lose their end.
+    /// What a program of a part needs besides its layers. In a dry run the part's name says so at its beginning, since
+    /// long names are cut off at the end.
     pub fn job(&self, part: &str) -> Job<'_> {
         Job {
             part: if self.dry_run { format!("dry_{part}") } else { part.to_owned() },
@@ -261,7 +261,7 @@ impl Profile {
         }
     }
 
-    /// What does not fit together although every value is possible, as sentences.
+    /// Values that are possible but do not fit together, as sentences.
     pub fn notes(&self) -> Vec<String> {
         let rise = self.bead().rise(self.stepover());
         let height = self.layers.height;

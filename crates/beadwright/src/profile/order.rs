@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OrderSection {
-    /// How order and start points are found: `nearest`, `improved-nearest`, `ant-colony`, `local-search` or `exact`;
-    /// default local-search.
+    /// How the order and the start points of passes are found: `nearest`, `improved-nearest`, `ant-colony`,
+    /// `local-search` or `exact`; default local-search.
     pub method: Method,
-    /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further on every layer) or `spread` (as far
-    /// as can be from the seams below); default nearest.
+    /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further along on each layer) or
+    /// `spread` (as far as possible from the seams below); default nearest.
     pub seam: Seam,
-    /// Whether passes run the other way on every second layer, so that ends come to lie over starts: closed passes turn
-    /// round, open ones begin at their left end on one layer (least x, then least y) and at their right end on the next;
-    /// default false.
+    /// Whether passes run in the opposite direction on every second layer, so that ends lie over starts: closed passes
+    /// are reversed; open ones begin at their left end (least x, then least y) on one layer and at their right end on
+    /// the next; default false.
     pub alternate: bool,
 }

@@ -1,4 +1,4 @@
-//! TOML text to [`Profile`], and errors that name the line and the nearest valid word.
+//! Reads TOML text into a [`Profile`], with errors that name the line and the nearest valid word.
 
 use super::{BUILT_IN, Profile, limits};
 use crate::dialect::{self, Sections};
@@ -14,7 +14,7 @@ pub enum ProfileError {
     /// No built-in profile has that name.
     #[error("there is no built-in profile \"{name}\". {hint}")]
     UnknownName {
-        /// What was asked for.
+        /// The name requested.
         name: String,
         /// The nearest name, or all of them.
         hint: String,
@@ -27,16 +27,16 @@ pub enum ProfileError {
         /// What is wrong and what would be right.
         reason: String,
     },
-    /// A value that cannot be.
+    /// An impossible value.
     #[error("line {line} of the profile: {key} = {value} is impossible: {reason}")]
     Value {
         /// Line number, from 1.
         line: usize,
         /// Full key, such as `bead.width`.
         key: String,
-        /// The value as it stands there.
+        /// The value as written there.
         value: String,
-        /// The range, the unit and why.
+        /// The range, the unit and the reason.
         reason: String,
     },
     /// A key that no profile has.
@@ -45,12 +45,12 @@ pub enum ProfileError {
         /// The key.
         key: String,
     },
-    /// The file cannot be read; made by callers, since the library does no I/O.
+    /// The file cannot be read; created by callers, since the library does no I/O.
     #[error("the profile {path} cannot be read: {reason}")]
     File {
         /// The path.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the system.
         reason: String,
     },
 }
@@ -68,7 +68,7 @@ pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
     }
 }
 
-/// The sections of dialects are taken out and read by themselves, so that a profile does not know them one by one.
+/// The sections of dialects are taken out and read separately, so that a profile need not know each of them.
 fn deserialize(text: &str) -> Result<Profile, toml::de::Error> {
     let mut general = DeTable::parse(text)?;
     let mut sections = Spanned::new(general.span(), DeTable::new());
@@ -90,12 +90,12 @@ pub(super) fn unknown_name(name: &str) -> ProfileError {
     ProfileError::UnknownName { name: name.to_owned(), hint }
 }
 
-/// The line, from 1, on which a byte of a text stands.
+/// The line, counted from 1, that contains a byte of a text.
 pub(crate) fn line_of(text: &str, byte: usize) -> usize {
     text[..byte.min(text.len())].matches('\n').count() + 1
 }
 
-/// The line on which a key such as `bead.width` stands.
+/// The line that contains a key such as `bead.width`.
 pub(crate) fn line_of_key(text: &str, key: &str) -> usize {
     let Ok(root) = toml::de::DeTable::parse(text) else { return 1 };
     let (mut table, mut at) = (Some(root.get_ref()), 0);
@@ -107,7 +107,7 @@ pub(crate) fn line_of_key(text: &str, key: &str) -> usize {
     line_of(text, at)
 }
 
-/// Makes a sentence of the parser's message and finds the nearest word among those it expected.
+/// Turns the parser's message into a sentence and finds the nearest of the words it expected.
 pub(crate) fn explain(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
@@ -125,7 +125,7 @@ pub(crate) fn explain(message: &str) -> String {
     format!("{message}.")
 }
 
-/// The most similar of the known words, if it is similar at all.
+/// The most similar of the known words, if any is similar enough.
 pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let scored = known.into_iter().map(|k| (strsim::jaro_winkler(word, k), k));
     scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)

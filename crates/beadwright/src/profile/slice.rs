@@ -3,14 +3,14 @@
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// Tolerances of slicing.
+/// Slicing tolerances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceSection {
     /// Widest gap in an open contour that is bridged, mm; default 0.5.
     pub close_gap: f64,
-    /// Contour vertices within this distance of the remaining line are dropped, mm; default 0.01.
+    /// Contour vertices closer than this to the simplified line are dropped, mm; default 0.01.
     pub simplify: f64,
 }
 
@@ -21,12 +21,12 @@ impl Default for SliceSection {
 }
 
 impl SliceSection {
-    /// What the numbers can be; some depend on the width of a bead, mm.
+    /// The limits of the numbers; some depend on the bead width `w`, mm.
     pub(super) fn limits(&self, w: f64) -> Vec<Limit> {
         limits! {
-            "slice.close_gap": self.close_gap, 0.0, 1000.0, "mm", "a wider gap is an opening, not a flaw of the file";
+            "slice.close_gap": self.close_gap, 0.0, 1000.0, "mm", "a wider gap is an opening, not a flaw in the file";
             "slice.simplify": self.simplify, 0.0, 0.2 * w, "mm (at most 0.2 bead widths)",
-                "more than a fifth of a bead would change the part";
+                "more than a fifth of a bead width would change the part";
         }
     }
 }

@@ -4,27 +4,31 @@ use crate::fill::wall::WallSettings;
 use crate::limit::{TINY, section};
 
 section! {
-    /// How the strategy `wall` lays (Li et al.); every key has a default.
+    /// How the strategy `wall` lays beads (Li et al.); every key has a default.
     WallSection "wall" {
-        /// Ends and crossings of centre-lines nearer than this are one junction, in bead widths; default 0.5.
-        junction_tolerance: f64 = 0.5, 0.01, 2.0, "bead widths", "what lies two widths apart is not one junction";
-        /// How far the path may leave the middle of the wall where it is smooth, mm; default 0.02.
-        chord_error: f64 = 0.02, TINY, 1.0, "mm", "finer than this no controller runs, coarser than 1 mm is seen";
+        /// Ends and crossings of centre-lines closer together than this become one junction, in bead widths; default
+        /// 0.5.
+        junction_tolerance: f64 = 0.5, 0.01, 2.0, "bead widths", "places two bead widths apart are not one junction";
+        /// How far the path may deviate from the middle of the wall where the wall is smooth, mm; default 0.02.
+        chord_error: f64 = 0.02, TINY, 1.0, "mm", "no controller follows a finer path, and more than 1 mm is visible";
         /// Radius of the path's corners, in bead widths; default 0.5.
         corner_radius: f64 = 0.5, 0.05, 10.0, "bead widths", "a sharp corner stops the torch; a wide one leaves the part";
-        /// How far paths that touch at a junction and turn away keep from its middle, in bead widths; default 0.4.
+        /// Distance that paths which touch at a junction and turn away keep from its middle, in bead widths; default
+        /// 0.4.
         junction_gap: f64 = 0.4, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
-        /// How far the end of a path at a junction stays away from the paths that pass there, in bead widths; default 0.4.
+        /// Gap between the end of a path at a junction and the paths that run through the junction, in bead widths;
+        /// default 0.4.
         end_gap: f64 = 0.4, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
-        /// The narrowest bead of the process, in bead widths: thinner walls are welded with it; default 0.7.
+        /// Narrowest bead of the process, in bead widths; even thinner walls are welded with it; default 0.7.
         min_width: f64 = 0.7, 0.2, 1.0, "bead widths", "narrower beads have no steady arc";
-        /// The widest bead of the process, in bead widths; default 1.4.
-        max_width: f64 = 1.4, 1.0, 3.0, "bead widths", "a bead wider than three times the nominal does not stand";
+        /// Widest bead of the process, in bead widths; default 1.4.
+        max_width: f64 = 1.4, 1.0, 3.0, "bead widths",
+            "a bead more than three times its nominal width does not hold its shape";
     }
 }
 
 impl WallSection {
-    /// In mm, for beads of that width.
+    /// In mm, for beads of width `w`.
     pub(super) fn settings(&self, w: f64) -> WallSettings {
         WallSettings {
             tolerance: self.junction_tolerance * w,

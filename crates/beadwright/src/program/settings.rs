@@ -8,42 +8,44 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProgramSettings {
-    /// How far the moves may leave the planned path so that they are fewer, mm, 0.015 or more; default 0: every point
-    /// is kept.
+    /// How far moves may deviate from the planned path so that fewer are needed, mm, 0.015 or more; default 0: every
+    /// point is kept.
     pub chord_tolerance: f64,
-    /// Whether arcs are fitted, and not straight moves only; default false.
+    /// Whether circular arcs are fitted as well as straight moves; default false.
     pub arcs: bool,
-    /// Speeds along a pass that differ by no more than this part become one, with the same time along it: fewer changes,
-    /// longer moves; default 0.
+    /// Neighbouring speeds along a pass that differ by no more than this fraction become one speed that takes the same
+    /// time, which gives fewer changes and longer moves; default 0.
     pub speed_tolerance: f64,
-    /// Least time between two points of a pass, s: nearer ones are merged where that keeps the chord tolerance, since
-    /// controllers read ahead only so fast (KRC4 interpolates every 0.012 s); default 0: none are.
+    /// Minimum time between two points of a pass, s: points that follow faster are merged where `chord_tolerance`
+    /// allows it, since controllers read ahead only so fast (KRC4 interpolates every 0.012 s); default 0: no points are
+    /// merged.
     pub min_point_time: f64,
-    /// Turn of the torch about its own axis, on top of the orientation in the robot's section, °: counter-clockwise seen from
-    /// behind the torch. Robots only; `beadwright reach` tells the best one. Default 0.
+    /// Rotation of the torch about its own axis, in addition to the orientation in the robot's section, °;
+    /// counter-clockwise as seen from behind the torch. Robots only; `beadwright reach` finds the best angle. Default
+    /// 0.
     pub torch_angle: f64,
-    /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` tells the best one. The
-    /// part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other posts refuse it.
-    /// Left out where there is no table.
+    /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` finds the best
+    /// angle. The part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other
+    /// posts refuse it. Leave it out if there is no turn table.
     pub table_angle: Option<f64>,
 }
 
 impl ProgramSettings {
-    /// What the numbers can be; some depend on the width of a bead, mm.
+    /// The limits of the numbers; some depend on the bead width `w`, mm.
     pub(crate) fn limits(&self, w: f64) -> Vec<Limit> {
         limits! {
             "program.chord_tolerance": self.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)",
-                "rounding takes 0.015 mm; more than half a bead would change the part";
-            "program.speed_tolerance": self.speed_tolerance, 0.0, 0.3, "of the speed",
+                "rounding alone takes 0.015 mm; more than half a bead width would change the part";
+            "program.speed_tolerance": self.speed_tolerance, 0.0, 0.3, "(fraction of the speed)",
                 "the bead's width follows the speed: 30 % is the width of a process window";
-            "program.min_point_time": self.min_point_time, 0.0, 1.0, "s", "beyond this the value has no meaning";
-            "program.torch_angle": self.torch_angle, -360.0, 360.0, "°", "beyond this the value has no meaning";
+            "program.min_point_time": self.min_point_time, 0.0, 1.0, "s", "values outside this range make no sense";
+            "program.torch_angle": self.torch_angle, -360.0, 360.0, "°", "values outside this range make no sense";
             "program.table_angle": self.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°",
-                "beyond this the value has no meaning";
+                "values outside this range make no sense";
         }
     }
 
-    /// What does not fit together.
+    /// Values that do not fit together.
     pub(crate) fn broken(&self) -> Option<Broken> {
         let reason = if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
             "0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move."
@@ -57,7 +59,7 @@ impl ProgramSettings {
         Some(self.broken_tolerance(reason))
     }
 
-    /// The tolerance as a value that cannot be.
+    /// The chord tolerance as an impossible value.
     pub(crate) fn broken_tolerance(&self, reason: &str) -> Broken {
         let (key, value) = ("program.chord_tolerance".to_owned(), format!("{}", self.chord_tolerance));
         Broken { key, value, reason: reason.to_owned() }

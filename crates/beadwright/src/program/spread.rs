@@ -1,12 +1,13 @@
 //! Points that follow each other faster than a controller reads them are merged.
 //!
-//! A controller interpolates every few milliseconds (KRC4: 12) and looks a few points ahead. Where points come faster it
-//! slows down, and the bead grows thick there. From each point the next one kept is the first that the torch reaches after
-//! the least time; where the path bends so much that the tolerance would be left before, the farthest that keeps it.
+//! A controller interpolates every few milliseconds (KRC4: 12) and looks a few points ahead. Where points come faster,
+//! it slows down and the bead thickens. After each point, the next one kept is the first that the torch reaches once
+//! the least time is over; where the path bends so much that the tolerance would be exceeded before that, it is the
+//! farthest point within the tolerance.
 
 use glam::DVec3;
 
-/// What a controller can take.
+/// What a controller can handle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spread {
     /// Least time between two points, s.
@@ -15,8 +16,8 @@ pub(super) struct Spread {
     pub(super) tolerance: f64,
 }
 
-/// Leaves out points of a path (places with the speed on the way to each). A merged move takes the time of its pieces, and
-/// so lays the same metal.
+/// Leaves out points of a path (positions, each with the speed of the move to it). A merged move takes as long as its
+/// pieces, and so lays the same metal.
 pub(super) fn spread(moves: &mut Vec<(DVec3, f64)>, spread: Spread) {
     let mut kept = vec![0];
     let mut start = 0;
@@ -34,7 +35,7 @@ pub(super) fn spread(moves: &mut Vec<(DVec3, f64)>, spread: Spread) {
     *moves = moves.first().copied().into_iter().chain(merged).collect();
 }
 
-/// The point that is kept behind `start`.
+/// The point that is kept after `start`.
 fn next(moves: &[(DVec3, f64)], start: usize, spread: Spread) -> usize {
     let (mut end, mut time) = (start + 1, seconds(moves, start, start + 1));
     while time < spread.time && end + 1 < moves.len() && within(moves, start, end + 1, spread.tolerance) {
@@ -48,7 +49,7 @@ fn seconds(moves: &[(DVec3, f64)], from: usize, to: usize) -> f64 {
     moves[from..=to].windows(2).map(|w| w[0].0.distance(w[1].0) / w[1].1.max(1e-9)).sum()
 }
 
-/// Whether all points between two lie so near to the straight move.
+/// Whether all points between two points lie within the tolerance of the straight move.
 fn within(moves: &[(DVec3, f64)], from: usize, to: usize, tolerance: f64) -> bool {
     let (a, b) = (moves[from].0, moves[to].0);
     let along = b - a;

@@ -1,14 +1,15 @@
-//! Welding a pass: how it begins and ends, and how long that and the ways between passes take.
+//! Welding a pass: how it begins and ends, and how long that and the travels between passes take.
 //!
-//! Totals are counted and programs are written from the same two things, so that they tell the same times:
+//! Totals are counted and programs are written from the same two modules, so that their times agree:
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `path` | a pass with its overlap, hot start and lead-out: points, and the pace to each |
 //! | `torch` | follows the torch over passes and layers: ways without arc, times, waits |
 //!
-//! The *pace* of a piece is the speed at which the nominal wire feed lays its metal, mm/s. By `process.follow` it is the
-//! speed of the torch, or it tells the wire feed while the torch keeps its nominal speed.
+//! The *pace* of a piece is the speed at which the nominal wire feed lays its metal, mm/s. Depending on
+//! `process.follow`, it is the speed of the torch, or it determines the wire feed while the torch keeps its nominal
+//! speed.
 
 mod path;
 mod torch;
@@ -20,15 +21,15 @@ pub use torch::{Approach, Pause, Torch, Welded};
 use crate::motion::Motion;
 use crate::process::{Process, StartStop, Travel};
 
-/// What times, ways and moves depend on besides the passes.
+/// What times, travels and moves depend on besides the passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeldSettings {
     /// Arc, wire and speed.
     pub process: Process,
     /// How passes begin and end, and how long layers wait.
     pub ends: StartStop,
-    /// Moves without arc.
+    /// Moves with the arc off.
     pub travel: Travel,
-    /// How the machine speeds up, where that is known.
+    /// How the machine accelerates, where that is known.
     pub motion: Option<Motion>,
 }

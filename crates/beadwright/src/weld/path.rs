@@ -4,10 +4,10 @@ use crate::pass::{Along, Pass};
 use crate::process::StartStop;
 use glam::DVec3;
 
-/// A change of power nearer to a point than this is made there, mm: no move is shorter.
+/// A change of power closer to a point than this is made at the point, mm: no move is shorter.
 const SNAP_MM: f64 = 0.01;
 
-/// A point of a path with what is done on the way to it; at the first point that means nothing.
+/// A point of a path with the values for the move to it; at the first point they mean nothing.
 #[derive(Clone, Copy)]
 struct Move {
     to: DVec3,
@@ -17,20 +17,20 @@ struct Move {
     width: f64,
 }
 
-/// The points of a pass and the pace (mm/s) on the way to each; that of the first point means nothing.
+/// The points of a pass, each with the pace (mm/s) of the move to it; the pace of the first point means nothing.
 pub fn path(pass: &Pass, ends: &StartStop) -> Vec<(DVec3, f64)> {
     moves(pass, ends).into_iter().map(|m| (m.to, m.pace)).collect()
 }
 
-/// The pass that is welded, for the deposit model: with the hump at its start and the crater at its end, for beads that high
-/// (mm). What fills craters is not in it.
+/// The pass as it is welded, for the deposit model: with the hump at its start and the crater at its end, for beads of
+/// height `bead_height` (mm). The metal that fills craters is not included.
 pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     let mut moves = moves(pass, ends);
     hump_and_crater(&mut moves, ends, bead_height);
     if moves.len() < 2 {
         return pass.clone();
     }
-    // A value holds on the way to the next point.
+    // A value applies from its point to the next.
     let along = |value: fn(&Move) -> f64| Along::Each(moves[1..].iter().chain(moves.last()).map(value).collect());
     let (width, pace) = (along(|m| m.width), along(|m| m.pace));
     Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace }
@@ -51,7 +51,7 @@ fn length(moves: &[Move]) -> f64 {
     moves.windows(2).map(|w| w[0].to.distance(w[1].to)).sum()
 }
 
-/// Goes on along a closed path by a length, mm, at most once around.
+/// Continues along a closed path by the length `wanted`, mm, at most once around.
 fn overlap(moves: &mut Vec<Move>, wanted: f64) {
     let (mut left, around) = (wanted, moves.len());
     for i in 1..around {
@@ -73,7 +73,7 @@ fn lead(moves: &mut Vec<Move>, ends: &StartStop) {
         return;
     }
     let total = length(moves);
-    // A pass too short for both has them in proportion, and nothing between.
+    // A pass too short for both gets them in proportion, with nothing between.
     let part = (total / (wanted[0] + wanted[1])).min(1.0);
     if wanted[0] > 0.0 {
         let end = cut(moves, wanted[0] * part);
@@ -85,12 +85,12 @@ fn lead(moves: &mut Vec<Move>, ends: &StartStop) {
     }
 }
 
-/// Humps and craters fall in so many steps.
+/// Number of steps in which humps and craters fall.
 const STEPS: u32 = 4;
-/// Of the bead this part is left in the deepest crater.
+/// Fraction of the bead that is left in the deepest crater.
 const LEAST: f64 = 0.05;
 
-/// A bead of the same width is higher where it is laid more slowly: the paces that build a pass's hump and crater.
+/// Sets the paces that build a pass's hump and crater: a bead of the same width is higher where it is laid more slowly.
 fn hump_and_crater(moves: &mut Vec<Move>, ends: &StartStop, bead_height: f64) {
     let total = length(moves);
     let slopes = [(ends.hump_height, ends.hump_length, false), (-ends.crater_depth, ends.crater_length, true)];
@@ -107,7 +107,7 @@ fn hump_and_crater(moves: &mut Vec<Move>, ends: &StartStop, bead_height: f64) {
     }
 }
 
-/// The index of the point that lies so far along the path, mm; a new one where there is none.
+/// The index of the point at the distance `at` along the path, mm; where there is none, a point is inserted.
 fn cut(moves: &mut Vec<Move>, at: f64) -> usize {
     let mut passed = 0.0;
     for i in 1..moves.len() {

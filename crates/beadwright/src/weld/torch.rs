@@ -1,11 +1,11 @@
-//! Follows the torch: the ways between passes, how long everything takes, and how long it must wait.
+//! Follows the torch: the travels between passes, how long everything takes, and how long it must wait.
 
 use super::WeldSettings;
 use crate::motion::Motion;
 use crate::process::{Process, StartStop};
 use glam::DVec3;
 
-/// Waits are told in steps of this, s; they are made longer, never shorter.
+/// Waits are multiples of this, s; they are rounded up, never down.
 const WAIT_STEP: f64 = 0.01;
 
 /// Where the torch stands, and how long the layer has taken.
@@ -23,51 +23,51 @@ pub struct Torch {
     seconds: f64,
 }
 
-/// A wait between layers, without arc.
+/// A wait between layers, with the arc off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pause {
-    /// Where the torch stands meanwhile, mm.
+    /// Where the torch waits, mm.
     pub at: DVec3,
     /// How long, s.
     pub seconds: f64,
-    /// Length of the way there, mm.
+    /// Length of the move there, mm.
     pub length: f64,
-    /// Time of the way there, s.
+    /// Time of the move there, s.
     pub moving: f64,
 }
 
-/// The way to the start of a pass, without arc.
+/// The travel to the start of a pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Approach {
     /// Ends of its legs, mm.
     pub legs: Vec<DVec3>,
-    /// Its length, mm; 0 on the way to the first pass, which may come from anywhere.
+    /// Its length, mm; 0 for the travel to the first pass, which may come from anywhere.
     pub length: f64,
     /// Its time, s.
     pub moving: f64,
 }
 
-/// What a pass takes.
+/// The length of a pass and the times it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Welded {
     /// Its length, mm.
     pub length: f64,
     /// Time with the torch moving, s.
     pub moving: f64,
-    /// What of it is lost to speeding up and slowing down, s.
+    /// The part of it lost to speeding up and slowing down, s.
     pub slowed: f64,
-    /// Time in which the nominal wire feed lays its metal, with the crater's, s.
+    /// Time in which the nominal wire feed lays its metal, including the crater's, s.
     pub metal: f64,
-    /// Time for which the arc stands in the crater, s.
+    /// Time for which the arc burns on the spot in the crater, s.
     pub crater: f64,
-    /// Time with gas and starting before the torch moves, s.
+    /// Time for gas preflow and arc start before the torch moves, s.
     pub before: f64,
-    /// Time with ending, gas and drawing the wire back after the crater, s.
+    /// Time for arc end, gas postflow and drawing the wire back after the crater, s.
     pub after: f64,
 }
 
 impl Torch {
-    /// A torch whose ways count, but not its times; it never waits.
+    /// A torch whose travels count, but not its times; it never waits.
     pub fn new(clearance: f64) -> Self {
         Self {
             process: None,
@@ -81,7 +81,7 @@ impl Torch {
         }
     }
 
-    /// A torch whose ways and times count.
+    /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
         let WeldSettings { process, ends, travel, motion } = settings.clone();
         Self { process: Some(process), ends, motion, travel_speed: travel.speed, ..Self::new(travel.clearance) }
@@ -92,7 +92,7 @@ impl Torch {
         &self.ends
     }
 
-    /// Where it stands; none before the first pass.
+    /// Where it stands; `None` before the first pass.
     pub fn at(&self) -> Option<DVec3> {
         self.at
     }
@@ -102,29 +102,29 @@ impl Torch {
         self.process.as_ref().map_or(pace, |process| process.speed_at(pace))
     }
 
-    /// Wire feed at a pace (mm/s), of the nominal one.
+    /// Wire feed at a pace (mm/s), as a multiple of the nominal one.
     pub fn feed_at(&self, pace: f64) -> f64 {
         self.process.as_ref().map_or(1.0, |process| process.feed_at(pace))
     }
 
-    /// Begins a layer, with the wait that its predecessor needs.
+    /// Begins a layer, with the wait that the previous layer needs.
     pub fn begin_layer(&mut self) -> Option<Pause> {
         let missing = self.ends.min_layer_time - self.seconds;
         let seconds = (missing.max(self.ends.interpass_time).max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
         self.seconds = 0.0;
         let from = self.at.filter(|_| seconds > 0.0)?;
         let at = from.with_z(from.z + self.clearance + self.ends.dwell_height);
-        // The way up belongs to the wait: it counts for neither layer.
+        // The move up belongs to the wait: it counts for neither layer.
         let (length, moving) = self.travel(&[at]);
         self.at = Some(at);
         Some(Pause { at, seconds, length, moving })
     }
 
-    /// The way to the start of a pass, without arc: up above the higher end, across, and down. At first there is no place
-    /// to rise from.
+    /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
+    /// place to rise from.
     pub fn approach(&mut self, start: DVec3) -> Approach {
         let high = self.at.map_or(start.z, |_| self.low.max(start.z)) + self.clearance;
-        // After a wait it stands as high already, or higher.
+        // After a wait the torch is already at this height or higher.
         let top = self.at.map_or(high, |at| at.z.max(high));
         let rise = self.at.filter(|at| at.z < top || self.low == at.z).map(|at| at.with_z(top));
         let legs: Vec<DVec3> = rise.into_iter().chain([start.with_z(top), start]).collect();
@@ -134,8 +134,8 @@ impl Torch {
         Approach { legs, length, moving }
     }
 
-    /// Length and time of a way without arc from where the torch stands, mm and s; its legs begin and end at rest. The way
-    /// from nowhere to the first point counts nothing.
+    /// Length and time of a travel from where the torch stands, mm and s; its legs begin and end at rest. The travel to
+    /// the very first point counts as 0.
     fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
         let Some(mut at) = self.at else { return (0.0, 0.0) };
         let (mut length, mut time) = (0.0, 0.0);
@@ -176,7 +176,8 @@ impl Torch {
         welded
     }
 
-    /// Time for gas and starting, and for ending, gas and drawing the wire back at its nominal speed, s a pass.
+    /// Time for gas preflow and arc start, and for arc end, gas postflow and drawing the wire back at its nominal
+    /// speed, s per pass.
     fn delays(&self) -> [f64; 2] {
         let Some(process) = &self.process else { return [0.0; 2] };
         let end = process.arc_end_delay + process.gas_postflow + retract_time(&self.ends, process);

@@ -1,7 +1,7 @@
 //! The layers on the graphics card, in print order, so that any range of layers is one draw.
 //!
-//! Layers lie in chunks of about [`CHUNK`] segments, since buffers have a largest size. When layers come or change,
-//! only what lies behind the first change is sent again; when only the colours change, only the values.
+//! Layers are stored in chunks of about [`CHUNK`] segments, since the size of a buffer is limited. When layers are
+//! added or change, only what follows the first change is sent again; when only the colours change, only the values.
 
 use super::globals::role;
 use super::growing::Growing;
@@ -16,13 +16,13 @@ use std::ops::Range;
 /// A chunk is full from this number of segments on.
 const CHUNK: usize = 1 << 19;
 
-/// Layers are drawn together up to this number of segments.
+/// Consecutive layers are drawn together until they have this many segments.
 const PIECE: u32 = 4096;
 
-/// Layers of more segments would not fit in a buffer of 256 MiB and are not drawn.
+/// Layers with more segments would not fit in a buffer of 256 MiB and are not drawn.
 const LARGEST_LAYER: usize = 8_000_000;
 
-/// A point that is no bead.
+/// A point of something other than a bead.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct Point {
@@ -30,7 +30,7 @@ pub(super) struct Point {
     pub role: u32,
 }
 
-/// Numbers of beads, caps, vertices of travels and dots; those of a chunk up to some layer.
+/// Numbers of beads, caps, travel vertices and dots in a chunk up to the end of some layer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Counts {
     pub beads: usize,
@@ -43,7 +43,7 @@ pub(super) struct Counts {
 /// What is drawn of a chunk.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Ranges {
-    /// Beads, in pieces of whole layers one above another: what is nearest is best drawn first.
+    /// Beads, in groups of whole consecutive layers, because it is best to draw the nearest first.
     pub beads: Vec<Range<u32>>,
     /// Rough beads, likewise.
     pub rough: Vec<Range<u32>>,
@@ -61,14 +61,14 @@ pub(super) struct Slot {
     pub values: Option<ValueKey>,
 }
 
-/// Some layers, one behind another.
+/// Some consecutive layers.
 #[derive(Debug)]
 pub(super) struct Chunk {
     pub slots: Vec<Slot>,
-    /// With one bead in front that is not drawn: a bead looks at the one before it.
+    /// Starts with one bead that is not drawn, since each bead looks at the one before it.
     pub beads: Growing,
     pub bead_values: Growing,
-    /// With one in front, too.
+    /// Starts with an undrawn bead, too.
     pub rough: Growing,
     pub rough_values: Growing,
     pub caps: Growing,
@@ -80,7 +80,7 @@ pub(super) struct Chunk {
 /// The graphics card.
 pub(super) type Card<'a> = (&'a wgpu::Device, &'a wgpu::Queue);
 
-/// Brings the chunks to the state of the scene.
+/// Updates the chunks to match the scene.
 pub(super) fn sync(chunks: &mut Vec<Chunk>, card: Card<'_>, scene: &Scene, colour: Colour) {
     let wanted: Vec<(usize, &LayerBeads)> =
         scene.present().map(|(i, l)| (i, &**l)).filter(|(_, l)| l.len() <= LARGEST_LAYER).collect();
@@ -141,7 +141,7 @@ impl Chunk {
         let segments = layers.iter().map(|(_, layer)| layer.len()).sum::<usize>();
         let mut beads: Vec<Bead> = Vec::with_capacity(segments + 1);
         let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Point>) = Default::default();
-        // In front of the first bead stands one that is not drawn.
+        // A bead that is not drawn goes before the first one.
         let pad = usize::from(begin.beads == 0);
         beads.resize(pad, Bead::zeroed());
         let mut rough = beads.clone();
@@ -192,7 +192,7 @@ impl Chunk {
         }
     }
 
-    /// A range of beads cut between layers into pieces of some thousand segments.
+    /// Splits a range of beads between layers into pieces of a few thousand segments.
     fn pieces(&self, slots: Range<usize>, beads: Range<u32>, of: fn(&Counts) -> usize) -> Vec<Range<u32>> {
         let (mut pieces, mut start) = (Vec::new(), beads.start);
         for end in self.slots[slots].iter().map(|slot| (of(&slot.ends) as u32).min(beads.end)) {
@@ -204,7 +204,7 @@ impl Chunk {
         pieces
     }
 
-    /// Where the segments of a layer and their caps lie in this chunk.
+    /// Where the given segments of a layer and their caps are in this chunk.
     pub(super) fn place(&self, layer: &LayerBeads, index: usize, segments: Range<usize>) -> Option<Ranges> {
         let slot = self.slots.iter().position(|slot| slot.layer == index)?;
         let begin = slot.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
@@ -222,7 +222,7 @@ impl Chunk {
     }
 }
 
-/// Where a layer ends of which only so many segments are shown.
+/// Where a layer ends if only that many of its segments are shown.
 fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
     let begun = || layer.passes().iter().filter(|pass| !pass.segments.is_empty() && pass.segments.start < segments);
     let dots = begun().map(|pass| 1 + usize::from(pass.segments.end <= segments)).sum::<usize>();

@@ -11,7 +11,7 @@ use crate::view3d::scene::Scene;
 use crate::view3d::style::Style;
 use eframe::egui_wgpu::wgpu;
 
-/// All that a picture is made of.
+/// Everything a picture is made from.
 pub(super) struct Shot<'a> {
     pub gpu: &'a Gpu,
     pub pipelines: &'a Pipelines,
@@ -23,13 +23,13 @@ pub(super) struct Shot<'a> {
 }
 
 impl Shot<'_> {
-    /// Solid things first, then what is laid over them.
+    /// Draws solid things first, then what is blended over them.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Self { gpu, pipelines, scene, style, quality, .. } = *self;
         let mut drawn: Vec<(&Chunk, Ranges)> =
             gpu.chunks.iter().map(|chunk| (chunk, chunk.ranges(scene, style))).collect();
         if self.from_above {
-            // What is hidden is shaded for nothing if it comes first.
+            // Drawing hidden beads first would shade them for nothing, so the top layers come first.
             drawn.reverse();
             for (_, ranges) in &mut drawn {
                 ranges.beads.reverse();
@@ -67,7 +67,7 @@ impl Shot<'_> {
         }
     }
 
-    /// Draws a pass and a segment of it over themselves, in the colour of what stands out.
+    /// Draws the highlighted pass and its segment again over themselves, in the highlight colour.
     fn draw_highlight(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Self { gpu, pipelines, scene, style, quality, .. } = *self;
         let Some(Pick { layer, pass: number, segment }) = style.highlight else { return };
@@ -146,7 +146,7 @@ fn draw_points(
     }
 }
 
-/// The picture as it is before anything is drawn.
+/// The picture, cleared to the background colour.
 pub(super) fn colour(target: &Target, dark: bool) -> wgpu::RenderPassColorAttachment<'_> {
     let [r, g, b] = background(dark).map(|c| f64::from(c) / 255.0);
     wgpu::RenderPassColorAttachment {
@@ -160,7 +160,7 @@ pub(super) fn colour(target: &Target, dark: bool) -> wgpu::RenderPassColorAttach
     }
 }
 
-/// Nothing is near yet.
+/// The depths, cleared to the farthest.
 pub(super) fn depth(target: &Target) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
     wgpu::RenderPassDepthStencilAttachment { view: &target.depth, depth_ops: Some(ops), stencil_ops: None }

@@ -1,4 +1,4 @@
-//! What all shaders are told for one picture.
+//! The data passed to all shaders for one picture.
 
 use crate::view3d::camera::Camera;
 use crate::view3d::palette;
@@ -7,7 +7,7 @@ use crate::view3d::style::{Colour, Style};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 
-/// What a point that is no bead belongs to: an index of [`Globals::roles`].
+/// What a point that is not of a bead belongs to: an index into [`Globals::roles`].
 pub(super) mod role {
     pub(in crate::view3d) const TRAVEL: u32 = 0;
     pub(in crate::view3d) const EDGE: u32 = 1;
@@ -34,10 +34,10 @@ pub(super) struct Globals {
     roles: [[f32; 4]; 8],
 }
 
-/// How much rounder beads are shaded than they are: 0 as they are, 1 as circles.
+/// How much rounder than they are beads are shaded: 0 as they are, 1 as circles.
 const ROUNDNESS: f64 = 0.6;
 
-/// How much nearer lines are drawn than the surfaces they lie on, as a part of their depth.
+/// How much nearer lines are drawn than the surfaces they lie on, as a fraction of their depth.
 const NUDGE: [f64; 2] = [3e-4, 2e-6];
 
 impl Globals {
@@ -73,7 +73,7 @@ fn values(scene: &Scene, colour: Colour) -> (f64, f64) {
         return (0.0, 1.0 / (palette::STEPS - 1) as f64);
     }
     let (low, high) = scene.value_range(colour).unwrap_or((0.0, 1.0));
-    // Where all values are the same they are the middle of the map.
+    // If all values are the same, they get the middle of the map.
     if high > low { (low, 1.0 / (high - low)) } else { (low - 0.5, 1.0) }
 }
 

@@ -1,9 +1,9 @@
-//! A buffer on the graphics card that grows at its end.
+//! A buffer on the graphics card that can grow.
 
 use bytemuck::Pod;
 use eframe::egui_wgpu::wgpu;
 
-/// Bytes behind the last item: a draw may look at the instance after its last.
+/// Spare bytes after the last item: a draw may read the instance after its last one.
 const SPARE: u64 = 64;
 
 /// Items of one size, in a buffer that is replaced by a larger one when it is full.
@@ -20,7 +20,7 @@ impl Growing {
         Self { buffer: None, label, used: 0 }
     }
 
-    /// Writes items from the index `first` on, over those that are there and behind them.
+    /// Writes items from index `first` on, overwriting existing ones and appending the rest.
     pub(super) fn write<T: Pod>(&mut self, gpu: (&wgpu::Device, &wgpu::Queue), first: usize, items: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(items);
         if bytes.is_empty() {
@@ -38,7 +38,7 @@ impl Growing {
     }
 
     fn grow(&mut self, (device, queue): (&wgpu::Device, &wgpu::Queue), needed: u64) {
-        // The first is made to measure: a scene often comes at once.
+        // The first buffer gets the exact size, since a scene often arrives all at once.
         let size = if self.buffer.is_some() { needed + needed / 2 } else { needed };
         let size = size.min(device.limits().max_buffer_size).max(needed).next_multiple_of(4);
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
@@ -52,7 +52,7 @@ impl Growing {
         self.buffer = Some(larger);
     }
 
-    /// All from the byte `offset` on; `None` while nothing was written there.
+    /// Everything from byte `offset` on; `None` while nothing is written there.
     pub(super) fn from(&self, offset: u64) -> Option<wgpu::BufferSlice<'_>> {
         self.buffer.as_ref().filter(|_| offset < self.used).map(|buffer| buffer.slice(offset..))
     }

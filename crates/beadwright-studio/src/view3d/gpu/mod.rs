@@ -1,15 +1,15 @@
-//! The graphics card: what lies on it, and how a picture is made there.
+//! The graphics card: what is stored on it, and how a picture is made there.
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `chunks` | the layers in print order |
-//! | `values` | what their colours are made of |
+//! | `values` | what their colours are made from |
 //! | `draw` | the order in which things are drawn |
 //! | `surface` | the model and the torch |
-//! | `growing` | a buffer that grows at its end |
-//! | `globals` | what all shaders are told |
+//! | `growing` | a buffer that can grow |
+//! | `globals` | the data passed to all shaders |
 //! | `pipelines` | how each kind of thing is drawn |
-//! | `target` | where it is drawn into |
+//! | `target` | what the picture is drawn into |
 //! | `*.wgsl` | the shaders |
 
 mod chunks;
@@ -35,41 +35,41 @@ use surface::Surface;
 pub(super) use target::Target;
 use wgpu::util::DeviceExt as _;
 
-/// How fine a picture is.
+/// How finely a picture is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Quality {
     /// Strips across a bead.
     pub strips: u32,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// Whether every segment is drawn, and not rough ones.
+    /// Whether every segment is drawn, instead of rough ones.
     pub exact: bool,
     /// Whether ends and corners are round.
     pub caps: bool,
 }
 
-/// Beads as they are, a pass that stands out, and a segment that stands out.
+/// Plain beads, a highlighted pass and a highlighted segment.
 const LOOKS: usize = 3;
 
-/// How much of the colour of what stands out is laid over the beads.
+/// How strongly the highlight colour is blended over the beads.
 const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
 
-/// The colour of what stands out.
+/// The highlight colour.
 const ACCENT: [f32; 3] = [1.0, 0.20, 0.56];
 
-/// All that lies on the graphics card.
+/// Everything stored on the graphics card.
 #[derive(Debug)]
 pub(super) struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Whether there is no graphics card but a processor that draws.
+    /// Whether the processor draws because there is no graphics card.
     pub software: bool,
     layout: wgpu::BindGroupLayout,
     globals: [wgpu::Buffer; LOOKS],
     bindings: [wgpu::BindGroup; LOOKS],
     map: wgpu::Texture,
     map_of: Option<(Colour, bool)>,
-    /// Coarse and fine.
+    /// Coarse, then fine.
     fans: [(wgpu::Buffer, u32); 2],
     pipelines: Vec<Pipelines>,
     chunks: Vec<Chunk>,
@@ -122,7 +122,7 @@ impl Gpu {
         }
     }
 
-    /// A place for a picture of that many pixels, as near to it as the card allows.
+    /// A target for a picture of that many pixels, or as many as the card allows.
     pub(super) fn target(&self, pixels: [u32; 2], samples: u32) -> Target {
         let most = self.device.limits().max_texture_dimension_2d;
         Target::new(&self.device, pixels.map(|n| n.clamp(1, most)), samples)
@@ -182,12 +182,12 @@ impl Gpu {
         self.queue.submit([encoder.finish()]);
     }
 
-    /// The fan that fits the strips of a ribbon: it goes through the same points.
+    /// The fan that matches the strips of a ribbon: its rim goes through the same points.
     fn fan(&self, quality: Quality) -> &(wgpu::Buffer, u32) {
         &self.fans[usize::from(quality.strips > 2)]
     }
 
-    /// Waits until all that was drawn is done.
+    /// Waits until all drawing is done.
     pub(super) fn wait(&self) -> Result<(), String> {
         target::wait(&self.device)
     }
@@ -198,7 +198,7 @@ impl Gpu {
     }
 }
 
-/// The triangles of a cap seen from the viewer, from the middle through rings to the rim; with their number of indices.
+/// The triangles of a cap as the viewer sees it, from the middle through rings to the rim; with the number of indices.
 /// An index is the ring (2 is the rim) × 256 + the angle in steps of 1.5°.
 fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) {
     let vertex = |ring: u16, side: u16| ring << 8 | (side % sides * (240 / sides));
@@ -220,7 +220,7 @@ fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) 
     (device.create_buffer_init(&buffer), indices.len() as u32)
 }
 
-/// The ground of a picture.
+/// The background of a picture.
 pub(super) fn background(dark: bool) -> palette::Rgb {
     if dark { [26, 28, 32] } else { [243, 245, 248] }
 }

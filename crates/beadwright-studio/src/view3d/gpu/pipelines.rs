@@ -5,7 +5,7 @@ use super::target::{COLOUR, DEPTH};
 use crate::view3d::beads::{Bead, Cap};
 use eframe::egui_wgpu::wgpu::{self, VertexFormat, VertexStepMode};
 
-/// The pipelines for pictures of some number of samples a pixel.
+/// The pipelines for pictures with a given number of samples per pixel.
 #[derive(Debug)]
 pub(super) struct Pipelines {
     pub samples: u32,
@@ -28,7 +28,7 @@ struct Recipe<'a> {
     fragment: &'a str,
     buffers: &'a [Layout<'a>],
     topology: wgpu::PrimitiveTopology,
-    /// Whether it hides what lies behind it, instead of being laid over it.
+    /// Whether it hides what lies behind it, instead of being blended over it.
     hides: bool,
 }
 
@@ -85,7 +85,7 @@ const CAP: [wgpu::VertexAttribute; 2] =
     [attribute(VertexFormat::Float32x3, 0, 0), attribute(VertexFormat::Float32x2, 12, 1)];
 const CAP_VALUE: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32, 0, 2)];
 
-/// The same beads three times: the one that is drawn, the one before and the one after it.
+/// The same buffer of beads bound three times: the bead being drawn, the one before it and the one after it.
 fn ribbon_buffers() -> [Layout<'static>; 4] {
     let bead = |attributes| buffer(size_of::<Bead>(), VertexStepMode::Instance, attributes);
     [bead(&BEAD), bead(&BEFORE), bead(&AFTER), buffer(4, VertexStepMode::Instance, &BEAD_VALUE)]
@@ -132,7 +132,7 @@ fn pipeline(
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(recipe.hides),
-            // Equal too: what stands out is drawn again over itself.
+            // Equal depths pass too: a highlighted bead is drawn again over itself.
             depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),

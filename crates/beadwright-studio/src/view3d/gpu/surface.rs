@@ -6,7 +6,7 @@ use beadwright::model::{Mesh, NO_NEIGHBOUR};
 use eframe::egui_wgpu::wgpu::{self, util::DeviceExt as _};
 use glam::{DVec3, Vec3};
 
-/// Edges whose faces meet in a smaller angle are not drawn: 30°.
+/// Edges whose faces meet at a smaller angle are not drawn: 30°.
 const SMOOTH_COS: f64 = 0.866;
 
 /// The model on the graphics card.
@@ -36,13 +36,13 @@ impl Surface {
             indices: buffer("triangles", bytemuck::cast_slice(&mesh.triangles), wgpu::BufferUsages::INDEX),
             count: mesh.triangles.len() as u32 * 3,
             edge_vertices: edges.len() as u32,
-            // A buffer is never empty.
+            // A buffer must not be empty.
             edges: buffer("edges", bytemuck::cast_slice(&[edges, vec![[0; 4]]].concat()), wgpu::BufferUsages::VERTEX),
         })
     }
 }
 
-/// The ends of the edges at which the surface has a corner, as [`Point`]s.
+/// The ends of the sharp edges of the surface, as [`Point`]s.
 fn edges(mesh: &Mesh) -> Vec<[u32; 4]> {
     let corner = |i: u32| mesh.vertices.get(i as usize).copied().unwrap_or_default();
     let normal = |t: &[u32; 3]| {
@@ -67,7 +67,7 @@ fn edges(mesh: &Mesh) -> Vec<[u32; 4]> {
     ends
 }
 
-/// A torch that points down at a place, mm, as triangles.
+/// A torch pointing down with its tip at a given place, mm, as triangles.
 pub(super) fn torch(tip: DVec3) -> Vec<Point> {
     /// Height above the tip and radius, mm: the wire, the gas nozzle, the neck.
     const PROFILE: [(f32, f32, u32); 6] = [

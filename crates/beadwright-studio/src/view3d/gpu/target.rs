@@ -1,4 +1,4 @@
-//! Where a picture is rendered into, and how it is read back.
+//! What a picture is rendered into, and how it is read back.
 
 use eframe::egui_wgpu::wgpu;
 use std::sync::mpsc;
@@ -18,7 +18,7 @@ pub(in crate::view3d) struct Target {
     texture: wgpu::Texture,
     pub view: wgpu::TextureView,
     pub depth: wgpu::TextureView,
-    /// More than one sample a pixel, before they are averaged.
+    /// The samples before they are averaged, if there is more than one per pixel.
     pub many: Option<wgpu::TextureView>,
 }
 
@@ -67,7 +67,7 @@ impl Target {
         queue.submit([encoder.finish()]);
         let (sender, receiver) = mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more where the wait below has failed.
+            // Nobody receives this if the wait below has failed.
             let _ = sender.send(result);
         });
         wait(device)?;
@@ -79,7 +79,7 @@ impl Target {
     }
 }
 
-/// Waits until the graphics card has done all it was given.
+/// Waits until the graphics card has finished all its work.
 pub(super) fn wait(device: &wgpu::Device) -> Result<(), String> {
     let timeout = Some(Duration::from_secs(60));
     let done = device.poll(wgpu::PollType::Wait { submission_index: None, timeout });

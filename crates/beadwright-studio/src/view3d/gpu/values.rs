@@ -1,4 +1,5 @@
-//! The values that colours are made of, sent when the beads, what is shown of them, or what came before them changed.
+//! The values that the colours are made from. A layer's values are sent again when its beads, the quantity shown, or
+//! the layers before it have changed.
 
 use super::chunks::{Card, Chunk, Counts};
 use super::growing::Growing;
@@ -7,7 +8,7 @@ use crate::view3d::palette::KINDS;
 use crate::view3d::scene::Scene;
 use crate::view3d::style::Colour;
 
-/// Stands for a segment without a value.
+/// The value of a segment that has none.
 const MISSING: f32 = -2e30;
 
 /// What the values of a layer depend on besides the layer.
@@ -53,7 +54,7 @@ pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, c
     }
 }
 
-/// Values of layers that lie one behind another, to be sent together.
+/// Values of consecutive layers, to be sent together.
 #[derive(Default)]
 struct Run {
     first: Counts,

@@ -9,7 +9,7 @@ pub enum LibraryError {
         /// What is missing.
         reason: String,
     },
-    /// A line of the CSV.
+    /// A line of the CSV cannot be used.
     #[error("line {line}: {reason}")]
     Line {
         /// Line number, from 1.
@@ -17,7 +17,7 @@ pub enum LibraryError {
         /// What is wrong and what would be right.
         reason: String,
     },
-    /// A value in the CSV.
+    /// A value in the CSV cannot be used.
     #[error("line {line}, column \"{column}\": {reason}")]
     Cell {
         /// Line number, from 1.
@@ -34,13 +34,13 @@ pub enum LibraryError {
         what: &'static str,
         /// What was asked for.
         name: String,
-        /// Those that exist.
+        /// The names that exist.
         known: String,
     },
     /// The inputs cannot be fitted.
     #[error("{reason}")]
     Inputs {
-        /// Which, why, and what to do.
+        /// Which inputs, why, and what to do.
         reason: String,
     },
     /// Too few rows for any fit.
@@ -53,9 +53,9 @@ pub enum LibraryError {
         rows: usize,
         /// Inputs that vary.
         inputs: usize,
-        /// Rows for the least fit.
+        /// Rows needed for a first-order fit.
         needed: usize,
-        /// Rows for the full fit.
+        /// Rows needed for the full second-order fit.
         full: usize,
     },
     /// The text is no bead library, or its values do not fit each other.
@@ -105,7 +105,7 @@ pub enum LibraryError {
         /// The nearest measured combination.
         nearest: String,
     },
-    /// The fit gives a bead that cannot be.
+    /// The fit predicts an impossible bead.
     #[error("at {point} the fit gives a bead of {width:.3} × {height:.3} mm, which cannot be; measure beads nearby.")]
     NoBead {
         /// The values.
@@ -115,13 +115,13 @@ pub enum LibraryError {
         /// Height, mm.
         height: f64,
     },
-    /// A wish that cannot be meant.
+    /// The wish makes no sense in itself: a size that is not above 0, or limits that leave no value.
     #[error("{reason}")]
     Wish {
         /// What is wrong and what is possible.
         reason: String,
     },
-    /// The wanted bead cannot be had inside the measured range and the limits.
+    /// No parameters inside the measured range and the limits lay the wanted bead.
     #[error(
         "a bead {width} mm wide with layers of {layer_height} mm is out of reach: {blocked}. The nearest is {near_width:.2} mm \
          wide with layers of {near_layer:.2} mm, at {point}."
@@ -131,7 +131,7 @@ pub enum LibraryError {
         width: f64,
         /// Wanted layer height, mm.
         layer_height: f64,
-        /// The bounds that block.
+        /// The bounds that stand in the way.
         blocked: String,
         /// Nearest width, mm.
         near_width: f64,

@@ -1,18 +1,18 @@
-//! Measured beads to a response surface: full second order where the measurements allow it, fewer terms elsewhere.
+//! Fits a response surface to measured beads: full second order where the measurements allow it, fewer terms elsewhere.
 
 use super::least_squares::{self, Factored, dot};
 use super::{BeadLibrary, Input, LibraryError, Measured, Response, Sample};
 
-/// Most inputs; the full second order of six has 28 terms.
+/// Largest number of inputs; the full second order of six has 28 terms.
 const MOST_INPUTS: usize = 6;
-/// Part of a column's range within which two values count as one level.
+/// Fraction of a column's range within which two values count as one level.
 const SAME_LEVEL: f64 = 1e-9;
 
 impl BeadLibrary {
     /// Fits width and height.
     ///
     /// # Errors
-    /// Too few beads; inputs that do not vary, or follow from each other.
+    /// Too few beads; inputs that do not vary, or that depend on each other.
     pub fn fit(measured: &Measured) -> Result<Self, LibraryError> {
         let (measured, mut notes) = varying(measured)?;
         let inputs = &measured.inputs;
@@ -42,7 +42,7 @@ impl BeadLibrary {
     }
 }
 
-/// The measurements without inputs that have one value throughout.
+/// The measurements without the inputs that have the same value throughout.
 fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError> {
     let mut kept = measured.clone();
     let mut notes = Vec::new();
@@ -80,14 +80,14 @@ fn levels(measured: &Measured, k: usize) -> usize {
     if near(min, max) { 1 } else { 2 + usize::from(between) }
 }
 
-/// The terms that the number of beads and of levels allows: constant, inputs, squares, products.
+/// The terms that the number of beads and the number of levels allow: constant, inputs, squares, products.
 fn terms(measured: &Measured, notes: &mut Vec<String>) -> Result<Vec<Vec<usize>>, LibraryError> {
     let (rows, n) = (measured.rows.len(), measured.inputs.len());
     let first: Vec<Vec<usize>> = std::iter::once(vec![]).chain((0..n).map(|i| vec![i])).collect();
     let (bent, straight): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| levels(measured, i) > 2);
     let squares: Vec<Vec<usize>> = bent.iter().map(|&i| vec![i, i]).collect();
     let products: Vec<Vec<usize>> = (0..n).flat_map(|i| (i + 1..n).map(move |j| vec![i, j])).collect();
-    // One bead more than terms, so that something is left to tell the error.
+    // One bead more than terms, so that something is left over to estimate the error from.
     let full = first.len() + squares.len() + products.len() + 1;
     if rows <= first.len() {
         return Err(LibraryError::TooFew { rows, inputs: n, needed: first.len() + 1, full });
@@ -111,7 +111,7 @@ fn terms(measured: &Measured, notes: &mut Vec<String>) -> Result<Vec<Vec<usize>>
     Ok(terms)
 }
 
-/// The terms that were kept; names those that follow from others, and refuses an input that does.
+/// The terms that were kept. A term that depends on others is named in the notes; an input that does is refused.
 fn kept(
     inputs: &[Input],
     wanted: &[Vec<usize>],

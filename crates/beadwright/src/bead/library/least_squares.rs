@@ -1,9 +1,9 @@
 //! Least squares by Householder reflections, with columns taken one after another.
 //!
-//! A column that follows from those before it is left out and named, so a design with too few measurements in some
-//! direction is fitted with fewer terms instead of with wild ones.
+//! A column that depends linearly on earlier ones is left out and reported, so a design with too few measurements in
+//! some direction is fitted with fewer terms instead of wild coefficients.
 
-/// What is left of a column, as a part of its length, from which it counts as following from those before it.
+/// A column depends on the earlier ones when less than this fraction of its length is independent of them.
 const DEPENDENT: f64 = 1e-7;
 
 /// Q·R of a matrix given by columns.
@@ -17,7 +17,7 @@ pub(super) struct Factored {
 }
 
 impl Factored {
-    /// Factors `columns`, all of one length that is at least their number.
+    /// Factors `columns`; all have the same length, which is at least the number of columns.
     pub(super) fn new(columns: &[Vec<f64>]) -> Self {
         let mut done = Self { kept: Vec::new(), triangle: Vec::new(), reflectors: Vec::new() };
         for (number, column) in columns.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Factored {
         }
     }
 
-    /// The coefficients of the kept columns that come nearest to `y`.
+    /// The coefficients with which the kept columns come nearest to `y`.
     pub(super) fn solve(&self, y: &[f64]) -> Vec<f64> {
         let mut x = y.to_vec();
         self.reflect(&mut x);

@@ -46,7 +46,7 @@ pub struct Measured {
     pub remarks: Vec<String>,
     /// The inputs with the range that was measured.
     pub inputs: Vec<Input>,
-    /// The inputs of every bead, in their order.
+    /// The input values of every bead, in the order of `inputs`.
     pub rows: Vec<Vec<f64>>,
     /// Width of every bead, mm.
     pub widths: Vec<f64>,
@@ -152,7 +152,7 @@ fn split(text: &str) -> Result<(char, Vec<Record>), LibraryError> {
     Ok((separator, records.collect::<Result<_, LibraryError>>()?))
 }
 
-/// The fields of a line; quotes around a field may hold separators, and two of them stand for one.
+/// The fields of a line. A quoted field may hold separators; two quotes inside it stand for one.
 fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut letters = line.chars().peekable();

@@ -51,7 +51,7 @@ pub struct Response {
     pub coefficients: Vec<f64>,
     /// Share of the variance that the fit explains.
     pub r_squared: f64,
-    /// The same, less what that many terms would explain by chance.
+    /// The same, corrected for the number of terms: less what so many terms would explain by chance.
     pub adjusted_r_squared: f64,
     /// Standard deviation of the residuals, mm.
     pub residual: f64,
@@ -79,16 +79,17 @@ pub struct Sample {
 pub struct BeadLibrary {
     /// Version of the file format.
     pub version: u32,
-    /// The measurements are invented, as a remark of theirs says.
+    /// Whether the measurements are invented; one of their remarks says so.
     pub synthetic: bool,
     /// Comment lines of the measurements.
     pub remarks: Vec<String>,
     /// What the fit had to leave out, as sentences.
     pub notes: Vec<String>,
-    /// Terms of the polynomial as numbers of inputs: `[]` is the constant, `[0]` the first input, `[0, 0]` its square. Inputs
-    /// are coded: −1 at the least measured value, 1 at the greatest.
+    /// Terms of the polynomial as indices of inputs: `[]` is the constant, `[0]` the first input, `[0, 0]` its square.
+    /// Inputs are coded: −1 at the least measured value, 1 at the greatest.
     pub terms: Vec<Vec<usize>>,
-    /// The upper triangle R of the measurements' terms, by columns: it gives the leverage.
+    /// The upper triangle R of the QR factorisation of the measurements' terms, by columns; the leverage is computed
+    /// from it.
     pub triangle: Vec<Vec<f64>>,
     /// Largest leverage among the measurements.
     pub largest_leverage: f64,
@@ -118,7 +119,8 @@ pub struct Prediction {
     pub width: Estimate,
     /// Height.
     pub height: Estimate,
-    /// Leverage of the place: 0 well supported, at the library's largest leverage the rim of the measurements.
+    /// Leverage of the point: near 0 it is well supported; at the library's largest leverage it lies at the edge of the
+    /// measurements.
     pub leverage: f64,
 }
 
@@ -161,7 +163,7 @@ impl BeadLibrary {
         }
     }
 
-    /// What does not fit in a library that was read.
+    /// What is inconsistent in a library that was read; `None` if nothing is.
     fn contradiction(&self) -> Option<&'static str> {
         let (n, p) = (self.inputs.len(), self.terms.len());
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
@@ -188,7 +190,7 @@ impl BeadLibrary {
     /// The bead at `values`, one per input in the library's order and in its units.
     ///
     /// # Errors
-    /// Outside the measured range; where the fit gives no bead.
+    /// When the values lie outside the measured range, or the fit predicts an impossible bead.
     pub fn predict(&self, values: &[f64]) -> Result<Prediction, LibraryError> {
         self.check_count(values)?;
         for (input, &value) in self.inputs.iter().zip(values) {
@@ -218,7 +220,7 @@ impl BeadLibrary {
     /// Values in the library's order from names (with or without unit) and values.
     ///
     /// # Errors
-    /// An input that is missing, or a name that is none.
+    /// When an input is missing, or a name belongs to no input.
     pub fn arrange(&self, named: &[(String, f64)]) -> Result<Vec<f64>, LibraryError> {
         for (name, _) in named {
             self.input_number(name)?;
@@ -237,7 +239,7 @@ impl BeadLibrary {
         self.inputs.iter().map(find).collect()
     }
 
-    /// Number of the input of that name, with or without its unit.
+    /// Index of the input of that name, with or without its unit.
     ///
     /// # Errors
     /// [`LibraryError::Unknown`].
@@ -272,7 +274,7 @@ impl BeadLibrary {
         self.terms.iter().map(|term| term.iter().map(|&i| coded[i]).product()).collect()
     }
 
-    /// What the polynomial says at a coded point, wherever it lies.
+    /// The value of the polynomials at a coded point, even outside the measured range.
     fn at(&self, coded: &[f64]) -> Prediction {
         let row = self.row(coded);
         let leverage = least_squares::leverage(&self.triangle, &row);

@@ -1,9 +1,11 @@
-//! A wanted bead to the parameters that lay it.
+//! Finds the parameters that lay a wanted bead.
 //!
-//! Steps: a grid over the measured range inside the limits; from its best points Levenberg–Marquardt steps on the
-//! deviations of width and layer height, kept inside the range, with a slight pull to λ = 2.5–3 and to the middle of the
-//! range, which decides where many parameters lay the same bead; last the same steps without the pull. Nothing is
-//! random, so the same wish has the same answer.
+//! 1. A grid covers the measured range inside the limits.
+//! 2. From its best points, Levenberg–Marquardt steps inside the range reduce the deviations of width and layer height.
+//!    A slight pull to λ = 2.5–3 and to the middle of the range decides where many parameters lay the same bead.
+//! 3. Last come the same steps without the pull.
+//!
+//! Nothing is random, so the same wish has the same answer.
 
 use super::least_squares::{Factored, dot};
 use super::{BeadLibrary, Input, LibraryError, Prediction};
@@ -11,14 +13,14 @@ use crate::bead::wall::WallBead;
 
 /// λ = width/height of good beads (Li et al., section 3).
 pub const PREFERRED_RATIOS: (f64, f64) = (2.5, 3.0);
-/// Weight of the pull to the preferred λ, and that to the middle of the range, beside relative deviations.
+/// Weights of the pull to the preferred λ and of that to the middle of the range; relative deviations weigh 1.
 const PULL: (f64, f64) = (1e-4, 1e-5);
-/// Weight of leaving the region that was measured.
+/// Weight of the penalty for leaving the measured region.
 const BARRIER: f64 = 10.0;
 /// Most points of the grid, and how many of them are followed.
 const GRID: usize = 5000;
 const STARTS: usize = 12;
-/// Distance of a coded value from a bound from which it counts as there.
+/// A coded value this close to a bound counts as lying on it.
 const TOUCHES: f64 = 1e-6;
 
 /// What a layer height means.
@@ -124,7 +126,7 @@ impl BeadLibrary {
         Ok(Recipe { prediction: self.predict(&values)?, values, layer_height, notes })
     }
 
-    /// The ranges inside the limits, as coded values.
+    /// The measured ranges narrowed to the limits, as coded values.
     fn ranges(&self, limits: &[Limit]) -> Result<Vec<(f64, f64)>, LibraryError> {
         let mut ranges = vec![(-1.0_f64, 1.0_f64); self.inputs.len()];
         for limit in limits {
@@ -137,7 +139,7 @@ impl BeadLibrary {
                 );
                 return Err(LibraryError::Wish { reason });
             }
-            // Only a limit wholly outside shares nothing with what was measured.
+            // Only a limit that lies wholly outside the measured range is refused.
             if limit.min > input.max || limit.max < input.min {
                 input.check(if limit.min > input.max { limit.min } else { limit.max })?;
             }
@@ -174,7 +176,7 @@ impl Search<'_> {
         let ends = starts.into_iter().map(|(_, z)| self.descend(z, 1.0));
         let best = ends.min_by(|a, b| self.cost(a, 1.0).total_cmp(&self.cost(b, 1.0))).unwrap_or_default();
         let sharp = self.descend(best.clone(), 0.0);
-        // Without the pull the steps may end on the rim of what was measured; then the pulled point stays.
+        // Without the pull the steps may end at the edge of the measured region; then the pulled point is kept.
         if self.inside(&sharp) && self.deviation(&sharp) < self.deviation(&best) {
             sharp
         } else {
@@ -220,7 +222,7 @@ impl Search<'_> {
         [found.width.value / self.wish.width - 1.0, layer / self.wish.layer_height - 1.0]
     }
 
-    /// What the steps make small: deviations, the barrier around the measurements, the pull.
+    /// What the steps minimise: the deviations, the barrier around the measurements, the pull.
     fn residuals(&self, z: &[f64], pull: f64) -> Vec<f64> {
         let found = self.library.at(z);
         let limit = self.library.largest_leverage;
@@ -302,7 +304,7 @@ impl Search<'_> {
         change
     }
 
-    /// The bounds that keep the nearest point from coming nearer.
+    /// The bounds that keep the nearest point from coming closer to the wish.
     fn blocked(&self, z: &[f64]) -> String {
         let mut bounds: Vec<String> = Vec::new();
         for ((k, input), (low, high)) in self.library.inputs.iter().enumerate().zip(&self.ranges) {
@@ -321,7 +323,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether input k beyond its bound would bring width and layer height nearer.
+    /// Whether moving input k beyond its bound would bring width and layer height closer to the wish.
     fn would_help(&self, z: &[f64], k: usize, end: f64) -> bool {
         let miss = |z: &[f64]| self.misses(&self.library.at(z)).map(|m| m * m).iter().sum::<f64>();
         let mut beyond = z.to_vec();

@@ -1,7 +1,7 @@
 //! FANUC TP as ASCII (`.ls`): J, L and C motions to the positions of the listing, and the programs that it calls.
 //!
-//! Places are those of the user frame. The arc is switched by `Weld Start`, `Arc Start` and their ends, on lines of their
-//! own or behind a motion, or by the codes of the options.
+//! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
+//! them, on lines of their own or after a motion, or by the codes in the options.
 
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Instructions without bearing on place and metal, by their first words.
+/// Instructions that affect neither position nor metal, by their first words.
 const HARMLESS: [&str; 24] = [
     "END",
     "ABORT",
@@ -57,7 +57,7 @@ struct Listing {
     positions: HashMap<u32, Position>,
 }
 
-/// Whether a line can only stand in a FANUC program.
+/// Whether a line can occur only in a FANUC program.
 pub(super) fn typical(line: &str) -> bool {
     begins_with(line, &["/PROG"])
 }
@@ -188,7 +188,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `P[2] 100mm/sec FINE Weld Start[1,1]` behind the word of the motion.
+    /// The rest of a motion after its first word: `P[2] 100mm/sec FINE Weld Start[1,1]`.
     fn motion(&mut self, word: &str, rest: &str, line: usize, listing: &Listing) {
         let (first, mut rest) = position(rest);
         let mut targets = vec![first];
@@ -232,7 +232,7 @@ impl Reader<'_> {
     }
 }
 
-/// Takes the line of a statement in, or that on which one goes on.
+/// Adds a line: the start of a statement, or the continuation of the one before.
 fn statement(line: &str, number: usize, statements: &mut Vec<(usize, String)>) {
     let digits = line.bytes().take_while(u8::is_ascii_digit).count();
     let Some(text) = line[digits..].strip_prefix(':') else { return };
@@ -247,7 +247,7 @@ fn statement(line: &str, number: usize, statements: &mut Vec<(usize, String)>) {
 fn position(text: &str) -> (Option<u32>, &str) {
     let Some((head, rest)) = text.split_once(']') else { return (None, "") };
     let number = head.strip_prefix("P[").or_else(|| head.strip_prefix("p["));
-    // A comment may stand behind the number.
+    // A comment may follow the number.
     let number = number.and_then(|n| n.split(':').next()?.trim().parse().ok());
     (number, rest.trim_start())
 }
@@ -258,7 +258,7 @@ fn mm_per_second(text: &str) -> Option<f64> {
     units.iter().find_map(|(unit, factor)| number(text.strip_suffix(unit)?).map(|v| v * factor))
 }
 
-/// A position's block in the making.
+/// The block of a position while it is being read.
 #[derive(Default)]
 struct Block {
     number: Option<u32>,
@@ -268,7 +268,7 @@ struct Block {
 }
 
 impl Block {
-    /// Takes a line of the block; true where it ends. Only the first group moves the torch.
+    /// Reads a line of the block; true if it is the last. Only the first group moves the torch.
     fn line(&mut self, line: &str, i: usize, trace: &Trace) -> Result<bool, ReadError> {
         if line.starts_with("P[") {
             *self = Self { number: position(line).0, ..Self::default() };

@@ -1,4 +1,4 @@
-//! The section `[fanuc]`: a FANUC cell (R-30iB, ArcTool), and what its values can be.
+//! The section `[fanuc]`: a FANUC cell (R-30iB, ArcTool), and the limits of its values.
 
 use super::write::FanucTp;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -7,7 +7,7 @@ use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// How speeds of welds are written.
+/// How welding speeds are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum FanucSpeed {
@@ -17,49 +17,50 @@ pub enum FanucSpeed {
     /// `48.0cm/min`.
     #[serde(rename = "cm/min")]
     CentimetresPerMinute,
-    /// `WELD_SPEED`, that of the weld schedule, wherever the speed is the nominal one; else `mm/sec`.
+    /// `WELD_SPEED`, the speed of the weld schedule, wherever the speed is nominal; elsewhere `mm/sec`.
     #[serde(rename = "weld-speed")]
     WeldSpeed,
 }
 
-/// FANUC TP. Templates are instructions with `{{placeholders}}`, without line number and `;`.
+/// FANUC TP. Templates are instructions with `{{placeholders}}`, without line numbers and `;`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Fanuc {
-    /// User frame of the part, UF, 0 to 61.
+    /// Number of the user frame (UF) of the part, 0 to 61.
     pub user_frame: u32,
-    /// Tool frame of the torch, UT, 1 to 29.
+    /// Number of the tool frame (UT) of the torch, 1 to 29.
     pub tool_frame: u32,
-    /// Configuration of the points, such as `N U T, 0, 0, 0`.
+    /// Robot configuration of the points, such as `N U T, 0, 0, 0`.
     pub configuration: String,
-    /// Axis position before and after the program, J1 to J6, °.
+    /// Axis angles J1 to J6 before and after the program, °.
     pub home: [f64; 6],
-    /// Speed to and from it, %.
+    /// Speed of the moves to and from `home`, %.
     pub home_speed: f64,
     /// Orientation of the tool in the user frame: W, P, R, °; `[180, 0, 0]` is straight down.
     pub orientation: [f64; 3],
-    /// Continuity along a pass: CNT 0 to 100; where the arc switches it is FINE.
+    /// Continuous motion (CNT) along a pass, 0 to 100; points where the arc is switched are FINE.
     pub continuity: u32,
-    /// How speeds of welds are written: `mm/sec`, `cm/min` or `weld-speed`.
+    /// How welding speeds are written: `mm/sec`, `cm/min` or `weld-speed`.
     pub speed: FanucSpeed,
-    /// A program of a layer holds at most this many moves and goes on in another: pendants take 9,999 lines.
+    /// Maximum number of moves in one program; longer layers continue in another, since pendants accept only 9,999
+    /// lines.
     pub max_points: usize,
     /// Instructions at the beginning of the main program.
     pub start: Vec<String>,
     /// Instructions at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Instructions that light the arc, at the start point of a pass.
+    /// Instructions that strike the arc at the start point of a pass.
     pub arc_on: Vec<String>,
-    /// Instructions that end the arc, at the end point of a pass.
+    /// Instructions that end the arc at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
-    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
-    /// default none.
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}`
+    /// m/min; written wherever it changes. Needed for `process.follow = "wire-feed"` and for a
+    /// `start_stop.crater_power` below 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`.
-    /// Needed where those act only with the next move.
+    /// Instructions that set the wire feed while the torch stands still to fill the crater; default: those of
+    /// `wire_feed`. Needed if those take effect only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Instructions at the end of the main program.
@@ -73,7 +74,7 @@ impl Section for Fanuc {
             "fanuc.tool_frame": self.tool_frame.into(), 1.0, 29.0, "(tool frame)", CONTROLLER;
             "fanuc.home_speed": self.home_speed, 1.0, 100.0, "%", CONTROLLER;
             "fanuc.continuity": self.continuity.into(), 0.0, 100.0, "(CNT)", CONTROLLER;
-            "fanuc.max_points": self.max_points as f64, 10.0, 3000.0, "moves a program",
+            "fanuc.max_points": self.max_points as f64, 10.0, 3000.0, "moves per program",
                 "larger programs do not load into the controller";
         };
         limits.extend(self.home.map(|axis| limit("fanuc.home", axis, (-720.0, 720.0), "°", CONTROLLER)));

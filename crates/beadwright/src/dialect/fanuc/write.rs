@@ -1,7 +1,8 @@
-//! FANUC TP as ASCII (R-30iB, ArcTool): `NAME.ls` calls `NAME_L001.ls` and so on; long layers go on in `NAME_L001_2.ls`.
+//! FANUC TP as ASCII (R-30iB, ArcTool): `NAME.ls` calls `NAME_L001.ls` and so on; a long layer continues in
+//! `NAME_L001_2.ls`.
 //!
-//! Every move has its own position, in the frames of the profile. The arc is switched by lines of their own after FINE;
-//! inside a pass moves are CNT. Lines are numbered from 1, an arc's second position stands on a line without number.
+//! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
+//! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
@@ -48,7 +49,7 @@ struct Program {
 impl Program {
     fn line(&mut self, text: &str) {
         self.count += 1;
-        // Motions begin right after the colon, instructions two blanks behind it.
+        // Motions begin right after the colon, instructions two blanks after it.
         let _ = write!(self.lines, "{:>4}:{text} ;\r\n", self.count);
     }
 
@@ -74,7 +75,7 @@ impl Program {
 }
 
 impl FanucTp {
-    /// Begins the program of a part; its name becomes the program's name.
+    /// Begins the program of a part and names it after the part.
     pub(super) fn new(job: &Job<'_>, fanuc: Fanuc) -> Self {
         let name = upper_name(&job.part);
         let values = Values::new(&name, job);
@@ -94,7 +95,7 @@ impl FanucTp {
         program.line(&format!("  UTOOL_NUM={}", self.fanuc.tool_frame));
     }
 
-    /// Adds a position in the user frame and gives its number.
+    /// Adds a position in the user frame and returns its number.
     fn pose(&self, program: &mut Program, to: DVec3) -> usize {
         let Fanuc { user_frame, tool_frame, configuration, orientation: [w, p, r], .. } = &self.fanuc;
         let head = format!("UF : {user_frame}, UT : {tool_frame}, CONFIG : '{configuration}',");

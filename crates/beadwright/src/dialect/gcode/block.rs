@@ -2,7 +2,7 @@
 
 use crate::dialect::reading::words::Patterns;
 
-/// Codes of one letter in a block; the rest is dropped, as no control takes more.
+/// Most codes of one letter in a block; further ones are dropped, as no control accepts more.
 const MAX_CODES: usize = 12;
 
 /// G or M codes in tenths: G92.1 is 921.
@@ -46,7 +46,7 @@ pub(super) enum Line<'a> {
     Empty,
     /// Words, now in the block.
     Words,
-    /// A command by name (Klipper) or in another tongue.
+    /// A named command (Klipper), or a line in another language.
     Macro,
     /// A word whose value is no number.
     Malformed(&'a [u8]),
@@ -111,7 +111,8 @@ impl Block {
         if any { Line::Words } else { Line::Empty }
     }
 
-    /// Takes the word whose letter was just passed; false ends the line, none means that it is malformed.
+    /// Reads the word whose letter was just passed. False: the rest of the line is ignored; `None`: the word is
+    /// malformed.
     fn word(&mut self, letter: u8, line: &[u8], i: &mut usize) -> Option<bool> {
         let start = *i + line[*i..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
         let digits = line[start..].iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'+' | b'-')).count();
@@ -194,7 +195,7 @@ impl Code {
         })
     }
 
-    /// Whether a macro's line, compact, is the code.
+    /// Whether the line of a macro, in compact form, is this code.
     pub(super) fn is_macro(&self, line: &str) -> bool {
         matches!(self, Self::Text(patterns) if patterns.matches(line))
     }

@@ -1,16 +1,17 @@
-//! What a G-code file tells about its machine in words and comments.
+//! What the words and comments of a G-code file reveal about its machine.
 
 use super::block::parse;
 
-/// What the whole file tells beforehand.
+/// What a first look through the whole file reveals.
 pub(super) struct Hints {
-    /// It has E words.
+    /// Whether it has E words.
     pub(super) printer: bool,
-    /// Filament, mm.
+    /// Diameter of the filament, mm.
     pub(super) diameter: Option<f64>,
-    /// E is a volume (UltiGCode).
+    /// Whether E is a volume (UltiGCode).
     pub(super) volumetric: bool,
-    /// It has an O number alone on a line, as Fanuc's controls want it: their whole G4 P counts milliseconds.
+    /// Whether it has an O number alone on a line, as Fanuc controls require; their G4 P, if a whole number, is in
+    /// milliseconds.
     pub(super) fanuc: bool,
 }
 
@@ -42,7 +43,7 @@ fn extrudes(line: &[u8]) -> bool {
     let line = line.trim_ascii_start();
     let code = &line[..line.iter().position(|b| b";(".contains(b)).unwrap_or(line.len())];
     let begins = matches!(code, [b'G' | b'g' | b'N' | b'n' | b'X' | b'x', b'0'..=b'9' | b'-' | b'.', ..]);
-    // `M67 E0 Q0.8` sets an analogue output of LinuxCNC: no extruder there.
+    // `M67 E0 Q0.8` sets an analogue output of LinuxCNC, not an extruder.
     let switches = code.split(|b| b.is_ascii_whitespace()).take(2).any(|w| matches!(w, [b'M' | b'm', b'0'..=b'9', ..]));
     begins && !switches && code.windows(2).any(|w| matches!(w, [b'E' | b'e', b'0'..=b'9' | b'+' | b'-' | b'.']))
 }

@@ -1,8 +1,8 @@
 //! G-code of CNC machines and printers.
 //!
-//! A file with E words is a printer's: metal is what E pushes beyond the most it has pushed before, so that
-//! retracting and priming lay nothing. In other files metal is laid while the arc burns (M3 or M4 to M5, and the
-//! codes of the options).
+//! A file with E words is for a printer: it lays metal when E exceeds its greatest value so far, so retracting and
+//! priming lay nothing. In other files metal is laid while the arc burns (from M3 or M4 to M5, and by the codes in the
+//! options).
 
 use super::block::{Block, Code, Line, begins_block};
 use crate::dialect::reading::trace::{Curve, Step, Trace};
@@ -14,24 +14,24 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// Inch in mm.
 const INCH: f64 = 25.4;
 
-/// Codes in tenths that change neither place nor metal.
+/// Codes in tenths that affect neither position nor metal.
 const HARMLESS_G: [i32; 21] =
     [40, 90, 100, 110, 170, 210, 290, 400, 490, 540, 610, 640, 690, 800, 940, 971, 980, 990, 430, 434, 51];
 
-/// Codes in tenths whose axis words are no end of a motion: offsets, levelling, probing, cycles, turned coordinates.
+/// Codes in tenths whose axis words do not end a motion: offsets, levelling, probing, cycles, turned coordinates.
 const AXES_OF_THEIR_OWN: [i32; 26] = [
     100, 110, 290, 300, 310, 382, 383, 384, 385, 500, 510, 520, 680, 730, 740, 760, 810, 820, 830, 840, 850, 860, 870,
     880, 890, 921,
 ];
 
-/// M codes that change neither place nor metal: stops, temperatures, fans, messages, limits of acceleration, gas.
+/// M codes that affect neither position nor metal: stops, temperatures, fans, messages, limits of acceleration, gas.
 const HARMLESS_M: [i32; 63] = [
     0, 1, 5, 7, 8, 9, 17, 18, 20, 42, 62, 63, 64, 65, 66, 67, 68, 73, 74, 75, 76, 77, 84, 85, 92, 104, 105, 106, 107,
     108, 109, 110, 111, 115, 117, 118, 119, 140, 141, 190, 191, 201, 202, 203, 204, 205, 207, 208, 209, 211, 220, 221,
     300, 301, 302, 304, 400, 486, 566, 572, 900, 155, 113,
 ];
 
-/// Whether a line can only stand in G-code.
+/// Whether a line can occur only in G-code.
 pub(super) fn typical(line: &str) -> bool {
     begins_block(line.as_bytes())
 }
@@ -60,7 +60,7 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     reader.trace.finish(super::DIALECT.language)
 }
 
-/// The extruder: where E stands, and how much was pushed in all.
+/// The extruder: the value of E, and how much filament was pushed in total.
 #[derive(Default)]
 struct Extruder {
     at: f64,
@@ -84,7 +84,7 @@ impl Extruder {
 struct Reader {
     trace: Trace,
     printer: bool,
-    /// The control is of Fanuc's kind.
+    /// Whether the control counts waits as Fanuc controls do.
     fanuc: bool,
     on: Vec<Code>,
     off: Vec<Code>,
@@ -92,7 +92,7 @@ struct Reader {
     unit: f64,
     relative: bool,
     absolute_centres: bool,
-    /// Arcs lie in the XY plane.
+    /// Whether arcs lie in the XY plane.
     flat: bool,
     inverse_time: bool,
     motion: Option<i32>,
@@ -137,7 +137,7 @@ impl Reader {
         }
     }
 
-    /// Slicers tell the bead width in comments.
+    /// Slicers write the bead width in comments.
     fn comment(&mut self, line: &[u8]) {
         if self.printer && line.first() == Some(&b';') {
             self.width = hints::width(line).or(self.width);
@@ -220,7 +220,7 @@ impl Reader {
         }
     }
 
-    /// A printer's M code: its words are settings (`M201 X9000 E5000`).
+    /// Whether this is a printer's M code, whose words are settings (`M201 X9000 E5000`).
     fn sets_only(&self, block: &Block) -> bool {
         self.printer && block.m.iter().next().is_some()
     }
@@ -245,7 +245,7 @@ impl Reader {
         }
     }
 
-    /// Any M code of a machine may light its arc.
+    /// Remembers an M code, since any M code of a machine may light its arc.
     fn seen(&mut self, code: i32, block: &Block) {
         if !self.printer {
             let more = block.get(b'P').map_or(String::new(), |p| format!(" P{p}"));
@@ -255,19 +255,19 @@ impl Reader {
 
     /// Seconds of a G4.
     fn dwell(&self, block: &Block) -> f64 {
-        // A decimal point makes seconds of it on such controls, and nobody waits for so few milliseconds.
+        // On Fanuc controls a P with a decimal point is in seconds, and nobody waits for fewer than 10 ms.
         let milliseconds = |p: f64| self.printer || (self.fanuc && p >= 10.0 && p.fract() == 0.0);
         let p = block.get(b'P').map(|p| if milliseconds(p) { p / 1000.0 } else { p });
         let seconds = [block.get(b'S'), p, block.get(b'X'), block.get(b'F')].into_iter().flatten().next();
         seconds.unwrap_or(0.0).max(0.0)
     }
 
-    /// G92: the place gets new coordinates.
+    /// G92: gives the current position new coordinates.
     fn set_position(&mut self, block: &Block) {
         for (axis, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 self.offset[axis] = self.trace.at[axis] - value * self.unit;
-                // A place that was unknown is now called by this name.
+                // A position that was unknown is now known by these coordinates.
                 if !self.trace.known[axis] {
                     (self.offset[axis], self.trace.at[axis]) = (0.0, value * self.unit);
                     self.trace.known[axis] = true;
@@ -284,7 +284,7 @@ impl Reader {
         if self.filament_area.is_some() { self.unit } else { 1.0 }
     }
 
-    /// G28: a printer stands at 0 then, while a machine's reference point may be anywhere.
+    /// G28: a printer is then at 0, but a machine's reference point may be anywhere.
     fn home(&mut self, block: &Block, line: usize) {
         let all = !b"XYZ".iter().any(|&l| block.names(l));
         let homed = [b'X', b'Y', b'Z'].map(|l| all || block.names(l));
@@ -333,7 +333,7 @@ impl Reader {
         Ok(())
     }
 
-    /// An axis without a number in a motion cannot be meant.
+    /// Refuses a motion that names an axis without a number.
     fn whole(&self, block: &Block, line: usize, moves: bool) -> Result<(), ReadError> {
         let moves = moves || [0, 10, 20, 30].into_iter().any(|g| block.g.has(g));
         match [b'X', b'Y', b'Z'].into_iter().find(|&l| moves && block.names(l) && !block.has(l)) {
@@ -355,7 +355,7 @@ impl Reader {
     /// mm/s, 0 for unknown.
     fn speed(&self, motion: i32, length: f64) -> f64 {
         match motion {
-            // A printer moves at F in any case.
+            // A printer obeys F in G0 too.
             0 if !self.printer => 0.0,
             _ if self.inverse_time => length * self.feed / 60.0,
             _ => self.feed / 60.0 * self.pace,
@@ -381,7 +381,7 @@ impl Reader {
         }
         let turn = if clockwise { -1.0 } else { 1.0 };
         let angle = turn * u.truncate().perp_dot(b.truncate()).atan2(u.truncate().dot(b.truncate()));
-        // Start and end on one spot: a full circle.
+        // Start and end coincide: a full circle.
         let full = start.truncate().distance(to.truncate()) < 1e-6;
         let sweep = if full { TAU } else { angle.rem_euclid(TAU) };
         let (u, v) = (u.with_z(0.0), DVec3::new(-u.y, u.x, 0.0) * turn);

@@ -1,4 +1,4 @@
-//! CNC G-code in profiles: the keys, and what their values can be.
+//! CNC G-code in profiles: the keys, and the limits of their values.
 
 use super::write::CncGcode;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -7,8 +7,8 @@ use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// CNC G-code. Flavours of controllers differ in these keys and in the templates: a dwell of `{{gas_preflow}}` s is
-/// `G4 P{{gas_preflow}}` for LinuxCNC, `G4 P{{gas_preflow_ms}}` for Fanuc and `G4 F{{gas_preflow}}` for Siemens.
+/// CNC G-code. These keys and the templates cover the differences between controllers: a dwell of `{{gas_preflow}}` s
+/// is `G4 P{{gas_preflow}}` for LinuxCNC, `G4 P{{gas_preflow_ms}}` for Fanuc and `G4 F{{gas_preflow}}` for Siemens.
 /// Templates are blocks with `{{placeholders}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,11 +16,11 @@ use serde::{Deserialize, Serialize};
 pub struct Gcode {
     /// File name extension without the dot.
     pub extension: String,
-    /// Whether blocks carry N numbers.
+    /// Whether blocks have N numbers.
     pub block_numbers: bool,
-    /// Decimals of coordinates, 1 to 4.
+    /// Number of decimal places of coordinates, 1 to 4.
     pub decimals: usize,
-    /// Whether a `%` stands before and behind the program (LinuxCNC, Fanuc; not Siemens); default true.
+    /// Whether the program begins and ends with a `%` line (LinuxCNC, Fanuc; not Siemens); default true.
     #[serde(default = "yes")]
     pub percent_signs: bool,
     /// O number of the program (Fanuc); default none.
@@ -28,27 +28,27 @@ pub struct Gcode {
     /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
     #[serde(default)]
     pub comments: GcodeComments,
-    /// Blocks at the beginning.
+    /// Blocks at the beginning of the program.
     pub header: Vec<String>,
     /// Blocks at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Blocks that light the arc, at the start point of a pass.
+    /// Blocks that strike the arc at the start point of a pass.
     pub arc_on: Vec<String>,
-    /// Blocks that end the arc, at the end point of a pass.
+    /// Blocks that end the arc at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Blocks that wait `{{dwell}}` s or `{{dwell_ms}}` ms; default `G4 P{{dwell}}`, which is LinuxCNC's.
+    /// Blocks that wait `{{dwell}}` s or `{{dwell_ms}}` ms; default `G4 P{{dwell}}`, as LinuxCNC expects.
     #[serde(default = "seconds")]
     pub dwell: Vec<String>,
-    /// Blocks that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
-    /// where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default
-    /// none.
+    /// Blocks that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}` m/min;
+    /// written wherever it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below
+    /// 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Blocks that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
-    /// where those act only with the next move, as LinuxCNC's M67 does: M68 does not.
+    /// Blocks that set the wire feed while the torch stands still to fill the crater; default: those of `wire_feed`.
+    /// Needed if those take effect only with the next move, as M67 of LinuxCNC does, unlike M68.
     #[serde(default)]
     pub crater: Vec<String>,
-    /// Blocks at the end.
+    /// Blocks at the end of the program.
     pub footer: Vec<String>,
 }
 

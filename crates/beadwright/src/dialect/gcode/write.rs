@@ -1,5 +1,5 @@
 //! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
-//! keys and templates of the profile.
+//! set by keys and templates in the profile.
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines};
 use crate::number::push_fixed;
@@ -7,7 +7,7 @@ use super::section::{Gcode, GcodeComments};
 use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 
-/// Block numbers begin anew after this.
+/// Block numbers start again after this one.
 const MAX_BLOCK: usize = 99_990;
 
 /// A comment may have this many characters: blocks stay under 80.
@@ -67,7 +67,7 @@ impl CncGcode {
         self.blocks(text, &lines);
     }
 
-    /// A straight move; axes that stand still are left out.
+    /// A straight move; axes that do not move are left out.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, feed: Option<f64>) {
         self.motion(text, word, to, None, feed);
     }
@@ -146,8 +146,8 @@ impl CncGcode {
     }
 }
 
-/// I and J: where the centre lies from the start of the arc, mm. With one decimal more than the points: their rounding
-/// moves the whole arc.
+/// I and J: the centre relative to the start of the arc, mm. They have one decimal more than the points, because
+/// rounding them shifts the whole arc.
 pub(in crate::dialect) fn push_centre(text: &mut String, centre: DVec3, decimals: usize) {
     let decimals = (decimals + 1).min(4);
     text.push_str(" I");

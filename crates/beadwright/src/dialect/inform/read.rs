@@ -1,7 +1,8 @@
 //! Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
 //!
-//! Places are those of the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes of the options. A run
-//! of MOVC is a chain of arcs: start, a point on the way and end, then either a new start on the spot or the next two.
+//! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options.
+//! Consecutive MOVC form a chain of arcs: start, via point and end; then either a new start at the same position, or
+//! the next via point and end.
 
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
@@ -10,7 +11,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Instructions without bearing on place and metal, by their first words.
+/// Instructions that affect neither position nor metal, by their first words.
 const HARMLESS: [&str; 22] = [
     "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
     "SUB", "WVON", "WVOF", "ARCSET", "MSG", "PAUSE", "SPEED",
@@ -19,17 +20,17 @@ const HARMLESS: [&str; 22] = [
 /// Branches and loops.
 const CONTROL: [&str; 8] = ["JUMP", "IF", "IFTHENEXP", "ELSE", "FOR", "WHILE", "SWITCH", "RET"];
 
-/// A MOVC this near to where the torch stands begins an arc, mm.
+/// A MOVC this close to the torch's position begins a new arc, mm.
 const ON_THE_SPOT_MM: f64 = 0.005;
 
-/// A job: instructions with their lines, and positions by name; none for pulses.
+/// A job: instructions with their lines, and positions by name; `None` for positions in pulses.
 struct Job {
     module: Option<String>,
     instructions: Vec<(usize, String)>,
     positions: HashMap<String, Option<DVec3>>,
 }
 
-/// Whether a line can only stand in a job.
+/// Whether a line can occur only in a job.
 pub(super) fn typical(line: &str) -> bool {
     line == "/JOB"
 }
@@ -205,7 +206,7 @@ impl Reader<'_> {
         };
     }
 
-    /// A chain that lacks its end point goes straight to its last one.
+    /// A chain without its end point runs straight to its last point.
     fn end_circle(&mut self) {
         if let Circle::Via(to, step) = std::mem::replace(&mut self.circle, Circle::None) {
             self.trace.note("an arc", "has no end point and was read as a straight move", step.line);

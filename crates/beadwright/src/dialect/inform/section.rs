@@ -1,4 +1,4 @@
-//! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and what its values can be.
+//! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and the limits of its values.
 
 use super::write::YaskawaInform;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -7,14 +7,14 @@ use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// Unit of `V=`, as the controller's parameters say.
+/// Unit of `V=`, as set in the controller's parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum InformSpeed {
-    /// Millimetres a second.
+    /// Millimetres per second.
     #[serde(rename = "mm/s")]
     MillimetresPerSecond,
-    /// Centimetres a minute.
+    /// Centimetres per minute.
     #[serde(rename = "cm/min")]
     CentimetresPerMinute,
 }
@@ -24,45 +24,46 @@ pub enum InformSpeed {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Inform {
-    /// User frame of the part, 1 to 63.
+    /// Number of the user frame of the part, 1 to 63.
     pub user_frame: u32,
-    /// Tool of the torch, 0 to 63.
+    /// Number of the tool that is the torch, 0 to 63.
     pub tool: u32,
-    /// Robot's group, such as `RB1`.
+    /// Control group of the robot, such as `RB1`.
     pub group: String,
-    /// Configuration of the points, ///RCONF: `1,0,0,0,0,0,0,0`.
+    /// Robot configuration of the points, as in `///RCONF`: `1,0,0,0,0,0,0,0`.
     pub configuration: String,
-    /// Axis position before and after the program, pulses of S, L, U, R, B, T.
+    /// Axis positions S, L, U, R, B and T before and after the program, pulses.
     pub home: [i64; 6],
-    /// Speed to and from it, VJ, %.
+    /// Speed (VJ) of the moves to and from `home`, %.
     pub home_speed: f64,
     /// Orientation of the tool in the user frame: Rx, Ry, Rz, °; `[180, 0, 0]` is straight down.
     pub orientation: [f64; 3],
-    /// Position level along a pass: PL 0 to 8; where the arc switches it is 0.
+    /// Position level (PL) along a pass, 0 to 8; where the arc is switched it is 0.
     pub position_level: u32,
-    /// Unit of `V=`, as the controller is set: `mm/s` or `cm/min`.
+    /// Unit of `V=`, as set on the controller: `mm/s` or `cm/min`.
     pub speed: InformSpeed,
-    /// Date in the jobs, `yyyy/mm/dd hh:mm`: the same plan gives the same bytes.
+    /// Date written into the jobs, `yyyy/mm/dd hh:mm`; it is fixed so that the same plan always gives the same bytes.
     pub date: String,
-    /// Job names have at most this many characters: 32, or 8 on the NX100.
+    /// Maximum number of characters in a job name: 32, or 8 on the NX100.
     pub max_name: usize,
-    /// A job of a layer holds at most this many moves and goes on in another: controllers take 9,999 instructions.
+    /// Maximum number of moves in one job; longer layers continue in another, since controllers accept only 9,999
+    /// instructions.
     pub max_points: usize,
     /// Instructions at the beginning of the main job.
     pub start: Vec<String>,
     /// Instructions at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Instructions that light the arc, at the start point of a pass.
+    /// Instructions that strike the arc at the start point of a pass.
     pub arc_on: Vec<String>,
-    /// Instructions that end the arc, at the end point of a pass.
+    /// Instructions that end the arc at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
-    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
-    /// default none.
+    /// Instructions that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}`
+    /// m/min; written wherever it changes. Needed for `process.follow = "wire-feed"` and for a
+    /// `start_stop.crater_power` below 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Instructions that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`.
-    /// Needed where those act only with the next move.
+    /// Instructions that set the wire feed while the torch stands still to fill the crater; default: those of
+    /// `wire_feed`. Needed if those take effect only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Instructions at the end of the main job.
@@ -77,7 +78,7 @@ impl Section for Inform {
             "inform.home_speed": self.home_speed, 0.01, 100.0, "%", CONTROLLER;
             "inform.position_level": self.position_level.into(), 0.0, 8.0, "(PL)", CONTROLLER;
             "inform.max_name": self.max_name as f64, 8.0, 32.0, "characters", CONTROLLER;
-            "inform.max_points": self.max_points as f64, 10.0, 2000.0, "moves a job",
+            "inform.max_points": self.max_points as f64, 10.0, 2000.0, "moves per job",
                 "larger programs do not load into the controller";
         };
         limits.extend(self.home.map(|axis| limit("inform.home", axis as f64, (-1e7, 1e7), "pulses", CONTROLLER)));

@@ -1,5 +1,5 @@
-//! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; long
-//! layers go on in `NAME-L001-2.jbi`, and `NAME-END.jbi` takes the torch away.
+//! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; a long
+//! layer continues in `NAME-L001-2.jbi`, and `NAME-END.jbi` moves the torch away.
 //!
 //! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
 //! begins, so the robot does not move for it.
@@ -50,7 +50,7 @@ impl JobText {
 }
 
 impl YaskawaInform {
-    /// Begins the program of a part; its name becomes the job's name.
+    /// Begins the program of a part and names the job after the part.
     pub(super) fn new(job: &Job<'_>, inform: Inform) -> Self {
         let name = upper_name(&job.part);
         let values = Values::new(&name, job);
@@ -75,7 +75,7 @@ impl YaskawaInform {
         }
     }
 
-    /// Adds a position in the user frame and gives its name.
+    /// Adds a position in the user frame and returns its name.
     fn pose(&self, job: &mut JobText, to: DVec3) -> String {
         let name = format!("C{:05}", job.count);
         let [x, y, z] = to.to_array().map(|v| fixed(v, 3));
@@ -160,7 +160,7 @@ fn wait(job: &mut JobText, seconds: f64) {
 impl Writer for YaskawaInform {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
-        // With room to spare the names of split layers fit too: "-L001-2".
+        // Where names may be longer, those of split layers fit too: "-L001-2".
         let more = if self.inform.max_name > 16 { 4 } else { 2 };
         self.name.truncate((self.inform.max_name - SUFFIX - self.digits).saturating_sub(more).max(1));
         let mut main = String::new();

@@ -1,10 +1,11 @@
 //! Inline forms of KUKA ArcTech Basic 3.x: ARCON, ARCSWI and ARCOFF as the pendant folds them, and their data.
 //!
-//! A form moves to its point and switches there: ARCON drives to the start, ignites, and sets the speed of the seam;
-//! ARCSWI drives with the speed so far and sets that of what follows; ARCOFF drives to the end and fills the crater. One
-//! ARCSWI takes about 1.5 kB, so points in between are plain motions, and forms stand only where the speed changes. Every
-//! module declares what its forms use in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form, and one `WDATn` for
-//! each distinct set of parameters. Switching without delay, weaving and the package ArcTech Advanced are left out.
+//! A form moves to its point and switches there: ARCON moves to the start, ignites, and sets the speed of the seam;
+//! ARCSWI moves at the current speed and sets the speed of what follows; ARCOFF moves to the end and fills the crater.
+//! One ARCSWI takes about 1.5 kB, so points in between are plain motions, and forms are written only where the speed
+//! changes. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form,
+//! and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, weaving, and the
+//! package ArcTech Advanced.
 
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::ArcTech;
@@ -34,7 +35,7 @@ impl Form {
 /// A motion of a form: poses as KRL aggregates.
 #[derive(Clone, Copy)]
 pub(super) struct Target<'a> {
-    /// On the circle, in front of the end.
+    /// A point of the circle before its end.
     pub(super) via: Option<&'a str>,
     /// Where it ends.
     pub(super) to: &'a str,
@@ -66,14 +67,14 @@ pub(super) struct Forms {
     postflow: f64,
     /// Speed without arc, m/s.
     travel: String,
-    /// Contents of the weld data sets so far: the place is the number less one.
+    /// Contents of the weld data sets so far, in order: set n is at index n − 1.
     sets: Vec<String>,
     points: usize,
     data: String,
 }
 
-/// Refuses what the forms cannot do: they have their own data for the end of a pass, and set the wire feed by the weld's
-/// own set.
+/// Refuses what the forms cannot do: the end of a pass has its own data in them, and the wire feed comes from the
+/// weld's parameter set.
 pub(super) fn check(job: &Job<'_>) -> Result<(), DialectError> {
     let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "krl", what, remedy });
     if job.weld.process.follow == Follow::WireFeed {
@@ -108,7 +109,7 @@ impl Forms {
         }
     }
 
-    /// Drives to the start of a pass and lights the arc; the seam goes on at `speed`, mm/s.
+    /// Moves to the start of a pass and lights the arc; the seam continues at `speed`, mm/s.
     pub(super) fn on(&mut self, text: &mut String, to: &str, speed: f64) {
         let ArcTech { strike, .. } = &self.arctech;
         let set = format!(
@@ -124,13 +125,13 @@ impl Forms {
         self.form(text, Form::On, Target { via: None, to }, set);
     }
 
-    /// Drives on with the speed so far; behind the point the seam goes on at `speed`, mm/s.
+    /// Moves on at the current speed; after the point the seam continues at `speed`, mm/s.
     pub(super) fn switch(&mut self, text: &mut String, target: Target<'_>, speed: f64) {
         let set = self.weld_set(speed);
         self.form(text, Form::Switch, target, set);
     }
 
-    /// Drives to the end of a pass and ends the arc.
+    /// Moves to the end of a pass and ends the arc.
     pub(super) fn off(&mut self, text: &mut String, target: Target<'_>) {
         let ArcTech { crater, .. } = &self.arctech;
         let set = format!(
@@ -157,7 +158,7 @@ impl Forms {
         )
     }
 
-    /// Number of the data set with these contents, which is declared where it is new.
+    /// Number of the data set with these contents, which is declared if it is new.
     fn set_number(&mut self, contents: String) -> usize {
         if let Some(known) = self.sets.iter().position(|s| *s == contents) {
             return known + 1;
@@ -168,7 +169,7 @@ impl Forms {
         number
     }
 
-    /// Declares a point on the way of a form and gives its number.
+    /// Declares a point of a form and returns its number.
     fn point(&mut self, pose: &str) -> usize {
         self.points += 1;
         let n = self.points;
@@ -215,7 +216,8 @@ impl Forms {
         );
     }
 
-    /// Where the arc is lit or ends, the robot stands still. The distance is what `BAS` takes from the motion's data.
+    /// Whether the point is passed without a stop: never where the arc is lit or ends. `BAS` takes the blending
+    /// distance from the motion's data.
     fn is_blended(&self, form: Form) -> bool {
         form == Form::Switch && self.blend > 0.0
     }
@@ -237,7 +239,7 @@ impl Forms {
         );
     }
 
-    /// What belongs into the module's `.dat`: nothing where no form was written.
+    /// The declarations for the module's `.dat`; empty if no form was written.
     pub(super) fn declarations(&self) -> String {
         let mut text = String::new();
         if self.points > 0 {
@@ -253,7 +255,7 @@ impl Forms {
     }
 }
 
-/// What is to happen before or at the end of the next motion.
+/// Writes the triggers that act before or at the end of the next motion.
 fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
     let mut trigger = |when: &str, delay: &str, what: &str| {
         let _ = write!(text, "TRIGGER WHEN {when} DELAY = {delay} DO ArcMainNG(#{what}, {of}) PRIO = -1\r\n");

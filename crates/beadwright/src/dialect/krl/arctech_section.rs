@@ -1,6 +1,7 @@
-//! The section `[krl.arctech]`: data sets of KUKA ArcTech Basic 3.x, and what their values can be.
+//! The section `[krl.arctech]`: data sets of KUKA ArcTech Basic 3.x, and the limits of their values.
 //!
-//! "(u)" marks what no source confirms for every version of the package: compare it with a form made on the pendant.
+//! "(unconfirmed)" marks details that no source confirms for every version of the package: compare them with a form
+//! made on the pendant.
 
 use crate::limit::{Broken, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -17,12 +18,12 @@ pub enum KrlArc {
     Arctech,
 }
 
-/// ArcTech Basic. Times of gas and ignition come from `[process]`.
+/// ArcTech Basic. Gas and ignition times come from `[process]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArcTech {
-    /// Version of the package on the controller, such as `3.3.3.366`: data of another version are refused there.
+    /// Version of the package on the controller, such as `3.3.3.366`; the controller refuses data of any other version.
     pub version: String,
     /// Ignition.
     pub strike: ArcTechStrike,
@@ -37,27 +38,28 @@ pub struct ArcTech {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArcTechStrike {
-    /// Mode of the power source, `JobModeId`, as WorkVisual names it: `Job mode`, `GMAW synergic S2-Step` (u).
+    /// Mode of the power source (`JobModeId`), named as in WorkVisual: `Job mode`, `GMAW synergic S2-Step`
+    /// (unconfirmed).
     pub mode: String,
-    /// Set of parameters, `ParamSetId`, such as `Set1` (u).
+    /// Parameter set (`ParamSetId`), such as `Set1` (unconfirmed).
     pub set: String,
-    /// Values of the channels 1 to 8 as WorkVisual has them: job number; or synergic line, wire feed in m/min, arc-length
-    /// correction and dynamic correction (u).
+    /// Values of channels 1 to 8 as configured in WorkVisual: job number; or synergic line, wire feed in m/min,
+    /// arc-length correction and dynamic correction (unconfirmed).
     pub channels: [f64; 8],
     /// Time to fill the gas lines, s.
     pub purge_time: f64,
 }
 
-/// The group `Weld` of a data set; its speed is that of the path.
+/// The group `Weld` of a data set; its speed is the speed of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArcTechWeld {
-    /// Mode of the power source, `JobModeId`.
+    /// Mode of the power source (`JobModeId`).
     pub mode: String,
-    /// Set of parameters, `ParamSetId`.
+    /// Parameter set (`ParamSetId`).
     pub set: String,
-    /// Values of the channels 1 to 8.
+    /// Values of channels 1 to 8.
     pub channels: [f64; 8],
 }
 
@@ -66,20 +68,20 @@ pub struct ArcTechWeld {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArcTechCrater {
-    /// Mode of the power source, `JobModeId`.
+    /// Mode of the power source (`JobModeId`).
     pub mode: String,
-    /// Set of parameters, `ParamSetId`.
+    /// Parameter set (`ParamSetId`).
     pub set: String,
-    /// Values of the channels 1 to 8.
+    /// Values of channels 1 to 8.
     pub channels: [f64; 8],
-    /// Time for which the crater is filled at the end point, s.
+    /// Crater filling time at the end point, s.
     pub time: f64,
-    /// Time for which the wire burns back, s.
+    /// Burnback time of the wire, s.
     pub burnback_time: f64,
 }
 
 impl ArcTech {
-    /// The version as the data sets hold it: 3.3.3.366 is 303030366; none for what is no version.
+    /// The version as the data sets store it: 3.3.3.366 is 303030366; `None` if the text is not a version.
     pub(crate) fn number(&self) -> Option<u64> {
         let parts: Vec<u64> = self.version.split('.').map(|p| p.parse().ok()).collect::<Option<_>>()?;
         let [major, minor, revision, build] = parts[..] else { return None };
@@ -87,14 +89,14 @@ impl ArcTech {
         fits.then(|| ((major * 100 + minor) * 100 + revision) * 10_000 + build)
     }
 
-    /// What the numbers can be.
+    /// The limits of the numbers.
     pub(super) fn limits(&self) -> Vec<Limit> {
         let mut limits = limits! {
             "krl.arctech.strike.purge_time": self.strike.purge_time, 0.0, 60.0, "s",
-                "beyond this the value has no meaning";
-            "krl.arctech.crater.time": self.crater.time, 0.0, 60.0, "s", "beyond this the value has no meaning";
+                "values outside this range make no sense";
+            "krl.arctech.crater.time": self.crater.time, 0.0, 60.0, "s", "values outside this range make no sense";
             "krl.arctech.crater.burnback_time": self.crater.burnback_time, 0.0, 10.0, "s",
-                "beyond this the value has no meaning";
+                "values outside this range make no sense";
         };
         for (key, channels) in [
             ("krl.arctech.strike.channels", self.strike.channels),

@@ -1,7 +1,7 @@
-//! KUKA KRL: motions in Cartesian places, named or written out, and the subprograms that a program calls.
+//! KUKA KRL: motions to Cartesian positions, named or written out, and the subprograms that a program calls.
 //!
-//! Places are those of `$BASE`. The arc is lit by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes of
-//! the options; a trigger at the end of a motion counts after that motion.
+//! Positions are in `$BASE`. The arc is lit by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes in the
+//! options; a trigger at the end of a motion takes effect after that motion.
 
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Statements without bearing on place and metal.
+/// Statements that affect neither position nor metal.
 const HARMLESS: [&str; 26] = [
     "DECL",
     "INT",
@@ -40,7 +40,7 @@ const HARMLESS: [&str; 26] = [
     "IMPORT",
 ];
 
-/// Programs of the system that move nothing.
+/// System programs that move nothing.
 const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
 
 /// Branches and loops, by their first words.
@@ -104,7 +104,7 @@ struct Source {
     weld_speeds: HashMap<String, f64>,
 }
 
-/// Whether a line can only stand in KRL.
+/// Whether a line can occur only in KRL.
 pub(super) fn typical(line: &str) -> bool {
     const FIRST: [&str; 9] = ["DEF", "DEFDAT", "DEFFCT", "LIN", "PTP", "SLIN", "SPTP", "$VEL", "$OUT"];
     let marked = line.starts_with('&') || line.starts_with(";FOLD");
@@ -147,12 +147,12 @@ struct Reader<'a> {
     speed: f64,
     /// mm/s, of the ArcTech data in use
     weld_speed: Option<f64>,
-    /// What the arc does after the next motion.
+    /// Whether the arc is on after the next motion; `None` if nothing switches it there.
     later: Option<bool>,
 }
 
 impl Reader<'_> {
-    /// Takes a module in, with its data file.
+    /// Loads a module and its data file.
     fn load(&mut self, module: Option<&str>, text: Rc<str>) -> Result<usize, ReadError> {
         let programs = programs(&text);
         let own = module.or(programs.first().map(|p| p.0.as_str())).map(|name| format!("{name}.dat"));
@@ -334,7 +334,7 @@ impl Reader<'_> {
         [0, 1, 2].map(|i| target[i].map(|v| if motion.relative { at[i] + v } else { v }))
     }
 
-    /// A place written out or named; none when it is neither.
+    /// A target written out or named; `None` when it is neither.
     fn target(&self, text: &str, number: usize, source: usize) -> Result<Option<Target>, ReadError> {
         if text.starts_with('{') {
             return self.aggregate(text, number).map(Some);
@@ -419,7 +419,7 @@ fn bas_speed(flat: &str) -> Option<&str> {
     Some(value.trim_end_matches(')'))
 }
 
-/// mm/s of `WITH $VEL.CP=0.1` behind a motion.
+/// mm/s of `WITH $VEL.CP=0.1` after a motion.
 fn with_speed(rest: &str) -> Option<f64> {
     let flat = compact(rest.get(rest.find('$')?..)?);
     number_before(flat.strip_prefix("$VEL.CP=")?).map(|v| v * 1000.0)

@@ -1,4 +1,4 @@
-//! KUKA KRL in profiles: the keys, and what their values can be.
+//! KUKA KRL in profiles: the keys, and the limits of their values.
 
 use super::write::KukaKrl;
 use super::arctech;
@@ -18,19 +18,19 @@ pub struct Krl {
     pub tool: u32,
     /// Index into BASE_DATA, 1 to 32.
     pub base: u32,
-    /// Axis position before and after the program, as in an E6AXIS: `A1 0.0,A2 -90.0,…`, °.
+    /// Axis angles before and after the program, °, written as in an E6AXIS: `A1 0.0,A2 -90.0,…`.
     pub home: String,
-    /// Orientation of the tool, A, B and C, °.
+    /// Orientation of the tool: A, B and C, °.
     pub orientation: [f64; 3],
     /// Speed of point-to-point moves, %.
     pub ptp_speed: f64,
-    /// Blending distance along a pass, `$APO.CDIS`, mm; 0 for none.
+    /// Blending distance (`$APO.CDIS`) along a pass, mm; 0 for no blending.
     pub blend: f64,
-    /// Moves in one module; longer layers are cut between passes; default 2000.
+    /// Maximum number of moves in one module; longer layers are cut between passes; default 2000.
     #[serde(default = "two_thousand")]
     pub max_points: usize,
-    /// What switches the arc: `outputs`, the lines `arc_on` and `arc_off`, or `arctech`, the forms of ArcTech Basic; default
-    /// outputs.
+    /// What switches the arc: `outputs` (the lines `arc_on` and `arc_off`) or `arctech` (the inline forms of ArcTech
+    /// Basic); default outputs.
     #[serde(default)]
     pub arc: KrlArc,
     /// Data of ArcTech Basic; needed for `arc = "arctech"`.
@@ -39,17 +39,18 @@ pub struct Krl {
     pub start: Vec<String>,
     /// Lines at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Lines that light the arc, at the start point of a pass.
+    /// Lines that strike the arc at the start point of a pass.
     pub arc_on: Vec<String>,
-    /// Lines that end the arc, at the end point of a pass.
+    /// Lines that end the arc at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Lines that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min; written
-    /// where it changes. `$ANOUT[1] = …` stops at the point before; `TRIGGER WHEN DISTANCE=0 DELAY=0 DO $ANOUT[1] = …`
-    /// does not. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
+    /// Lines that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}` m/min;
+    /// written wherever it changes. A plain `$ANOUT[1] = …` stops the robot at the preceding point;
+    /// `TRIGGER WHEN DISTANCE=0 DELAY=0 DO $ANOUT[1] = …` does not. Needed for `process.follow = "wire-feed"` and for a
+    /// `start_stop.crater_power` below 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Lines that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
-    /// where those act only with the next move, as a TRIGGER does.
+    /// Lines that set the wire feed while the torch stands still to fill the crater; default: those of `wire_feed`.
+    /// Needed if those take effect only with the next move, as a TRIGGER does.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Lines at the end of the main program.
@@ -67,7 +68,7 @@ impl Section for Krl {
             "krl.base": self.base.into(), 1.0, 32.0, "(index into BASE_DATA)", CONTROLLER;
             "krl.ptp_speed": self.ptp_speed, 1.0, 100.0, "%", CONTROLLER;
             "krl.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
-            "krl.max_points": self.max_points as f64, 10.0, 50_000.0, "moves a module",
+            "krl.max_points": self.max_points as f64, 10.0, 50_000.0, "moves per module",
                 "the pendant cannot show longer modules";
         };
         limits.extend(self.orientation.map(|angle| limit("krl.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));

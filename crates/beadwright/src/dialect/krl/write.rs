@@ -1,8 +1,8 @@
 //! KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on, `NAME.dat` holds the home position.
 //!
-//! One module a layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The
-//! arc is switched at exact stops only; inside a pass points are blended with `C_DIS`. With `arc = "arctech"` the forms of
-//! ArcTech Basic switch it, whose data stand in a `.dat` beside each layer's module.
+//! One module per layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The arc
+//! is switched at exact stops only; points inside a pass are blended with `C_DIS`. With `arc = "arctech"` the inline
+//! forms of ArcTech Basic switch the arc; their data are in a `.dat` beside each layer's module.
 
 use super::arctech::{Forms, Target};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
@@ -39,7 +39,7 @@ pub(super) struct KukaKrl {
 }
 
 impl KukaKrl {
-    /// Begins the program of a part; its name becomes the module's name.
+    /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, krl: Krl) -> Self {
         let name = module_name(&job.part);
         let comment = job.comment();
@@ -53,7 +53,7 @@ impl KukaKrl {
         format!("{}_L{:0digits$}", self.name, index + 1, digits = self.digits)
     }
 
-    /// The module of a part of a layer, counted from 0, with its data and its call.
+    /// The module for one part of a layer (`part` counts from 0), with its data and its call.
     fn module(&mut self, program: &LayerProgram, part: usize, moves: &[Instruction]) -> Vec<Chunk> {
         let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
         let module = format!("{}{more}", self.layer_name(program.index));
@@ -109,14 +109,14 @@ impl KukaKrl {
         Some(Forms::new(arctech, &self.krl, &self.process, self.travel_speed))
     }
 
-    /// One of a layer's instructions where the forms of ArcTech switch the arc: a form moves to its point itself.
+    /// Writes one instruction of a layer when ArcTech forms switch the arc; a form includes the move to its point.
     fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
         let next_speed = all[i + 1..].iter().find_map(|next| match next {
             Instruction::Weld { speed, .. } => Some(*speed),
             _ => None,
         });
         match (all[i], next_speed) {
-            // ARCON goes there.
+            // ARCON itself moves there.
             (Instruction::Travel { .. }, Some(_)) if matches!(all[i + 1], Instruction::ArcOn { .. }) => {}
             (Instruction::ArcOn { pass, kind }, Some(speed)) => {
                 self.values.set("pass", pass);
@@ -143,7 +143,7 @@ impl KukaKrl {
         }
     }
 
-    /// Sets the speed of the plain motions behind a form, which has set it for the forms only.
+    /// Sets the speed of the plain motions after a form, since a form sets it for forms only.
     fn go_on(&mut self, text: &mut String, speed: f64) {
         self.speed = 0.0;
         self.set_speed(text, speed);

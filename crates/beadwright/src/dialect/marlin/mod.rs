@@ -12,7 +12,7 @@ pub const DIALECT: Dialect = Dialect {
     name: "marlin",
     language: "G-code",
     turns_table: false,
-    // A printer's file is G-code too.
+    // A printer's file is recognised as G-code.
     typical: |_| false,
     read: super::gcode::DIALECT.read,
 };

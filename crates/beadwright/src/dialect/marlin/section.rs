@@ -1,4 +1,4 @@
-//! Printers' G-code in profiles: the keys, and what their values can be.
+//! Printers' G-code in profiles: the keys, and the limits of their values.
 
 use super::write::MarlinGcode;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -14,26 +14,27 @@ use serde::{Deserialize, Serialize};
 pub struct Marlin {
     /// File name extension without the dot.
     pub extension: String,
-    /// Whether E counts from move to move (M83), which keeps small moves exact; else from layer to layer (M82).
+    /// Whether E counts anew for every move (M83), which keeps small moves exact; otherwise it counts up over a layer
+    /// (M82).
     pub relative_extrusion: bool,
-    /// Filament drawn back before a travel, mm; 0 for none.
+    /// Length of filament drawn back before a travel, mm; 0 for none.
     pub retract_length: f64,
-    /// Speed at which it is drawn back and pushed forward again, mm/s.
+    /// Speed at which the filament is drawn back and pushed forward again, mm/s.
     pub retract_speed: f64,
-    /// Shorter travels are made without drawing it back, mm.
+    /// Shortest travel for which the filament is drawn back, mm.
     pub retract_from: f64,
-    /// Lines at the beginning: temperatures, homing.
+    /// Lines at the beginning of the program: temperatures, homing.
     pub header: Vec<String>,
     /// Lines at the beginning of every layer: fan, temperatures.
     pub layer_start: Vec<String>,
-    /// Lines at the end.
+    /// Lines at the end of the program.
     pub footer: Vec<String>,
 }
 
 impl Section for Marlin {
     fn limits(&self) -> Vec<Limit> {
-        const PRINTER: &str = "no printer of the trade goes beyond";
-        let hot_end = "more filament than this leaves the hot end";
+        const PRINTER: &str = "no printer on the market goes beyond this";
+        let hot_end = "drawing back more would pull the filament out of the hot end";
         limits! {
             "marlin.retract_length": self.retract_length, 0.0, 50.0, "mm of filament", hot_end;
             "marlin.retract_speed": self.retract_speed, 0.1, 500.0, "mm/s", PRINTER;
@@ -55,7 +56,7 @@ impl Section for Marlin {
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        // A printer's E tells the feed of every move, but nothing melts without one.
+        // A printer's E sets the feed of every move, but without a move nothing is fed.
         let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "marlin", what, remedy });
         if job.weld.ends.crater_fill_time > 0.0 && !job.dry_run {
             return cannot("a start_stop.crater_fill_time", "Strands have no craters: leave it out.");

@@ -1,6 +1,7 @@
-//! G-code for printers (Marlin, Klipper): E tells the filament, in mm, that goes into every move.
+//! G-code for printers (Marlin, Klipper): E gives the filament, in mm, that every move extrudes.
 //!
-//! Comments name layers, kinds and widths as printers' viewers expect them. Filament is drawn back before long travels.
+//! Comments name layers, kinds of pass and widths as G-code viewers expect them. Filament is retracted before long
+//! travels.
 
 use crate::dialect::gcode::write::push_centre;
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii};
@@ -27,7 +28,7 @@ pub(super) struct MarlinGcode {
     height: f64,
     /// Filament per second of deposition, mm/s: the metal of the bead at its nominal speed.
     filament_speed: f64,
-    /// Part of it from here on.
+    /// Fraction of `filament_speed` that is used from here on.
     filament_ratio: f64,
     /// Whether moves lay metal: not in a dry run.
     lays: bool,
@@ -78,7 +79,7 @@ impl MarlinGcode {
         }
     }
 
-    /// A straight move; axes that stand still are left out.
+    /// A straight move; axes that do not move are left out.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, filament: Option<f64>, speed: f64) {
         self.motion(text, word, to, None, filament, speed);
     }
@@ -140,7 +141,7 @@ impl MarlinGcode {
         text.push('\n');
     }
 
-    /// Draws the filament back, or pushes it forward again.
+    /// Retracts the filament, or pushes it forward again.
     fn retract(&mut self, text: &mut String, back: bool) {
         if self.marlin.retract_length > 0.0 && self.retracted != back {
             self.retracted = back;
@@ -188,7 +189,7 @@ impl MarlinGcode {
     }
 }
 
-/// The word that viewers know.
+/// The name that G-code viewers know for a kind of pass.
 fn type_name(kind: PassKind) -> &'static str {
     match kind {
         PassKind::Contour | PassKind::Wall => "External perimeter",
@@ -221,7 +222,8 @@ impl Writer for MarlinGcode {
         Self::comment(&mut text, &format!("Z:{:.3}", program.z));
         Self::comment(&mut text, &format!("HEIGHT:{}", self.height));
         self.lines(&mut text, &self.marlin.layer_start);
-        // Small numbers keep their digits in the printer's 32 bits; but never while the filament is drawn back.
+        // E starts from 0 again, as small numbers keep their digits in the printer's 32 bits; but not while filament is
+        // retracted.
         if !self.marlin.relative_extrusion && !self.retracted {
             self.reset_e(&mut text);
         }

@@ -13,7 +13,7 @@ pub(super) fn external_axes(table: Option<f64>) -> String {
     table.map_or(NO_AXES.to_owned(), |angle| NO_AXES.replacen("9E+09", &fixed(angle, 4), 1))
 }
 
-/// Numbers with `decimals` between brackets.
+/// Numbers in brackets, with `decimals` decimal places.
 fn list(values: &[f64], decimals: usize) -> String {
     let texts: Vec<String> = values.iter().map(|&v| fixed(v, decimals)).collect();
     format!("[{}]", texts.join(","))
@@ -46,18 +46,18 @@ pub(super) fn push_target(text: &mut String, to: DVec3, orientation: &str, axes:
     text.push(']');
 }
 
-/// Speeddata of a tool speed, mm/s.
+/// Speeddata for a tool speed, mm/s.
 pub(super) fn speed(tool_speed: f64, rapid: &Rapid) -> String {
     format!("[{},{},5000,1000]", fixed(tool_speed, 3), fixed(rapid.orientation_speed, 3))
 }
 
-/// Zonedata of a corner path's radius, mm, in the proportions of `z1`.
+/// Zonedata for a corner path of this radius, mm, in the proportions of `z1`.
 fn zone(radius: f64) -> String {
     let (r, tenth) = (fixed(radius, 3), fixed(radius / 10.0, 3));
     format!("[FALSE,{r},{r},{r},{tenth},{r},{tenth}]")
 }
 
-/// Arcdata with a part of the process's wire feed.
+/// Arcdata with the fraction `part` of the process's wire feed.
 fn arc(process: &Process, rapid: &Rapid, part: f64) -> String {
     let feed = part * process.wire_feed_speed;
     let feed = match rapid.wire_feed_unit {
@@ -95,7 +95,8 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
     .join(",")
 }
 
-/// Welddata of a deposition speed, mm/s, and a part of the wire feed. The parts for tuning are 0, as in ABB's examples.
+/// Welddata for a deposition speed, mm/s, and the fraction `feed` of the wire feed. The tuning values are 0, as in
+/// ABB's examples.
 pub(super) fn weld(speed: f64, feed: f64, process: &Process, rapid: &Rapid) -> String {
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed))
 }

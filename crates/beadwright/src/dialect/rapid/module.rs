@@ -46,9 +46,9 @@ pub(super) enum Value {
 
 /// A module.
 pub(super) struct Module {
-    /// Name it was asked for by; none for the main file.
+    /// Name by which it was requested; `None` for the main file.
     pub(super) name: Option<String>,
-    /// The text with blanks for comments.
+    /// The text with blanks in place of comments.
     text: String,
     /// Range in the text and line, from 1.
     statements: Vec<(Range<usize>, usize)>,
@@ -99,7 +99,7 @@ impl Module {
     }
 }
 
-/// Blanks for `! ..` up to the line's end, so that places stay where they are.
+/// Replaces comments (`! ..` up to the line's end) by blanks, so that all else keeps its position.
 fn without_comments(text: &str) -> String {
     let (mut quoted, mut comment) = (false, false);
     let blank = |b: u8| {
@@ -182,7 +182,7 @@ pub(super) fn first_number(text: &str) -> Option<f64> {
 }
 
 /// The times for which the torch stands at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
-/// drawn back, gas), s; none where the seamdata have other parts than those of RobotWare Arc 6.
+/// drawn back, gas), s; `None` where the seamdata have other components than those of RobotWare Arc 6.
 pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     const PARTS: usize = 48;
     let numbers = text.split([',', '[', ']']).filter(|part| !part.trim().is_empty()).map(number);
@@ -192,7 +192,7 @@ pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
 }
 
-/// The first three numbers of an aggregate, or the text that is none.
+/// The first three numbers of an aggregate, or the text that is not a number.
 pub(super) fn three_numbers(text: &str) -> Result<[f64; 3], &str> {
     let inside = text.trim_start_matches(|c: char| c == '[' || c.is_whitespace());
     let mut fields = inside.split([',', ']']);

@@ -1,4 +1,5 @@
-//! Names in RAPID: at most 32 letters, digits and `_`, a letter first, case-blind, none of the language or the system.
+//! Names in RAPID: at most 32 letters, digits and `_`, beginning with a letter, the same in upper and lower case, and
+//! not used by the language or the system.
 
 /// Identifiers may have this many characters.
 pub(crate) const MAX_NAME: usize = 32;
@@ -9,7 +10,7 @@ pub(crate) const MAX_FOLDER: usize = 40;
 /// Data that the post declares; welddata are `wd1`, `wd2`, …, speeddata of the plain variant `vd1`, `vd2`, ….
 pub(crate) const OWN: [&str; 6] = ["jHome", "vHome", "vTravel", "zBead", "smBead", "main"];
 
-/// Words of the language, and data and types of the system that a part may be called after.
+/// Words of the language, and system data and types that a part might happen to be named after.
 const RESERVED: &str = "\
     ALIAS AND BACKWARD CASE CONNECT CONST DEFAULT DIV DO ELSE ELSEIF ENDFOR ENDFUNC ENDIF ENDMODULE ENDPROC \
     ENDRECORD ENDTEST ENDTRAP ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE NOSTEPIN \
@@ -32,7 +33,7 @@ fn is_reserved(name: &str) -> bool {
     RESERVED.split(' ').any(|word| word == upper) || NUMBERED.split(' ').any(numbered)
 }
 
-/// The module's name of a part with room for `_L` and `digits`; `taken` are the cell's own names.
+/// The module name for a part, with room for `_L` and `digits`; `taken` are the cell's own names.
 pub(super) fn module_name(part: &str, digits: usize, taken: [&str; 2]) -> String {
     let mut name: String = part.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let taken = OWN.into_iter().chain(taken).any(|own| own.eq_ignore_ascii_case(&name));

@@ -1,7 +1,7 @@
 //! ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
 //!
-//! Places are those of the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the
-//! codes of the options. A weld instruction lays metal at the speed of its welddata; the times of seamdata are waits.
+//! Positions are in the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the codes
+//! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Value};
 use crate::dialect::reading::trace::{Step, Trace};
@@ -11,7 +11,7 @@ use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram
 use glam::DVec3;
 use std::rc::Rc;
 
-/// Instructions without bearing on place and metal.
+/// Instructions that affect neither position nor metal.
 const HARMLESS: [&str; 50] = [
     "ConfL",
     "ConfJ",
@@ -74,7 +74,7 @@ const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
 /// How an instruction moves.
 #[derive(Clone, Copy, PartialEq)]
 enum Weld {
-    /// As the arc is.
+    /// Lays metal if the arc is on.
     No,
     /// Moves without metal, then lights the arc.
     Start,
@@ -84,7 +84,7 @@ enum Weld {
     End,
 }
 
-/// Instruction, whether it goes round, and its seam.
+/// Instruction, whether it is circular, and what it does to the arc.
 const MOTIONS: [(&str, bool, Weld); 10] = [
     ("MoveL", false, Weld::No),
     ("MoveJ", false, Weld::No),
@@ -98,7 +98,7 @@ const MOTIONS: [(&str, bool, Weld); 10] = [
     ("ArcMoveL", false, Weld::No),
 ];
 
-/// Whether a line can only stand in RAPID.
+/// Whether a line can occur only in RAPID.
 pub(super) fn typical(line: &str) -> bool {
     const FIRST: [&str; 9] =
         ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
@@ -131,7 +131,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Takes a module in and evaluates its data.
+    /// Loads a module and evaluates its data.
     fn load(&mut self, name: Option<&str>, text: &str) -> Result<Rc<Module>, ReadError> {
         let mut module = Module::new(name, text);
         let caller = std::mem::replace(&mut self.trace.module, name.map(str::to_owned));
@@ -241,7 +241,7 @@ impl Reader<'_> {
             self.trace.note("an assignment", "is not followed", line);
             return Ok(());
         }
-        // With arguments it may as well be an instruction of an option.
+        // With arguments it may just as well be an instruction of a RobotWare option.
         if rest.is_empty() || self.find(word, module).is_some() {
             return self.call(word, line, module, depth);
         }
@@ -259,7 +259,7 @@ impl Reader<'_> {
         self.load(Some(file), &found).map(|_| ())
     }
 
-    /// Takes in a module that a call names and that nothing has loaded, as a `.pgf` would.
+    /// Loads a module that a call names and that is not loaded yet, as a `.pgf` would.
     fn find_module(&mut self, name: &str, line: usize) -> Result<(), ReadError> {
         let known = |m: &Rc<Module>| m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(name));
         if !self.modules.iter().any(known)

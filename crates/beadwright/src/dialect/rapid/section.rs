@@ -1,4 +1,4 @@
-//! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and what its values can be.
+//! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and the limits of its values.
 
 use super::write::AbbRapid;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -15,29 +15,29 @@ use serde::{Deserialize, Serialize};
 pub enum RapidArc {
     /// By `ArcLStart`, `ArcL` and `ArcLEnd` of RobotWare Arc.
     Instructions,
-    /// By the lines of `arc_on` and `arc_off` between plain `MoveL`.
+    /// By the lines `arc_on` and `arc_off` between plain `MoveL` moves.
     Plain,
 }
 
-/// How the main program comes to the modules of the layers.
+/// How the main program runs the modules of the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum RapidModules {
-    /// Loads each from `folder`, runs it and unloads it: one layer in memory at a time.
+    /// Loads each module from `folder`, runs it and unloads it: one layer in memory at a time.
     Load,
-    /// All are in memory already, as the `.pgf` lists them.
+    /// All modules are in memory already, as listed in the `.pgf`.
     Call,
 }
 
-/// Unit of the wire feed in welddata, as the cell is configured.
+/// Unit of the wire feed in welddata, as configured in the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum WireFeedUnit {
-    /// Metres a minute.
+    /// Metres per minute.
     #[serde(rename = "m/min")]
     MetresPerMinute,
-    /// Millimetres a second.
+    /// Millimetres per second.
     #[serde(rename = "mm/s")]
     MillimetresPerSecond,
 }
@@ -49,46 +49,49 @@ pub enum WireFeedUnit {
 pub struct Rapid {
     /// How the arc is switched: `instructions` (RobotWare Arc) or `plain` (`arc_on` and `arc_off`).
     pub arc: RapidArc,
-    /// How layers are reached: `load` (one after another) or `call` (all in memory).
+    /// How the modules of the layers are run: `load` (loaded one after another) or `call` (all in memory).
     pub modules: RapidModules,
-    /// Folder of the layers' modules on the controller, such as `HOME:/part`; for `modules = "load"`.
+    /// Folder of the layers' modules on the controller, such as `HOME:/part`; used with `modules = "load"`.
     pub folder: String,
-    /// Whether a `.pgf` that lists the modules is written.
+    /// Whether to write a `.pgf` file that lists the modules.
     pub pgf: bool,
-    /// Moves in one module; longer layers are cut between passes; default 10000.
+    /// Maximum number of moves in one module; longer layers are cut between passes; default 10000.
     #[serde(default = "ten_thousand")]
     pub max_points: usize,
-    /// Axis position before and after the program, six axes, °.
+    /// Angles of the six axes before and after the program, °.
     pub home: [f64; 6],
-    /// Speed to and from it, mm/s.
+    /// Speed of the moves to and from `home`, mm/s.
     pub home_speed: f64,
     /// Orientation of the tool in the work object: quaternion w, x, y, z; `[0, 1, 0, 0]` is straight down.
     pub orientation: [f64; 4],
-    /// Greatest speed of turning the tool, °/s.
+    /// Maximum speed of turning the tool, °/s.
     pub orientation_speed: f64,
     /// Radius of the corner paths along a pass, mm; 0 for exact stops.
     pub zone: f64,
     /// Name of the tooldata.
     pub tool: String,
-    /// Tool frame on the flange: x, y, z in mm and quaternion w, x, y, z; left out where the controller has the tooldata.
+    /// Tool frame on the flange: x, y, z in mm and quaternion w, x, y, z; leave it out if the controller already has
+    /// the tooldata.
     pub tool_frame: Option<[f64; 7]>,
     /// Mass of the tool, kg, and its centre of gravity x, y, z, mm.
     pub tool_load: [f64; 4],
     /// Name of the wobjdata.
     pub wobj: String,
-    /// Frame of the part: x, y, z in mm and quaternion w, x, y, z; left out where the controller has the wobjdata.
+    /// Frame of the part: x, y, z in mm and quaternion w, x, y, z; leave it out if the controller already has the
+    /// wobjdata.
     pub part_frame: Option<[f64; 7]>,
-    /// Deposition speeds are written as the nominal one plus whole multiples of this, one welddata each, mm/s.
+    /// Step of the deposition speeds, mm/s: each is written as the nominal speed plus a whole multiple of this step,
+    /// with one welddata per speed.
     pub speed_step: f64,
-    /// First part of arcdata: synergic line or job number of the power source.
+    /// First component of arcdata: synergic line or job number of the power source.
     pub schedule: u32,
-    /// Second part of arcdata: process of the power source (Fronius TPS: 0 standard, 1 pulse, 7 CMT).
+    /// Second component of arcdata: process of the power source (Fronius TPS: 0 standard, 1 pulse, 7 CMT).
     pub mode: u32,
-    /// Third part of arcdata: voltage, or arc-length correction of a synergic power source.
+    /// Third component of arcdata: voltage, or arc-length correction of a synergic power source.
     pub voltage: f64,
-    /// Fifth part of arcdata: dynamic correction.
+    /// Fifth component of arcdata: dynamic correction.
     pub control: f64,
-    /// Unit of the wire feed in arcdata: `m/min` or `mm/s`, as the cell is configured.
+    /// Unit of the wire feed in arcdata, as configured in the cell: `m/min` or `mm/s`.
     pub wire_feed_unit: WireFeedUnit,
     /// The rest of the seamdata; gas and ignition times come from `[process]`.
     pub seam: RapidSeam,
@@ -96,17 +99,17 @@ pub struct Rapid {
     pub start: Vec<String>,
     /// Statements at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Statements that light the arc, at the start point of a pass; for `arc = "plain"`.
+    /// Statements that strike the arc at the start point of a pass; for `arc = "plain"`.
     pub arc_on: Vec<String>,
-    /// Statements that end the arc, at the end point of a pass; for `arc = "plain"`.
+    /// Statements that end the arc at the end point of a pass; for `arc = "plain"`.
     pub arc_off: Vec<String>,
-    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
-    /// written where it changes. With `arc = "instructions"` the welddata hold it. Needed for `process.follow =
-    /// "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}` m/min;
+    /// written wherever it changes. With `arc = "instructions"` the welddata contain it instead. Needed for
+    /// `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
-    /// where those act only with the next move.
+    /// Statements that set the wire feed while the torch stands still to fill the crater; default: those of
+    /// `wire_feed`. Needed if those take effect only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Statements at the end of the main program.
@@ -124,19 +127,19 @@ pub struct RapidSeam {
     pub scrape_start: u32,
     /// Speed while heating, mm/s.
     pub heat_speed: f64,
-    /// Time of heating, s.
+    /// Heating time, s.
     pub heat_time: f64,
-    /// Way of heating, mm; used instead of the time where it is not 0.
+    /// Heating distance, mm; unless it is 0, it is used instead of `heat_time`.
     pub heat_distance: f64,
-    /// Wire feed while heating, of the wire feed of the process.
+    /// Wire feed while heating, as a multiple of the wire feed of the process.
     pub heat_feed: f64,
     /// Time between heating and welding, s.
     pub cool_time: f64,
-    /// Time for which the crater is filled, s.
+    /// Crater filling time, s.
     pub fill_time: f64,
-    /// Wire feed while the crater is filled, of the wire feed of the process.
+    /// Wire feed while the crater is filled, as a multiple of the wire feed of the process.
     pub fill_feed: f64,
-    /// Time for which the wire burns back, s.
+    /// Burnback time of the wire, s.
     pub burnback_time: f64,
     /// Time for which the wire is drawn back, s.
     pub rollback_time: f64,
@@ -153,7 +156,7 @@ impl Section for Rapid {
             "rapid.home_speed": self.home_speed, LEAST, 3000.0, "mm/s", CONTROLLER;
             "rapid.orientation_speed": self.orientation_speed, LEAST, 1000.0, "°/s", CONTROLLER;
             "rapid.zone": self.zone, 0.0, 50.0, "mm", CONTROLLER;
-            "rapid.max_points": self.max_points as f64, 10.0, 50_000.0, "moves a module",
+            "rapid.max_points": self.max_points as f64, 10.0, 50_000.0, "moves per module",
                 "the pendant cannot show longer modules";
             "rapid.tool_load": self.tool_load[0], LEAST, 500.0, "kg", CONTROLLER;
             "rapid.speed_step": self.speed_step, LEAST, 100.0, "mm/s", CONTROLLER;
@@ -237,10 +240,10 @@ impl RapidSeam {
             "rapid.seam.heat_speed": self.heat_speed, 0.0, 1000.0, "mm/s", CONTROLLER;
             "rapid.seam.heat_time": self.heat_time, 0.0, 60.0, "s", CONTROLLER;
             "rapid.seam.heat_distance": self.heat_distance, 0.0, 100.0, "mm", CONTROLLER;
-            "rapid.seam.heat_feed": self.heat_feed, 0.0, 5.0, "of the wire feed", CONTROLLER;
+            "rapid.seam.heat_feed": self.heat_feed, 0.0, 5.0, "(multiple of the wire feed)", CONTROLLER;
             "rapid.seam.cool_time": self.cool_time, 0.0, 60.0, "s", CONTROLLER;
             "rapid.seam.fill_time": self.fill_time, 0.0, 60.0, "s", CONTROLLER;
-            "rapid.seam.fill_feed": self.fill_feed, 0.0, 5.0, "of the wire feed", CONTROLLER;
+            "rapid.seam.fill_feed": self.fill_feed, 0.0, 5.0, "(multiple of the wire feed)", CONTROLLER;
             "rapid.seam.burnback_time": self.burnback_time, 0.0, 10.0, "s", CONTROLLER;
             "rapid.seam.rollback_time": self.rollback_time, 0.0, 10.0, "s", CONTROLLER;
         }

@@ -1,9 +1,9 @@
-//! ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on a layer
-//! each, and `NAME.pgf` lists the modules to be loaded.
+//! ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on hold one
+//! layer each, and `NAME.pgf` lists the modules to be loaded.
 //!
-//! With RobotWare Arc a pass is `ArcLStart … fine`, `ArcL … zBead`, `ArcLEnd … fine`; without it plain `MoveL` between
-//! the lines that the profile gives. While welding the speed is that of the welddata: speeds are rounded to the nominal
-//! one plus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
+//! With RobotWare Arc a pass is `ArcLStart … fine`, `ArcL … zBead`, `ArcLEnd … fine`; without it, plain `MoveL` between
+//! lines that the profile gives. While welding, the welddata set the speed: speeds are rounded to the nominal one plus
+//! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
@@ -29,15 +29,15 @@ pub(super) struct AbbRapid {
     digits: usize,
 }
 
-/// What the data of a weld tell, thousandths of a mm/s: the speed, and the pace at which the nominal wire feed would lay
-/// the metal, where the wire comes otherwise.
+/// The speed of a weld and, where its wire feed is not the nominal one, its pace: the speed at which the nominal wire
+/// feed would lay the metal. Both in thousandths of a mm/s.
 type Datum = (u64, Option<u64>);
 
-/// The data of a layer in order of appearance: the place is the number less one.
+/// The data of a layer in order of appearance: number n is at index n − 1.
 type Speeds = Vec<Datum>;
 
 impl AbbRapid {
-    /// Begins the program of a part; its name becomes the module's name.
+    /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, rapid: Rapid) -> Self {
         let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
         let comment = job.comment();
@@ -57,7 +57,7 @@ impl AbbRapid {
         self.rapid.arc == RapidArc::Instructions
     }
 
-    /// The module of a part of a layer, counted from 0, with what runs it.
+    /// The module for one part of a layer (`part` counts from 0), with the lines that run it.
     fn module(
         &mut self,
         program: &LayerProgram,
@@ -97,7 +97,7 @@ impl AbbRapid {
         self.values.expand(template).for_each(|line| statement(text, &line));
     }
 
-    /// The speed as it is written, thousandths of a mm/s: the nominal one plus whole steps.
+    /// The speed as it is written, thousandths of a mm/s: the nominal one plus or minus whole steps.
     fn rounded(&self, speed: f64) -> u64 {
         let (nominal, step) = (self.process.deposition_speed, self.rapid.speed_step);
         let near = nominal + ((speed - nominal) / step).round() * step;
@@ -105,7 +105,7 @@ impl AbbRapid {
         (written * 1000.0).round().max(1.0) as u64
     }
 
-    /// The data for a speed and a part of the nominal wire feed; plain moves have no wire.
+    /// The data for a speed and the fraction `feed` of the nominal wire feed; plain moves set no wire feed.
     fn datum(&self, speed: f64, feed: f64) -> Datum {
         let pace = self.process.deposition_speed / feed;
         (self.rounded(speed), (self.with_arc() && feed != 1.0).then(|| self.rounded(pace)))
@@ -152,7 +152,7 @@ impl AbbRapid {
         self.motion_over(text, word, None, to, between, blend);
     }
 
-    /// The same with the target on an arc in front: `word via,target,…;`
+    /// The same along an arc, with its via point before the target: `word via,target,…;`
     fn motion_over(&self, text: &mut String, word: &str, via: Option<DVec3>, to: DVec3, between: &str, blend: bool) {
         let zone = if blend && self.rapid.zone > 0.0 { "zBead" } else { "fine" };
         text.push_str("    ");
@@ -171,11 +171,11 @@ impl AbbRapid {
         statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
     }
 
-    /// `feed` is the part of the nominal wire feed that was set last.
+    /// `feed` is the fraction of the nominal wire feed that was set last.
     fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
         for (i, &instruction) in all.iter().enumerate() {
             match (instruction, all.get(i + 1)) {
-                // ArcLStart itself goes there.
+                // ArcLStart itself moves there.
                 (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
                 (Instruction::Travel { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
                 (Instruction::ArcOn { pass, kind }, next) => {
@@ -195,7 +195,7 @@ impl AbbRapid {
                 (Instruction::Weld { to, circle, speed, last }, _) => {
                     self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, *feed), last);
                 }
-                // The seamdata fill it.
+                // The seamdata fill the crater.
                 (Instruction::Crater { .. }, _) if self.with_arc() => {}
                 (Instruction::Crater { seconds, ratio }, _) => {
                     if let Some(ratio) = ratio {
@@ -318,7 +318,7 @@ fn wait(text: &mut String, seconds: f64) {
     statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
 }
 
-/// Crater and wire at the end of a seam as the section `start_stop` wants them, where it does.
+/// Crater filling and wire retraction at the end of a seam as the section `start_stop` sets them, where it does.
 fn with_ends(mut rapid: Rapid, job: &Job<'_>) -> Rapid {
     let ends = &job.weld.ends;
     if ends.crater_fill_time > 0.0 {

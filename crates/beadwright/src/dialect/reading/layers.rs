@@ -4,8 +4,8 @@ use super::{Metal, Move, ReadProgram};
 use crate::motion::Motion;
 use glam::DVec3;
 
-/// Passes whose first points differ by no more in z belong to one layer, mm: programs round, and spirals begin a
-/// little above the layer below.
+/// Passes whose first points differ by no more than this in z belong to one layer, mm: programs round coordinates, and
+/// spirals begin a little above the layer below.
 const SAME_Z_MM: f64 = 0.01;
 
 /// Consecutive deposited moves of `n` points.
@@ -15,9 +15,9 @@ pub struct ReadPass {
     pub points: Vec<DVec3>,
     /// Speed between two points, mm/s, 0 for unknown; n − 1.
     pub speed: Vec<f64>,
-    /// Volume laid between two points where the program tells it, mm³; n − 1.
+    /// Volume laid between two points where the program gives it, mm³; n − 1.
     pub volume: Vec<Option<f64>>,
-    /// Bead width between two points where the program tells it, mm; n − 1.
+    /// Bead width between two points where the program gives it, mm; n − 1.
     pub width: Vec<Option<f64>>,
     /// Line of the first deposited move, from 1.
     pub line: usize,
@@ -28,13 +28,13 @@ pub struct ReadPass {
 pub struct ReadLayer {
     /// Height at which the passes begin, mm.
     pub z: f64,
-    /// Rise above the layer below, mm; of the lowest layer its z if above 0, else the rise of the next. 0 = unknown.
+    /// Rise above the layer below, mm; for the lowest layer its z if above 0, else the rise of the next. 0 if unknown.
     pub height: f64,
     /// Passes in the order of the program.
     pub passes: Vec<ReadPass>,
 }
 
-/// ReadTotals of a program.
+/// Totals of a program that was read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadTotals {
     /// Runs of deposited moves.
@@ -45,13 +45,13 @@ pub struct ReadTotals {
     pub travel_length_mm: f64,
     /// Time of the moves with known speed and of all waits, s; without acceleration.
     pub time_s: f64,
-    /// Volume of metal where the program tells it, mm³.
+    /// Volume of metal where the program gives it, mm³.
     pub volume_mm3: Option<f64>,
 }
 
 impl ReadProgram {
-    /// The passes by layer, lowest layer first. A pass belongs where its first point lies, also when it rises
-    /// (vase mode); a program that comes back to a height adds to the layer that is there.
+    /// The passes by layer, lowest layer first. A pass belongs to the height of its first point, even if it rises (vase
+    /// mode); a program that returns to a height adds to the layer already there.
     pub fn layers(&self) -> Vec<ReadLayer> {
         let passes = self.passes();
         let mut order: Vec<(f64, usize)> = passes.iter().map(height).zip(0..).collect();

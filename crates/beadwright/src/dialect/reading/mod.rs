@@ -1,4 +1,5 @@
-//! Programs read back, ours and anyone's, as moves with and without metal: G-code, KRL, RAPID, FANUC TP, INFORM, URScript.
+//! Reads programs back, ours and anyone's, as moves with and without metal: G-code, KRL, RAPID, FANUC TP, INFORM,
+//! URScript.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -7,7 +8,7 @@
 //! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
 //!
 //! Programs are read from top to bottom and calls are followed, but nothing is computed: branches and loops are read
-//! once, variables and expressions are not evaluated. Whatever is not understood ends in [`ReadProgram::notes`].
+//! once, variables and expressions are not evaluated. Whatever is not understood is listed in [`ReadProgram::notes`].
 
 mod layers;
 pub(super) mod trace;
@@ -43,7 +44,7 @@ impl Metal {
 pub struct Move {
     /// Where it ends, mm. It begins where the move before ends; the first one only tells where the program begins.
     pub to: DVec3,
-    /// Speed, mm/s; 0 where the program does not tell it (rapids, point-to-point moves).
+    /// Speed, mm/s; 0 where the program does not give it (rapids, point-to-point moves).
     pub speed: f64,
     /// What it lays.
     pub metal: Metal,
@@ -68,13 +69,13 @@ pub struct ReadProgram {
 
 /// Codes that light and end the arc, besides those that a dialect knows by itself.
 ///
-/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`, `SetDO doArc,1`
-/// or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
+/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`, `SetDO
+/// doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ArcCodes {
-    /// Light the arc.
+    /// Codes that light the arc.
     pub on: Vec<String>,
-    /// End it.
+    /// Codes that end it.
     pub off: Vec<String>,
 }
 
@@ -83,9 +84,10 @@ pub struct ArcCodes {
 pub struct Options {
     /// More codes that switch the arc.
     pub arc: ArcCodes,
-    /// Diameter of a printer's filament, mm. Without it the program's comments tell, or else it is 1.75 mm.
+    /// Diameter of a printer's filament, mm. If absent, the program's comments decide, or else it is 1.75 mm.
     pub filament_diameter: Option<f64>,
-    /// Whether `V=` in INFORM counts cm/min, as controllers can be set to, and not mm/s; jobs do not tell.
+    /// Whether `V=` in INFORM is in cm/min instead of mm/s; controllers can be set to either, and jobs do not say
+    /// which.
     pub inform_cm_per_min: bool,
 }
 
@@ -122,7 +124,7 @@ pub enum ReadError {
     Number {
         /// Where.
         place: Place,
-        /// What stands there.
+        /// What was found instead.
         text: String,
     },
     /// A called program is not there.
@@ -135,7 +137,7 @@ pub enum ReadError {
         /// Its name as written.
         name: String,
     },
-    /// Calls nest without end.
+    /// Calls are nested too deep, or are too many.
     #[error(
         "{place}: calls nest deeper than {limit} or are too many, at the call of {name}. Does it call itself?",
         limit = trace::MAX_DEPTH
@@ -149,10 +151,10 @@ pub enum ReadError {
     /// The file declares data and holds nothing to run.
     #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]
     NoProgram(&'static str),
-    /// No metal.
+    /// No move lays metal.
     #[error("no move with the arc on was found: say which codes light and end the arc.{hint}")]
     NoDeposition {
-        /// Switching codes that the program has, as a sentence, or nothing.
+        /// A sentence that names the switching codes of the program, or nothing.
         hint: String,
     },
 }
@@ -161,7 +163,7 @@ pub enum ReadError {
 /// (`PART_L001.dat`), a RAPID module or procedure (`L001`), a FANUC program, a job.
 pub type FindModule<'a> = dyn FnMut(&str) -> Option<String> + 'a;
 
-/// Reads a program, whatever its language; `module` finds the text of others that it calls.
+/// Reads a program, whatever its language; `module` finds the text of the modules that it calls.
 ///
 /// # Errors
 /// [`ReadError`] when the dialect is unknown, a number is malformed, a called module is missing or no move lays

@@ -1,4 +1,4 @@
-//! The moves of a program as a reader meets them: places that may be unknown, arcs, notes.
+//! The moves of a program as a reader finds them: positions that may be unknown, arcs, notes.
 
 use super::{Metal, Move, Place, ReadError, ReadProgram};
 use glam::DVec3;
@@ -7,22 +7,22 @@ use std::f64::consts::TAU;
 /// Chords lie this close to their arc, mm.
 pub const CHORD_MM: f64 = 0.01;
 
-/// Calls nest no deeper.
+/// Deepest nesting of calls.
 pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 
-/// No program makes more calls.
+/// Most calls in a program.
 const MAX_CALLS: usize = 1_000_000;
 
-/// No arc has more chords.
+/// Most chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
 
-/// Different notes; the rest is counted together.
+/// Most different notes; the rest are counted together.
 const MAX_NOTES: usize = 60;
 
-/// Codes named when no arc was found.
+/// Most codes named when no arc was found.
 const MAX_SEEN: usize = 8;
 
-/// All of a move but its end.
+/// A move without its end point.
 #[derive(Clone, Copy)]
 pub(in crate::dialect) struct Step {
     /// mm/s, 0 for unknown.
@@ -44,7 +44,7 @@ pub(in crate::dialect) struct Curve {
 }
 
 impl Curve {
-    /// From `start` over `aux` to `end`; none when they lie on one line.
+    /// The arc from `start` through `aux` to `end`; `None` when they lie on one line.
     fn through(start: DVec3, aux: DVec3, end: DVec3) -> Option<Self> {
         let (a, b) = (aux - start, end - start);
         let normal = a.cross(b);
@@ -77,9 +77,9 @@ struct Note {
     first: Place,
 }
 
-/// Moves, waits and notes in the making.
+/// Moves, waits and notes while a program is being read.
 pub(in crate::dialect) struct Trace {
-    /// Last place; axes that are not `known` hold what they had last.
+    /// Last position; axes that are not `known` keep their last value.
     pub(in crate::dialect) at: DVec3,
     pub(in crate::dialect) known: [bool; 3],
     pub(in crate::dialect) arc: bool,
@@ -138,7 +138,7 @@ impl Trace {
     }
 
     pub(in crate::dialect) fn set_arc(&mut self, on: bool, line: usize) {
-        // Lit anew on the spot: two passes, not one.
+        // Lit again at the same position: two passes, not one.
         if let Some(last) = self.moves.last().filter(|m| on && !self.arc && m.metal.is_laid()) {
             self.push(last.to, Step { speed: 0.0, metal: Metal::Off, width: None, line });
         }
@@ -150,7 +150,7 @@ impl Trace {
         if self.arc { Metal::Arc } else { Metal::Off }
     }
 
-    /// The place is not known any more.
+    /// The position is no longer known.
     pub(in crate::dialect) fn forget(&mut self) {
         self.known = [false; 3];
     }
@@ -174,7 +174,7 @@ impl Trace {
         }
     }
 
-    /// Takes unknown axes as they are, since metal is laid from here.
+    /// Takes unknown axes at their last values, since metal is laid from here.
     pub(in crate::dialect) fn settle(&mut self, line: usize) {
         if self.known != [true; 3] {
             self.note(
@@ -187,7 +187,7 @@ impl Trace {
         }
     }
 
-    /// An arc over `aux` to `end`, through an angle in radians if that is given.
+    /// An arc through `aux` to `end`; it turns through `angle`, radians, if that is given.
     pub(in crate::dialect) fn arc_over(&mut self, aux: DVec3, end: DVec3, angle: Option<f64>, step: Step) {
         if self.known != [true; 3] {
             self.line(end.to_array().map(Some), step);
@@ -206,7 +206,7 @@ impl Trace {
         }
     }
 
-    /// An arc from the current place in chords; the last one ends at `end`. The volume is spread evenly.
+    /// An arc from the current position in chords; the last one ends at `end`. The volume is spread evenly.
     pub(in crate::dialect) fn curve(&mut self, curve: &Curve, end: DVec3, mut step: Step) {
         let chords = curve.chords();
         if let Metal::Volume(volume) = step.metal {

@@ -15,7 +15,7 @@ pub(in crate::dialect) fn strip_word<'a>(text: &'a str, word: &str) -> Option<&'
     (head.eq_ignore_ascii_case(word) && !rest.starts_with(in_name)).then(|| rest.trim_start())
 }
 
-/// A line without the word that says where what it declares can be seen.
+/// A line without its scope word (`GLOBAL` or `LOCAL`).
 pub(in crate::dialect) fn unscoped(line: &str) -> &str {
     ["GLOBAL", "LOCAL"].iter().find_map(|scope| strip_word(line, scope)).unwrap_or(line)
 }
@@ -46,7 +46,7 @@ pub(in crate::dialect) fn before_comment(line: &str, sign: char) -> &str {
     &line[..found.unwrap_or(line.len())]
 }
 
-/// Pieces between commas that stand in no bracket or quotes, trimmed.
+/// The pieces between commas, trimmed; commas inside brackets or quotes do not separate.
 pub(in crate::dialect) fn arguments(text: &str) -> Vec<&str> {
     let (mut depth, mut quoted, mut start, mut pieces) = (0, false, 0, Vec::new());
     for (i, b) in text.bytes().enumerate() {
@@ -74,7 +74,7 @@ impl Patterns {
         Self(patterns.iter().map(|p| compact(p)).filter(|p| !p.is_empty()).collect())
     }
 
-    /// Whether one of them stands in a compact statement, not as a part of longer names or numbers.
+    /// Whether a compact statement contains one of them, but not as part of a longer name or number.
     pub(in crate::dialect) fn matches(&self, statement: &str) -> bool {
         self.0.iter().any(|pattern| {
             let whole = |at: usize| {

@@ -1,8 +1,8 @@
 //! URScript: movej, movel, movep and movec to poses, written out or named, and the functions that a program calls.
 //!
-//! Places are those of the frame in `pose_trans`, in mm. The arc is switched by the codes of the options, such as
-//! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; a file that only defines a program
-//! runs that.
+//! Positions are in the frame given to `pose_trans`, in mm. The arc is switched by the codes in the options, such as
+//! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; if a file only defines a
+//! program, that program runs.
 
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Statements without bearing on place and metal, by the beginning of their names.
+/// Statements that affect neither position nor metal, by the beginning of their names.
 const HARMLESS: [&str; 18] = [
     "set_",
     "textmsg",
@@ -42,12 +42,12 @@ type Body = Vec<(usize, String)>;
 /// A value of a variable.
 #[derive(Clone)]
 enum Value {
-    /// Frame, if any, and place, mm.
+    /// Frame, if any, and position, mm.
     Pose(String, DVec3),
     Number(f64),
 }
 
-/// Whether a line can only stand in URScript.
+/// Whether a line can occur only in URScript.
 pub(super) fn typical(line: &str) -> bool {
     // Calls: in RAPID no bracket follows a move.
     const CALLS: [&str; 5] = ["movel(", "movej(", "movep(", "movec(", "set_tcp("];
@@ -155,7 +155,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `global part_frame = p[..]` and the like; what is no pose and no number is forgotten.
+    /// `global part_frame = p[..]` and the like; a variable that is neither a pose nor a number is forgotten.
     fn assign(&mut self, left: &str, value: &str, line: usize) -> Result<(), ReadError> {
         let Some(variable) = left.split_whitespace().next_back() else { return Ok(()) };
         let value = match number(value) {
@@ -169,7 +169,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Frame and place, mm, of `p[x,y,z,..]`, `pose_trans(frame, pose)` or a name; none for what is computed.
+    /// Frame and position, mm, of `p[x,y,z,..]`, `pose_trans(frame, pose)` or a name; `None` for a computed pose.
     fn pose(&self, text: &str, line: usize) -> Result<Option<(String, DVec3)>, ReadError> {
         if let Some(numbers) = text.strip_prefix("p[") {
             let mut fields = numbers.trim_end_matches(']').split(',');
@@ -229,14 +229,14 @@ impl Reader {
         Ok(())
     }
 
-    /// m/s of `v=..`, or of the second number behind the poses.
+    /// m/s of `v=..`, or of the second number after the poses.
     fn speed(&self, pieces: &[&str], poses: usize) -> Option<f64> {
         let named = pieces.iter().find_map(|p| Some(p.strip_prefix('v')?.trim_start().strip_prefix('=')?.trim()));
         self.number(named.or_else(|| pieces.get(poses + 1).copied().filter(|p| !p.contains('=')))?)
     }
 }
 
-/// What stands between the first bracket and the last.
+/// The text between the first bracket and the last.
 fn inside(text: &str) -> &str {
     let text = text.strip_prefix('(').unwrap_or(text);
     text.rsplit_once(')').map_or(text, |(inside, _)| inside)

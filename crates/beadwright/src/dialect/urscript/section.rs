@@ -1,4 +1,4 @@
-//! The section `[urscript]`: a Universal Robots cell, and what its values can be.
+//! The section `[urscript]`: a Universal Robots cell, and the limits of its values.
 
 use super::write::UniversalScript;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
@@ -12,35 +12,37 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Urscript {
-    /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; left out where the installation has it.
+    /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; leave it out if the installation already has
+    /// it.
     pub tool_frame: Option<[f64; 6]>,
     /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
     pub part_frame: [f64; 6],
-    /// Axis position before and after the program, °.
+    /// Axis angles before and after the program, °.
     pub home: [f64; 6],
-    /// Speed to and from it, °/s.
+    /// Speed of the moves to and from `home`, °/s.
     pub home_speed: f64,
     /// Orientation of the tool in the part's frame: rotation vector, rad; `[3.141593, 0, 0]` is straight down.
     pub orientation: [f64; 3],
     /// Acceleration of the tool, mm/s².
     pub acceleration: f64,
-    /// Blending radius along a pass, mm; less where points lie closer than twice that; 0 for exact stops.
+    /// Blending radius along a pass, mm; reduced where points are closer together than twice the radius; 0 for exact
+    /// stops.
     pub blend: f64,
     /// Statements at the beginning of the program.
     pub start: Vec<String>,
     /// Statements at the beginning of every layer.
     pub layer_start: Vec<String>,
-    /// Statements that light the arc, at the start point of a pass.
+    /// Statements that strike the arc at the start point of a pass.
     pub arc_on: Vec<String>,
-    /// Statements that end the arc, at the end point of a pass.
+    /// Statements that end the arc at the end point of a pass.
     pub arc_off: Vec<String>,
-    /// Statements that set the wire feed to `{{wire_feed_ratio}}` of the nominal one, or to `{{wire_feed}}` m/min;
-    /// written where it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below 1;
-    /// default none.
+    /// Statements that set the wire feed to `{{wire_feed_ratio}}` times its nominal value, or to `{{wire_feed}}` m/min;
+    /// written wherever it changes. Needed for `process.follow = "wire-feed"` and for a `start_stop.crater_power` below
+    /// 1; default none.
     #[serde(default)]
     pub wire_feed: Vec<String>,
-    /// Statements that set the wire feed in the crater, where the torch stands; by default those of `wire_feed`. Needed
-    /// where those act only with the next move.
+    /// Statements that set the wire feed while the torch stands still to fill the crater; default: those of
+    /// `wire_feed`. Needed if those take effect only with the next move.
     #[serde(default)]
     pub crater: Vec<String>,
     /// Statements at the end of the program.

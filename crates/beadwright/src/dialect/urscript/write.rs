@@ -1,8 +1,8 @@
-//! URScript of Universal Robots: `NAME.script`, one function a layer and a program that calls them.
+//! URScript of Universal Robots: `NAME.script`, with one function per layer and a program that calls them.
 //!
-//! Lengths are metres and angles radians there. Poses are those of the part, moved into the robot's base by
-//! `pose_trans`. Moves of a pass are blended, by less than half of the shorter one of two; where the arc switches they
-//! are not. Lines end as on the controller, which is a Linux: with a line feed alone.
+//! Lengths are in metres and angles in radians. Poses are given in the part's frame; `pose_trans` moves them to the
+//! robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but not
+//! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, upper_name};
 use crate::number::{fixed, push_fixed};
@@ -34,7 +34,7 @@ const RESERVED: [&str; 20] = [
     "part_frame",
 ];
 
-/// Part of the shorter of two moves by which they are blended at most.
+/// Greatest blend between two moves, as a fraction of the length of the shorter one.
 const BLEND_PART: f64 = 0.45;
 
 /// Smaller blends are left out, mm.
@@ -55,7 +55,7 @@ pub(super) struct UniversalScript {
 }
 
 impl UniversalScript {
-    /// Begins the program of a part; its name becomes the program's name.
+    /// Begins the program of a part and names it after the part.
     pub(super) fn new(job: &Job<'_>, urscript: Urscript) -> Self {
         let mut name = upper_name(&job.part).to_lowercase();
         if RESERVED.contains(&name.as_str()) || name.starts_with("layer_") {
@@ -106,7 +106,7 @@ impl UniversalScript {
         text.push_str(if via.is_some() { ", mode=1)\n" } else { ")\n" });
     }
 
-    /// The blend at the end of a move, mm; `next` is the move behind it, if one follows without a stop.
+    /// The blend at the end of a move, mm; `next` is the move after it, if one follows without a stop.
     fn blend(&self, to: DVec3, next: Option<&Instruction>) -> f64 {
         let before = self.at.map_or(0.0, |at| at.distance(to));
         match next {
@@ -204,7 +204,7 @@ fn wait(text: &mut String, indent: &str, seconds: f64) {
     text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
 }
 
-/// `p[x,y,z,rx,ry,rz]` of a place in mm, in metres and radians.
+/// A position in mm, written as `p[x,y,z,rx,ry,rz]` in metres and radians.
 fn push_frame(text: &mut String, place: DVec3, rotation: &[f64]) {
     text.push_str("p[");
     for (i, value) in place.to_array().iter().map(|v| v / 1000.0).chain(rotation.iter().copied()).enumerate() {

@@ -1,6 +1,6 @@
 //! Writing a program: what all dialects share.
 //!
-//! A writer does no I/O: it hands out [`Chunk`]s, text to be appended to a named file, layer by layer.
+//! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
 pub(super) mod needs;
 pub(super) mod orientation;
@@ -36,13 +36,13 @@ impl Chunk {
 
 /// Writes a program in one dialect.
 pub trait Writer: Send {
-    /// What comes before the first layer of `layers`.
+    /// What comes before the first layer; `layers` is their number.
     fn begin(&mut self, layers: usize) -> Vec<Chunk>;
 
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
-    /// What comes after the last layer; `leave` takes the torch away.
+    /// What comes after the last layer; `leave` moves the torch away.
     fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
 }
 
@@ -53,7 +53,7 @@ pub struct Job<'a> {
     pub part: String,
     /// Name of the profile, for comments.
     pub profile: String,
-    /// What the profile says of the dialects.
+    /// The sections of the profile for the dialects.
     pub sections: &'a Sections,
     /// The nominal bead.
     pub bead: Bead,
@@ -112,7 +112,7 @@ pub enum DialectError {
     Cannot {
         /// Name of the dialect.
         dialect: &'static str,
-        /// What it cannot.
+        /// What it cannot write.
         what: &'static str,
         /// What to do.
         remedy: &'static str,
@@ -132,7 +132,8 @@ fn with_table() -> Vec<&'static str> {
 /// Begins a program in the dialect of that name.
 ///
 /// # Errors
-/// [`DialectError`] when there is none, the profile lacks its section, or the job asks for more than it can write.
+/// [`DialectError`] when there is no such dialect, the profile lacks its section, or the job asks for more than it can
+/// write.
 pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
     let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
     let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
@@ -165,12 +166,12 @@ pub fn write<L: Borrow<Layer>>(
     Ok(files)
 }
 
-/// Lines that set the wire feed in a crater: those of the profile, or those that set it anywhere.
+/// Lines that set the wire feed in a crater: the profile's own for craters or, without these, its general ones.
 pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
     if crater.is_empty() { wire_feed } else { crater }
 }
 
-/// A wait in pieces of what a controller takes at once, s.
+/// A wait split into pieces of at most `most`, the longest that a controller takes at once, s.
 pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
     let count = (seconds / most).ceil().max(1.0);
     (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))

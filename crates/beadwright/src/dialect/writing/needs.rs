@@ -1,4 +1,5 @@
-//! What a job asks of a dialect's templates: refused here in words, so that no writer has to.
+//! Refuses, with an explanation, a job that asks more of a dialect's templates than they can do, so that no writer has
+//! to.
 
 use super::{DialectError, Job};
 use crate::dialect::Templates;
@@ -11,7 +12,7 @@ pub(in crate::dialect) fn lines(
     example: &str,
     job: &Job<'_>,
 ) -> Result<(), DialectError> {
-    // Nothing is switched then.
+    // A dry run switches nothing.
     if job.dry_run {
         return Ok(());
     }

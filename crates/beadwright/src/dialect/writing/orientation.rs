@@ -1,8 +1,8 @@
 //! The tool's orientation turned about the torch's own axis, in the way each robot writes it.
 //!
-//! The tool's z axis runs along the wire out of the torch. A torch angle turns counter-clockwise seen from behind the torch,
-//! where z points away: for a torch straight down that is counter-clockwise seen from above, as `robot` counts it. An angle
-//! of 0 leaves the numbers of the profile as they are, to the last digit.
+//! The tool's z axis runs along the wire, out of the torch. A torch angle turns counter-clockwise as seen from behind
+//! the torch, with z pointing away from the viewer: for a torch straight down that is counter-clockwise seen from
+//! above, as `robot` counts it. An angle of 0 leaves the numbers of the profile unchanged, to the last digit.
 
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 
@@ -36,7 +36,7 @@ pub(in crate::dialect) fn vector(vector: [f64; 3], angle: f64) -> [f64; 3] {
         return vector;
     }
     let q = turned(DQuat::from_scaled_axis(DVec3::from(vector)), angle);
-    // Of the two ways round, the shorter.
+    // The shorter of the two ways round.
     let q = if q.w < 0.0 { -q } else { q };
     q.to_scaled_axis().to_array()
 }
@@ -54,7 +54,7 @@ fn euler(m: &DMat3) -> [f64; 3] {
     } else {
         (0.0, (-m.z_axis.y).atan2(m.y_axis.y))
     };
-    // What rounds to -180° is 180°.
+    // A value that rounds to -180° becomes 180°.
     let degrees = |v: f64| if v.to_degrees() < -179.999_95 { v.to_degrees() + 360.0 } else { v.to_degrees() };
     [a, b, c].map(degrees)
 }

@@ -45,20 +45,20 @@ fn retract(job: &Job<'_>) -> f64 {
 pub(in crate::dialect) struct Values(Vec<(&'static str, String)>);
 
 impl Values {
-    /// Those at the beginning; `program` is the name of the program in the dialect.
+    /// The values at the beginning; `program` is the name of the program in the dialect.
     pub(in crate::dialect) fn new(program: &str, job: &Job<'_>) -> Self {
         let mut values = Self(PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect());
         values.set("program", program);
         values
     }
 
-    /// The wait of a template.
+    /// Sets the wait for the next templates, s.
     pub(in crate::dialect) fn set_dwell(&mut self, seconds: f64) {
         self.set("dwell", fixed(seconds, 3));
         self.set("dwell_ms", fixed(seconds * 1000.0, 0));
     }
 
-    /// The wire feed, of the nominal one.
+    /// Sets the wire feed as a fraction (`ratio`) of the nominal one.
     pub(in crate::dialect) fn set_wire_feed(&mut self, ratio: f64, nominal: f64) {
         self.set("wire_feed_ratio", fixed(ratio, 4));
         self.set("wire_feed", fixed(ratio * nominal, 3));

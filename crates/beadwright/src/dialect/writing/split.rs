@@ -2,7 +2,8 @@
 
 use crate::program::Instruction;
 
-/// Consecutive parts of whole passes, of at most `most` instructions (over 0) where no pass is longer than that.
+/// Cuts between passes into consecutive parts of at most `most` (over 0) instructions; only a longer pass makes a
+/// longer part.
 pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
     let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);
     let ends = instructions.iter().enumerate().filter(|(_, i)| matches!(i, Instruction::ArcOff { .. }));
@@ -17,8 +18,8 @@ pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> V
     parts
 }
 
-/// Consecutive parts of at most `most` instructions (over 0), cut between passes; a pass that is longer is cut between
-/// its moves.
+/// Cuts between passes into consecutive parts of at most `most` (over 0) instructions; a longer pass is cut between its
+/// moves.
 pub(in crate::dialect) fn parts(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
     let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);
     for i in 1..instructions.len() {
@@ -49,7 +50,7 @@ mod tests {
     use crate::program::Instruction;
     use glam::DVec3;
 
-    /// Passes of that many moves, each with two travels, arc on and arc off.
+    /// Passes of these numbers of moves, each with two travels, arc on and arc off.
     fn layer(moves: &[usize]) -> Vec<Instruction> {
         let to = DVec3::ZERO;
         let pass = |&count: &usize| {

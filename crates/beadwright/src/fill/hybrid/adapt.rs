@@ -1,6 +1,6 @@
-//! Widths that follow the room: where neighbours lie wider or closer than a stepover, each bead takes the half of the
-//! way to its neighbour on either side, within the limits of the process. Metal is laid where there is room for it, and
-//! small gaps close without a bead of their own.
+//! Widths that follow the room: where neighbours lie farther apart or closer than a stepover, each bead takes half the
+//! distance to its neighbour on either side, within the limits of the process. Metal is laid where there is room for
+//! it, and small gaps close without a bead of their own.
 
 use super::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
@@ -8,16 +8,16 @@ use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::Polygon;
 
-/// Neighbours are looked for this far away, in stepovers; without one, a side counts as a stepover.
+/// Neighbours are looked for up to this far away, in stepovers; a side without one counts as a stepover.
 const SIGHT: f64 = 1.6;
-/// Widths are looked at this often, in bead widths.
+/// Distance between the places where the width is set, in bead widths.
 const STEP: f64 = 0.35;
-/// Widths are multiples of this part of a bead width, so that the speed changes seldom.
+/// Widths are multiples of this fraction of a bead width, so that the speed seldom changes.
 const GRAIN: f64 = 0.05;
-/// Stands for the outline where passes have their numbers.
+/// Stands for the outline among the numbers of the passes.
 const OUTLINE: usize = usize::MAX;
 
-/// Gives every pass the widths that its neighbours leave; none reaches out of the island and its allowance.
+/// Gives every pass the widths that its neighbours leave room for; no bead reaches beyond the island and its allowance.
 pub fn widths(passes: &mut [Path], island: &Polygon, settings: &FillSettings) {
     let mut near = LineIndex::new(SIGHT * settings.stepover);
     for (number, pass) in passes.iter().enumerate() {
@@ -61,7 +61,7 @@ fn adapt(number: usize, pass: &mut Path, near: &LineIndex, settings: &FillSettin
             }
             let grain = GRAIN * settings.bead.width;
             let width = ((settings.bead.width * room / d / grain).round() * grain).max(low).min(high);
-            // Pieces of one line with one width are one.
+            // Pieces of one line with the same width are merged.
             if i > 0 && widths.last() == Some(&width) {
                 continue;
             }

@@ -1,8 +1,8 @@
-//! Contours joined to few passes.
+//! Contours joined into few passes.
 //!
-//! Complete contours, from outside in: each is opened at its seam and led to the next by an oblique link of about 45°.
-//! Incomplete ones, from inside out: the end of a piece is led to the nearest end of a piece one level away. A link
-//! keeps inside the outline and crosses nothing.
+//! Complete contours are joined from outside in: each is opened at its seam and led to the next by an oblique link of
+//! about 45°. Incomplete ones are joined from inside out: the end of a piece is led to the nearest end of a piece one
+//! level away. A link stays inside the outline and crosses nothing.
 
 use super::contours::{Contours, Piece};
 use super::line_index::LineIndex;
@@ -12,13 +12,14 @@ use glam::DVec2;
 use planar::polyline::{point_at, without_end};
 use planar::{Region, Ring};
 
-/// A link between rings may be this long, in stepovers: 45° across one stepover are 1.41, and corners take more.
+/// Maximum length of a link between rings, in stepovers: 45° across one stepover gives 1.41, and corners need more.
 const LONGEST_RING_LINK: f64 = 2.2;
-/// A link between the ends of pieces may be this long, in stepovers.
+/// Maximum length of a link between the ends of pieces, in stepovers.
 const LONGEST_END_LINK: f64 = 3.2;
-/// A ring is left this far before its seam, and the next one entered as far behind it as makes 45°; in stepovers.
+/// A ring is left this far before its seam, and the next one is entered far enough past the seam to make the link 45°;
+/// in stepovers.
 const LEFT_OPEN: f64 = 0.55;
-/// The golden ratio spreads the seams of following layers: no two of them come near each other for a long while.
+/// The golden ratio spreads the seams of successive layers: no two of them come near each other for many layers.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Places tried for the seam of a chain, so that it does not fall on a corner.
@@ -48,7 +49,7 @@ fn join_complete(rings: &[(usize, Ring)], laid: &LineIndex, settings: &FillSetti
         }
         let first = settings.layer as f64 * GOLDEN;
         let seams = (0..SEAMS).map(|k| place_at(&rings[start].1, (first + k as f64 / SEAMS as f64) % 1.0));
-        // The first of the longest.
+        // The first of the longest chains.
         let chains = seams.map(|seam| chain(start, seam, rings, &free, laid, settings));
         let best = chains.reduce(|best, next| if next.len() > best.len() { next } else { best });
         let best = best.unwrap_or_default();
@@ -58,7 +59,7 @@ fn join_complete(rings: &[(usize, Ring)], laid: &LineIndex, settings: &FillSetti
     passes
 }
 
-/// The rings that can be joined from a seam of the first one on, and where each is entered.
+/// The rings that can be joined, starting at a seam of the first one, and where each is entered.
 fn chain(
     start: usize,
     seam: DVec2,
@@ -76,7 +77,7 @@ fn chain(
     chain
 }
 
-/// The ring one level further in that the end of this one can be led to, and where it is entered.
+/// The ring one level further in that can be linked to the end of this one, and where it is entered.
 fn next_ring(
     at: usize,
     seam: DVec2,
@@ -115,7 +116,7 @@ fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettin
 
 /// Whether a link crosses no contour; it may end on them.
 fn is_clear(link: [DVec2; 2], laid: &LineIndex) -> bool {
-    // Pulled off its ends by a hair, so that what it joins does not count.
+    // Shortened by a hair at both ends, so that the contours it joins do not count.
     !laid.crosses(link[0].lerp(link[1], 1e-3), link[1].lerp(link[0], 1e-3))
 }
 
@@ -146,7 +147,7 @@ fn join_incomplete(pieces: &[Piece], laid: &LineIndex, outermost: &Region, setti
     passes
 }
 
-/// The free piece one level away whose end is nearest to the end of the line, and whether it is to be run backwards.
+/// The free piece one level away with the end nearest to the end of the line, and whether it must be reversed.
 fn next_piece(
     points: &[DVec2],
     level: usize,

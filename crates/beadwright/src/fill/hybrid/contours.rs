@@ -6,10 +6,10 @@ use glam::DVec2;
 use planar::clip::Keep;
 use planar::{Region, Ring};
 
-/// A part of a contour that a skeleton region left.
+/// A piece of a contour that remains where skeleton regions cut it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// Number of the contour from outside, from 0.
+    /// Number of the contour, counted inwards from 0.
     pub level: usize,
     /// Its points.
     pub points: Vec<DVec2>,
@@ -18,14 +18,14 @@ pub struct Piece {
 /// All contours of an island.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Contours {
-    /// Contours never cut, with their level.
+    /// Contours that are not cut, with their level.
     pub complete: Vec<(usize, Ring)>,
-    /// What is left of the others.
+    /// What is left of the cut ones.
     pub incomplete: Vec<Piece>,
 }
 
-/// Cuts the contours of all levels where they run inside a skeleton region. By default the outermost one makes the shape
-/// and is cut only where the part is as thin as one bead.
+/// Cuts the contours of all levels where they run inside a skeleton region. By default the outermost one gives the
+/// shape and is cut only where the part is as thin as one bead.
 pub fn cut(levels: &[Level], regions: &Region, settings: &FillSettings) -> Contours {
     // The sides of a pocket lie on the contour itself: a little more is cut.
     let knife = regions.offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
@@ -59,7 +59,7 @@ fn cut_ring(level: usize, ring: &Ring, knife: &Region, settings: &FillSettings, 
     contours.incomplete.extend(pieces.into_iter().map(|points| Piece { level, points }));
 }
 
-/// A ring is clipped as a line from its first point to its first point: pieces that meet there are one.
+/// A ring is clipped as a line from its first point back to that point: pieces that meet there are joined.
 fn join_at(first: DVec2, pieces: &mut Vec<Vec<DVec2>>) {
     let near = |p: Option<&DVec2>| p.is_some_and(|p| p.distance(first) < 1e-3);
     let ends = pieces.iter().position(|piece| near(piece.last()));
@@ -73,15 +73,15 @@ fn join_at(first: DVec2, pieces: &mut Vec<Vec<DVec2>>) {
     }
 }
 
-/// Where the outermost contour would run beside itself nearer than this, in stepovers, one bead along the middle is laid.
+/// Where two sides of the outermost contour would be closer than this, in stepovers, one bead is laid along the middle.
 const THIN: f64 = 0.6;
 
-/// The places where both sides of a contour lie too near each other, long enough for a pass.
+/// The places, long enough for a pass, where both sides of a contour lie too close together.
 fn thin(region: &Region, settings: &FillSettings) -> Region {
     let r = THIN / 2.0 * settings.stepover;
     let open = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
     let mut thin = region.difference(&open).into_polygons();
-    // A piece of no width has twice its length as outline; the bead in it keeps away from both ends of the contour.
+    // The outline of a piece without width is twice its length; its bead keeps away from both ends of the contour.
     let shortest = settings.min_pass_length + 2.0 * settings.hybrid.least_gap;
     thin.retain(|piece| piece.outer.length() >= 2.0 * shortest);
     Region::from_normalised(thin).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join())
@@ -90,8 +90,8 @@ fn thin(region: &Region, settings: &FillSettings) -> Region {
 /// Tips are cut off where both legs of a contour are this far apart, in stepovers.
 const CAP: f64 = 0.9;
 
-/// A contour without the tips of corners sharper than 60°: there both legs would pile up, while a void stays between the
-/// tips of neighbouring contours. The room beyond gets a bead of its own.
+/// A contour without the tips of corners sharper than 60°: there the metal of both legs would pile up, while a void
+/// stays between the tips of neighbouring contours. The room beyond gets a bead of its own.
 fn capped(region: &Region, settings: &FillSettings) -> Region {
     let r = CAP / 2.0 * settings.stepover;
     let blunt = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
@@ -102,7 +102,7 @@ fn capped(region: &Region, settings: &FillSettings) -> Region {
     if tips.is_empty() {
         return region.clone();
     }
-    // A tip's sides lie on the contour itself: cut with a hair more, no needle of them is left.
+    // A tip's sides lie on the contour itself: cutting a hair more leaves no needle of them.
     let knife = Region::from_normalised(tips).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     region.difference(&knife)
 }
@@ -112,9 +112,9 @@ const SHARP: f64 = 0.26;
 /// A corner is drawn out along this much of its legs, in stepovers.
 const LEG: f64 = 1.2;
 
-/// A ring whose sharp corners reach out towards the next ring outside. Between the tips of two rings lies d/sin(θ/2);
-/// the outer one fills up to where its legs are 0.84 w apart, the inner one 0.45 d before its tip. What is left in
-/// between is a void, while both legs pile up at the tip: the tip is moved out into the void.
+/// A ring whose sharp corners reach out towards the next ring outside. The tips of two rings lie d/sin(θ/2) apart. The
+/// outer ring fills this up to where its legs are 0.84 w apart, the inner one the last 0.45 d in front of its tip. What
+/// is left in between is a void, while the metal of both legs piles up at the tip: so the tip is moved out into it.
 fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     let (points, d) = (ring.points(), settings.stepover);
     let n = points.len();
@@ -137,7 +137,7 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     if tips.is_empty() || settings.hybrid.tip_reach == 0.0 {
         return ring.clone();
     }
-    // Nothing of two corners may overlap.
+    // The drawn-out legs of two corners must not overlap.
     let apart = |i: usize, j: usize| (stations[j] - stations[i]).rem_euclid(length);
     let room = |k: usize| {
         let (last, next) = (tips[(k + tips.len() - 1) % tips.len()], tips[(k + 1) % tips.len()]);
@@ -147,7 +147,7 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     let legs: Vec<f64> = (0..tips.len()).map(|k| (LEG * d).min(0.9 * room(k))).collect();
     let mut drawn: Vec<(f64, DVec2)> = Vec::with_capacity(n + 2 * tips.len());
     for (i, &p) in points.iter().enumerate() {
-        // The tips stand in order: only the one before and the one behind can be near.
+        // The tips are in order: only the one before and the one after can be near.
         let k = tips.partition_point(|&t| t < i);
         if tips.get(k) == Some(&i) {
             let moved = tip(i).map_or(p, |(at, way, reach)| at + way * reach);
@@ -167,7 +167,7 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     Ring::new(drawn.into_iter().map(|(_, p)| p).collect())
 }
 
-/// The place at a station of a ring.
+/// The point at a given station (length along the ring, mm).
 fn along(points: &[DVec2], stations: &[f64], length: f64, at: f64) -> DVec2 {
     let i = stations.partition_point(|&s| s <= at).saturating_sub(1);
     let (a, b) = (points[i], points[(i + 1) % points.len()]);

@@ -1,9 +1,9 @@
-//! Which lines lie near a place: a grid of cells over pieces of lines.
+//! Finds the lines near a place: a grid of cells that hold pieces of lines.
 
 use glam::{DVec2, IVec2};
 use std::collections::HashMap;
 
-/// Lines by number, cut in pieces, by place.
+/// Numbered lines, cut into pieces and sorted by place.
 pub struct LineIndex {
     size: f64,
     cells: HashMap<IVec2, Vec<Piece>>,
@@ -13,12 +13,12 @@ pub struct LineIndex {
 type Piece = (usize, usize, DVec2, DVec2);
 
 impl LineIndex {
-    /// No lines yet; nothing is seen further than `sight` (mm).
+    /// An index without lines, which sees no farther than `sight` (mm).
     pub fn new(sight: f64) -> Self {
         Self { size: sight, cells: HashMap::new() }
     }
 
-    /// How far is seen, mm.
+    /// How far it sees, mm.
     pub fn sight_mm(&self) -> f64 {
         self.size
     }
@@ -32,7 +32,7 @@ impl LineIndex {
         }
     }
 
-    /// The line that is met first in a direction and its distance, mm. The piece `own` and those beside it do not count.
+    /// The first line met in a direction, and its distance, mm. The piece `own` and those next to it do not count.
     pub fn sight(&self, from: DVec2, way: DVec2, own: (usize, usize)) -> Option<(usize, f64)> {
         let to = from + way * self.size;
         let mut nearest = (0, f64::INFINITY);

@@ -1,9 +1,9 @@
 //! Beads along the medial axis of narrow pieces.
 //!
-//! A piece lies the least gap away from the contours around it. Across it, from contour to contour, W = thickness + 2 gap:
-//! n = round(W/d) − 1 beads, at least one, are spread evenly at W/(n + 1). The contours fill half a stepover on each
-//! side, so each of the n fills (W − d)/n, and its width follows within the limits of the process: speed keeps the bead
-//! height.
+//! A piece keeps the least gap from the contours around it, so from contour to contour the room across it is
+//! W = thickness + 2 gap. In it n = round(W/d) − 1 beads, at least one, are spread evenly, W/(n + 1) apart. The
+//! contours fill half a stepover on each side, so each of the n beads fills (W − d)/n. Its width follows from that,
+//! within the limits of the process, and the speed keeps the bead height.
 
 use super::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
@@ -14,18 +14,18 @@ use planar::ladder::{Ladder, Rung, ladders};
 use planar::{Polygon, Region};
 use std::ops::Range;
 
-/// Samples of the boundary across a bead width.
+/// Samples of the boundary per bead width.
 const SAMPLES: f64 = 8.0;
-/// Points of a pass lie at least this part of a bead width apart.
+/// Points of a pass are at least this fraction of a bead width apart.
 const POINT_STEP: f64 = 0.2;
-/// Stretches with another number of beads are at least this long, in bead widths.
+/// Stretches with a different number of beads are at least this long, in bead widths.
 const SHORTEST_RUN: f64 = 1.5;
-/// Ends that lie nearer than this are joined, in stepovers.
+/// Ends closer together than this are joined, in stepovers.
 const JOIN: f64 = 1.6;
-/// A short line across a piece lies in it with at least this part.
+/// A short line across a piece must lie inside it for at least this fraction of the shortest pass.
 const SHORTEST_PART: f64 = 0.6;
 
-/// The passes of a narrow piece. `laid` holds all that is laid already, and then these too; `outermost` is where
+/// The passes of a narrow piece. `laid` holds the lines already laid and takes in these too; `outermost` is where
 /// centre-lines may lie.
 pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut LineIndex, settings: &FillSettings) -> Vec<Path> {
     let spacing = settings.bead.width / SAMPLES;
@@ -42,7 +42,7 @@ pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut LineIndex, settings
     free.map(|line| line.pass()).collect()
 }
 
-/// The longest part of a line that crosses nothing that is laid, nor itself; it is laid then.
+/// The longest stretch of a line that crosses neither laid lines nor itself; it is added to `laid`.
 fn uncrossed(mut line: Line, laid: &mut LineIndex) -> Option<Line> {
     let closed = std::mem::take(&mut line.closed);
     if closed {
@@ -75,7 +75,7 @@ fn uncrossed(mut line: Line, laid: &mut LineIndex) -> Option<Line> {
     (line.points.len() >= 2).then_some(line)
 }
 
-/// Whether a ladder only holds two forks apart: the lines that meet there turn around the knot, and what is left in its
+/// Whether a ladder only separates two forks: the lines that meet there turn around this knot, and the room left in its
 /// middle is filled later.
 fn is_knot(ladder: &Ladder) -> bool {
     let widest = ladder.rungs.iter().map(|rung| rung.thickness).fold(0.0, f64::max);
@@ -116,7 +116,7 @@ struct Line {
 impl Line {
     fn pass(self) -> Path {
         let mut widths = self.widths.clone();
-        // On the way to the next point holds the mean of both.
+        // Up to the next point the mean of both widths holds.
         let next = self.widths.iter().cycle().skip(1);
         let last = if self.closed { widths.len() } else { widths.len().saturating_sub(1) };
         widths.iter_mut().zip(next).take(last).for_each(|(width, next)| *width = (*width + next) / 2.0);
@@ -172,7 +172,7 @@ fn thinned(ladder: &Ladder, step: f64) -> Vec<Rung> {
     rungs
 }
 
-/// Number of beads across each rung, without stretches too short to be worth a change.
+/// Number of beads across each rung; stretches too short to be worth a change take the number beside them.
 fn counts(rungs: &[Rung], settings: &FillSettings) -> Vec<usize> {
     let across = |rung: &Rung| rung.thickness + 2.0 * settings.hybrid.least_gap;
     let count = |rung: &Rung| ((across(rung) / settings.stepover - 1.0).round().max(1.0)) as usize;
@@ -234,8 +234,8 @@ fn centroid(points: &[DVec2]) -> Option<DVec2> {
     (area.abs() > 1e-9).then(|| origin + moment / area)
 }
 
-/// Draws free ends out to a stepover before the contour that lies beyond; what would be too short to be laid, to the
-/// edge of the piece.
+/// Extends free ends to a stepover before the contour that lies beyond; a line otherwise too short to be laid is
+/// extended to the edge of the piece.
 fn extend(line: &mut Line, free: [bool; 2], piece: &Polygon, settings: &FillSettings) {
     let beyond = settings.stepover - settings.hybrid.least_gap;
     let first = planar::polyline::length(&line.points);
@@ -272,7 +272,7 @@ fn hit(piece: &Polygon, from: DVec2, way: DVec2) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Joins lines whose ends lie near each other, the nearest first; no link crosses what is laid, or these lines.
+/// Joins lines whose ends lie near each other, the nearest first; no link crosses laid lines or these lines.
 fn join(mut lines: Vec<Line>, reach: f64, laid: &LineIndex) -> Vec<Line> {
     let mut own = LineIndex::new(laid.sight_mm());
     lines.iter().for_each(|line| own.add_line(0, &line.points));

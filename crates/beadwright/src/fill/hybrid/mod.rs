@@ -1,20 +1,20 @@
-//! The contour-skeleton hybrid (Zhao et al. 2023, paper A): contours keep the shape, and where they would leave
-//! pockets the pockets are found, merged to skeleton regions and filled in their own way; the contours are cut there
-//! and joined to few passes.
+//! The contour-skeleton hybrid (Zhao et al. 2023, paper A): contours keep the shape; the pockets that they would leave
+//! are found, merged into skeleton regions and filled in their own way; the contours are cut there and joined into few
+//! passes.
 //!
 //! | step | file | section of the paper |
 //! | --- | --- | --- |
 //! | levels and their pockets, which of them are kept | [`pockets`] | 1.1.1, 1.1.2 |
 //! | skeleton regions: the kept pockets merged | [`pockets::merge`] | 1.1.3 |
-//! | contours cut in the regions | [`contours`] | 1.3 (1)–(2) |
-//! | contours joined to chains | [`chain`] | 1.3 (3)–(4) |
+//! | contours cut at the regions | [`contours`] | 1.3 (1)–(2) |
+//! | contours joined into chains | [`chain`] | 1.3 (3)–(4) |
 //! | regions filled | [`skeleton`] | 1.2 |
 //! | widths that follow the room (ours) | [`adapt`] | |
 //!
-//! Where the default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket
-//! is not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from the contours that are
-//! left, since it fills what lies outside their neighbourhood; narrow regions get a few beads along their medial axis
-//! instead of short strokes across; ends of cut contours reach into the fill.
+//! The default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket is
+//! not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from
+//! the remaining contours, since it fills what lies outside their neighbourhood; narrow regions get a few beads along
+//! their medial axis instead of short strokes across; the ends of cut contours reach into the fill.
 
 pub mod adapt;
 pub mod chain;
@@ -39,11 +39,11 @@ pub struct Hybrid;
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ScanAlong {
-    /// Parallel to the short side of the region's smallest rectangle, as the paper has it.
+    /// Parallel to the short side of the region's smallest rectangle, as in the paper.
     Short,
     /// Parallel to the long side.
     Long,
-    /// The one with fewer arc starts, then with fewer turns.
+    /// Whichever gives fewer arc starts; if equal, fewer turns.
     Auto,
 }
 
@@ -63,17 +63,17 @@ pub enum HybridOrder {
 pub struct HybridSettings {
     /// Follow the paper to the letter.
     pub literal: bool,
-    /// How far a contour is moved in to find its pockets: where it is narrower than twice this, it is one.
+    /// How far a contour is moved in to find its pockets: places narrower than twice this are pockets.
     pub pocket_depth: f64,
-    /// What the backtracked contour is larger, so that numerical slivers are no pockets.
+    /// How much larger the backtracked contour is made, so that numerical slivers do not count as pockets.
     pub tolerance: f64,
-    /// Smaller pockets are not kept.
+    /// Pockets smaller than this are not kept.
     pub min_pocket_area: f64,
-    /// Shorter corner pockets are not kept.
+    /// Corner pockets shorter than this are not kept.
     pub min_pocket_length: f64,
     /// Distance between skeleton fill and contours, d2.
     pub skeleton_gap: f64,
-    /// The least distance between contours and beads along a medial axis: nearer than that nothing is laid.
+    /// The least distance between contours and beads along a medial axis: nothing is laid closer.
     pub least_gap: f64,
     /// Skeleton regions narrower than this are filled along their medial axis.
     pub region_width: f64,
@@ -90,7 +90,7 @@ pub struct HybridSettings {
 }
 
 impl HybridSettings {
-    /// Round joins as true as pockets need them: chords within half the tolerance.
+    /// Round joins as accurate as pockets need them: chords within half the tolerance.
     fn join(&self) -> Join {
         Join::Round(self.tolerance / 2.0)
     }
@@ -111,14 +111,14 @@ impl Strategy for Hybrid {
     }
 }
 
-/// All steps of one island, to be tested and drawn.
+/// The results of all steps for one island, to be tested and drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steps {
     /// The contours from outside in, with their pockets.
     pub levels: Vec<Level>,
     /// The kept pockets merged.
     pub regions: Region,
-    /// The contours, those cut apart among them.
+    /// The contours, complete and cut.
     pub contours: Contours,
     /// The contours joined to passes.
     pub chains: Vec<Path>,
@@ -127,7 +127,7 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Goes all steps.
+    /// Runs all steps.
     pub fn of(island: &Polygon, settings: &FillSettings) -> Self {
         let outermost = settings.outermost(island);
         let levels = pockets::levels(outermost.clone(), settings);

@@ -1,21 +1,21 @@
 //! The contours of an island from outside in, and the pockets that each would leave.
 //!
-//! A level P is moved in by 1.5 d and back out. Where it does not come back, P is narrower than 3 d or has a sharp
-//! corner: these are its pockets. 1.5 d rather than d: no gap narrower than d survives.
+//! A level P is moved in by 1.5 d and back out. Places that do not come back are narrower than 3 d or sharp corners:
+//! these are its pockets. The distance is 1.5 d rather than d so that no gap narrower than d survives.
 
 use crate::fill::FillSettings;
 use glam::DVec2;
 use planar::polyline::point_at;
 use planar::{Bounds, Polygon, Region};
 
-/// What a pocket is.
+/// The kinds of pockets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PocketKind {
     /// A level that vanishes altogether.
     Whole,
     /// A narrow place between wider ones.
     Channel,
-    /// A blunt arm that ends.
+    /// A blunt arm with a dead end.
     Arm,
     /// A sharp corner.
     Corner,
@@ -28,26 +28,26 @@ pub struct Pocket {
     pub shape: Polygon,
     /// What it is.
     pub kind: PocketKind,
-    /// Length from where it opens to its tip, mm; of corners only.
+    /// Length from its opening to its tip, mm; 0 for a whole level.
     pub length: f64,
-    /// Whether it is filled in its own way.
+    /// Whether it is kept, to be filled in its own way.
     pub kept: bool,
 }
 
 /// One contour inwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// What the contour of this level bounds, P.
+    /// The region inside the contour of this level, P.
     pub region: Region,
-    /// The contour that is laid: the backtracked level by the paper, the level less its kept pockets by default.
+    /// The contour that is laid: in the paper the backtracked level, by default the level less its kept pockets.
     pub contour: Region,
     /// The pockets.
     pub pockets: Vec<Pocket>,
 }
 
-/// A pocket that fills more than this part of the box over its opening is an arm.
+/// A pocket that fills more than this fraction of the box over its opening is an arm.
 const ARM: f64 = 0.55;
-/// Shorter arms are left to the contour, in stepovers.
+/// Arms shorter than this are left to the contour, in stepovers.
 const SHORTEST_ARM: f64 = 0.5;
 /// No part has more contours than this; a guard, not a limit.
 const MOST_LEVELS: usize = 100_000;
@@ -59,11 +59,11 @@ pub fn levels(outermost: Region, settings: &FillSettings) -> Vec<Level> {
     while !region.is_empty() && levels.len() < MOST_LEVELS {
         let mut level = level(region, settings);
         if !settings.hybrid.literal && levels.is_empty() {
-            // The outermost contour makes the shape: no pocket cuts it.
+            // The outermost contour gives the shape: no pocket cuts it.
             level.pockets.iter_mut().for_each(|pocket| pocket.kept = false);
             level.contour = level.region.clone();
         }
-        // Offsets multiply vertices; what lies within a quarter of the tolerance is none of them.
+        // Offsets multiply vertices: those within a quarter of the tolerance are dropped.
         region = level.contour.offset(-settings.stepover, settings.hybrid.join());
         region = region.simplified(settings.hybrid.tolerance / 4.0);
         levels.push(level);
@@ -102,12 +102,12 @@ fn less_kept(whole: &Region, pockets: &[Pocket]) -> Region {
     if kept.is_empty() { whole.clone() } else { whole.difference(&Region::from_normalised(kept)) }
 }
 
-/// Tells what a pocket is and whether it is kept: channels always, corners from a length on.
+/// Tells the kind of a pocket and whether it is kept: channels always, corners and arms from a certain length on.
 fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket {
     let hybrid = &settings.hybrid;
     let near = 3.0 * hybrid.tolerance;
     let edge = edge_near(&shape, back, near);
-    // Two openings make a channel, towards two pieces or towards one: a ring road around a wide place.
+    // Two openings make a channel, whether they lead to two pieces or to one: a ring road around a wide place.
     let openings = openings(&shape, &edge, near);
     let channel = openings.len() > 1;
     let length = length(&shape, &openings, &edge, settings);
@@ -118,7 +118,7 @@ fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket 
         (false, true) => PocketKind::Arm,
         (false, false) => PocketKind::Corner,
     };
-    // By the paper length alone decides; sharp contours fill sharp corners better than fill does, unless they are long.
+    // In the paper length alone decides. Sharp contours fill sharp corners better than infill, unless these are long.
     let kept = match kind {
         PocketKind::Arm if !hybrid.literal => length >= SHORTEST_ARM * settings.stepover,
         PocketKind::Corner | PocketKind::Arm => length >= hybrid.min_pocket_length,
@@ -127,8 +127,8 @@ fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket 
     Pocket { shape, kind, length, kept }
 }
 
-/// The lines that a pocket shares with the backtracked level, each as points in order. An edge is shared when its middle
-/// lies there: the straight sides of a channel have their ends there too.
+/// The lines that a pocket shares with the backtracked level, each as points in order. An edge is shared if its middle
+/// lies on that level: the ends of a channel's straight sides lie on it too.
 fn openings(shape: &Polygon, edge: &[(DVec2, DVec2)], near: f64) -> Vec<Vec<DVec2>> {
     let mut openings = Vec::new();
     for ring in shape.rings() {
@@ -153,8 +153,8 @@ fn openings(shape: &Polygon, edge: &[(DVec2, DVec2)], near: f64) -> Vec<Vec<DVec
     openings
 }
 
-/// Length of a pocket, mm: from the middle of its opening to that point of its own outline which lies most squarely
-/// before the opening. The outline is looked at every bead width, at equal distances, and at its corners.
+/// Length of a pocket, mm: from the middle of its opening to the point of its own outline that lies most squarely in
+/// front of the opening. The outline is sampled evenly, at most a bead width apart, and at its corners.
 fn length(shape: &Polygon, openings: &[Vec<DVec2>], edge: &[(DVec2, DVec2)], settings: &FillSettings) -> f64 {
     let near = 3.0 * settings.hybrid.tolerance;
     let Some(opening) = openings.iter().max_by(|a, b| span(a).total_cmp(&span(b))) else { return 0.0 };
@@ -200,7 +200,7 @@ fn distance_to(edges: &[(DVec2, DVec2)], p: DVec2) -> f64 {
     squared.fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// The kept pockets merged to skeleton regions: grown by d, united, shrunk by d.
+/// The kept pockets merged into skeleton regions: grown by d, united, shrunk by d.
 pub fn merge(levels: &[Level], outermost: &Region, settings: &FillSettings) -> Region {
     let kept: Vec<Polygon> =
         levels.iter().flat_map(|level| &level.pockets).filter(|p| p.kept).map(|p| p.shape.clone()).collect();

@@ -1,8 +1,8 @@
 //! The fill of the skeleton regions: what is left between the contours.
 //!
-//! With T the contours and links that are laid, P₀ less the neighbourhood of T within d2 is filled, so that skeleton
+//! Let T be the contours and links already laid. The fill covers P₀ less everything within d2 of T, so that skeleton
 //! fill and contours keep exactly d2. Narrow pieces get beads along their [medial axis](super::medial); wide ones, and
-//! by the paper all, a zigzag in the direction of their smallest rectangle.
+//! in the paper all, get a zigzag aligned with their smallest rectangle.
 
 use super::line_index::LineIndex;
 use super::{ScanAlong, medial};
@@ -11,12 +11,12 @@ use glam::DVec2;
 use planar::polyline::{length, without_end};
 use planar::{Join, Polygon, Region, buffer, min_area_rect};
 
-/// The neighbourhood of contours is true within this part of a bead width.
+/// The neighbourhood of contours is accurate to this fraction of a bead width.
 const BUFFER: f64 = 0.01;
-/// At forks and where the number of beads changes, a first filling leaves room for more.
+/// Rounds of filling: at forks and where the number of beads changes, the first one leaves room for more.
 const ROUNDS: usize = 3;
 
-/// The passes of all skeleton regions. `contours` are laid already, joined.
+/// The passes of all skeleton regions. `contours` are the joined contours, already laid.
 pub fn fill(outermost: &Region, regions: &Region, contours: &[Path], settings: &FillSettings) -> Vec<Path> {
     let mut free = room(outermost, contours, settings);
     let mut laid = LineIndex::new(settings.stepover);
@@ -48,7 +48,7 @@ fn fill_room(
             continue;
         }
         if settings.hybrid.literal {
-            // The paper fills its regions only.
+            // The paper fills only its regions.
             let near = regions.offset(settings.stepover, Join::ROUND).intersection(&piece.clone().into());
             near.polygons().iter().for_each(|p| passes.extend(scanned(p, settings)));
         } else if is_narrow(piece, settings) {
@@ -69,7 +69,7 @@ fn gap(settings: &FillSettings) -> f64 {
     if settings.hybrid.literal { settings.hybrid.skeleton_gap } else { settings.hybrid.least_gap }
 }
 
-/// Where centre-lines of the fill may lie: what is free less the neighbourhood of what is laid.
+/// Where centre-lines of the fill may lie: the free region less the neighbourhood of the laid passes.
 fn room(free: &Region, laid: &[Path], settings: &FillSettings) -> Region {
     let gap = gap(settings);
     let (closed, open): (Vec<&Path>, Vec<&Path>) = laid.iter().partition(|pass| pass.closed);
@@ -80,7 +80,7 @@ fn room(free: &Region, laid: &[Path], settings: &FillSettings) -> Region {
     free.difference(&buffer(&closed, true, gap, tolerance)).difference(&buffer(&open, false, gap, tolerance))
 }
 
-/// A line less its ends: there the fill may come nearer.
+/// A line without its ends: the fill may come closer there.
 fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
     if length(points) < 4.0 * by {
         return points.to_vec();
@@ -92,7 +92,7 @@ fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
 
 /// Whether a piece is nowhere wider than the regions that get beads along their axis.
 fn is_narrow(piece: &Polygon, settings: &FillSettings) -> bool {
-    // Its contours lie the gap beyond its edge on both sides.
+    // The contours lie a gap beyond its edge on both sides.
     let inner = settings.hybrid.region_width / 2.0 - settings.hybrid.least_gap;
     piece.offset(-inner.max(0.0), Join::ROUND).is_empty()
 }

@@ -1,5 +1,5 @@
-//! Widths: a piece of bead lays the metal of its cell, which is what lies nearer to it than to any other. In a wall of its
-//! own a bead is as wide as the wall.
+//! Widths: a piece of bead lays the metal of its cell, the area closer to it than to any other piece. A bead alone in a
+//! wall is as wide as the wall.
 
 use super::LoopSettings;
 use super::line::Line;
@@ -7,9 +7,9 @@ use super::room::Room;
 use glam::DVec2;
 use planar::nearest::{NONE, nearest};
 
-/// Farther than this from a line, in stepovers, room belongs to no bead.
+/// Room farther than this from every line, in stepovers, belongs to no bead.
 const FARTHEST: f32 = 0.9;
-/// Widths follow the mean over so many stepovers before and behind.
+/// Widths are averaged over this many stepovers before and after.
 const WINDOW: f64 = 0.8;
 
 /// Gives every piece the width of its cell.

@@ -1,7 +1,7 @@
 //! Counts: how many rings lie on each side of a wall's middle.
 //!
-//! A whole number of rings means an even number of beads across: none ends anywhere. Along the middle the number changes as
-//! rarely as the window of bead widths allows: neighbours vote.
+//! A whole number of rings on each side means an even number of beads across the wall, so no bead ends anywhere. Along
+//! the middle of a wall the number changes as seldom as the range of bead widths allows: neighbouring places vote.
 
 use super::LoopSettings;
 use super::room::Room;
@@ -9,13 +9,13 @@ use glam::{DVec2, I64Vec2};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-/// Neighbours within so many stepovers have a vote.
+/// Neighbours within this many stepovers have a vote.
 const SIGHT: f64 = 1.2;
 /// Rounds of the vote.
 const ROUNDS: usize = 2;
-/// Where there is room for less than this part of a ring there is none.
+/// Where there is room for less than this fraction of a ring, none is laid.
 const LEAST_ROOM: f64 = 0.2;
-/// How far the vote may leave the window of widths.
+/// How far the vote may go beyond the range of widths, as a fraction.
 const SLACK: f64 = 0.05;
 
 /// The number of rings on each side at each of the room's middles.
@@ -39,7 +39,7 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
                 Some((_, number)) => *number += 1,
                 None => votes.push((before[j], 1)),
             });
-            // The smaller count where two have as many votes.
+            // The smaller count wins a tie.
             let winner = votes.iter().max_by_key(|(count, number)| (*number, Reverse(*count)));
             if let Some(&(winner, _)) = winner.filter(|(winner, _)| fits(wanted[i], *winner)) {
                 *count = winner;
@@ -49,7 +49,7 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
     counts
 }
 
-/// Places in square cells as wide as one looks.
+/// Places sorted into square cells as wide as the reach of a search.
 struct Neighbours<'a> {
     places: &'a [DVec2],
     reach: f64,

@@ -1,4 +1,4 @@
-//! The height field of lines on the room's lattice, in nominal bead heights, and what is wrong with it.
+//! The height field of lines on the room's lattice, in nominal bead heights, and its faults.
 
 use super::LoopSettings;
 use super::line::Line;
@@ -11,14 +11,14 @@ use planar::lattice::Lattice;
 use std::f64::consts::FRAC_2_PI;
 use std::ops::Range;
 
-/// Higher metal counts as this high: a peak pushes no farther.
+/// Higher metal counts as this high, so that a peak pushes no harder.
 const MOST: f32 = 1.6;
-/// Heights are blurred with a standard deviation of so many bead widths.
+/// Standard deviation of the blur of the heights, in bead widths.
 const BLUR: f64 = 0.26;
-/// Where less of the blur lies inside than this the height is taken as wanted.
+/// Where less than this fraction of the blur lies inside, the height is taken to be the wanted one.
 const LEAST_AREA: f32 = 0.08;
 
-/// What is wrong with a height field, % of the area.
+/// Faults of a height field, % of the area where metal is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Faults {
     /// Voids.
@@ -30,20 +30,20 @@ pub struct Faults {
 }
 
 impl Faults {
-    /// One number for all.
+    /// The faults as one weighted sum; the lower the better.
     pub fn cost(&self) -> f64 {
         10.0 * self.void + self.overfill + 0.3 * self.low
     }
 }
 
-/// Where metal is wanted.
+/// Whether metal is wanted at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// Nowhere here.
+    /// Outside, or in the rim: no metal is wanted here.
     Outside,
     /// Metal may be here, but no disc for two beads fits.
     Tight,
-    /// It is wanted here.
+    /// Metal is wanted here.
     Wanted,
 }
 
@@ -52,11 +52,11 @@ pub struct Field<'a> {
     lattice: &'a Lattice,
     places: Vec<Place>,
     wanted: usize,
-    /// For each row the points from the first to the last inside.
+    /// For each row, the points from the first to the last one inside.
     spans: Vec<Range<usize>>,
-    /// Half of the blur's weights, from its middle on.
+    /// One half of the symmetric blur's weights, from its middle outwards.
     weights: Vec<f32>,
-    /// How much of the blur about each point lies inside.
+    /// The fraction of the blur around each point that lies inside.
     area: Vec<f32>,
     /// The wanted mean height.
     target: f32,
@@ -92,7 +92,7 @@ impl<'a> Field<'a> {
         heights
     }
 
-    /// A short piece, as a pool that stands in its middle.
+    /// Adds a short piece, taken as a pool that stands still at its middle.
     fn stamp(&self, heights: &mut [f32], at: DVec2, length: f64, width: f64, settings: &LoopSettings) {
         let Lattice { columns, rows, step, .. } = *self.lattice;
         let (at, radius) = (self.lattice.in_steps(at), width / 2.0 / step);
@@ -111,7 +111,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// What is wrong with heights.
+    /// The faults of a height field.
     pub fn faults(&self, heights: &[f32]) -> Faults {
         let (mut void, mut low, mut overfill) = (0_usize, 0_usize, 0_usize);
         for (&height, &place) in heights.iter().zip(&self.places) {
@@ -125,7 +125,7 @@ impl<'a> Field<'a> {
         Faults { void: percent(void), low: percent(low - void), overfill: percent(overfill) }
     }
 
-    /// The heights blurred over what lies inside. Where there is no room for two beads only too much counts.
+    /// The heights, blurred over the points inside. Where there is no room for two beads, only excess metal counts.
     pub fn blurred(&self, heights: &[f32]) -> Vec<f32> {
         let height = |place: Place, height: f32| match place {
             Place::Outside => 0.0,
@@ -174,8 +174,9 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Adds a row of a pool: the place of the row's first point before the middle and the squared half of the row within the
-/// pool, in steps; and the height of a line of such pools, with their radius in steps.
+/// Adds one row of a pool to `line`. In steps: `start` is the row's first point seen from the pool's middle, `square`
+/// the squared half-width of the pool in this row, `radius` that of the pool. `height` is that of a bead laid by a line
+/// of such pools.
 fn pour(line: &mut [f32], section: Section, (start, square): (f64, f64), (height, radius): (f64, f64)) {
     let (start, square) = (start as f32, square as f32);
     let inside = |k: usize| {

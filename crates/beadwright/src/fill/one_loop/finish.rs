@@ -1,7 +1,7 @@
 //! What a controller can follow: few straight pieces and arcs, and widths that change in steps.
 //!
-//! The relaxed line is replaced by the longest pieces that leave it by no more than a tolerance and along which the smooth
-//! width stays within a step. A piece has one width.
+//! The relaxed line is replaced by the longest pieces that deviate from it by no more than a tolerance and along which
+//! the smoothed width stays within a step. Each piece has one width.
 
 use super::LoopSettings;
 use super::line::Line;
@@ -9,16 +9,16 @@ use super::room::Room;
 use glam::DVec2;
 use planar::arcs::{Arc, Fit};
 
-/// The line may leave the relaxed one by this part of a step of the width.
+/// Tolerance: how far the line may deviate from the relaxed one, as a fraction of a width step.
 const TOLERANCE: f64 = 0.2;
-/// Arcs are drawn by chords that leave them by this, in bead widths.
+/// Arcs are drawn as chords that deviate from them by this, in bead widths.
 const CHORD: f64 = 0.002;
 /// Middle points of arcs are multiples of this, in bead widths.
 const GRID: f64 = 1e-6;
-/// A bead may reach so many bead widths out of the outline: lower there than what the deposit model calls outside.
+/// Beads may reach this many bead widths beyond the outline: too low there to count as outside in the deposit model.
 const OUT: f64 = 0.005;
 
-/// The line of few pieces.
+/// The line, made of few pieces.
 pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
     let w = settings.bead_width;
     let fit = Fit { tolerance: TOLERANCE * settings.width_step, arcs: true, grid: GRID * w };
@@ -32,7 +32,7 @@ pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
         let end = start + piece.end;
         let own = &points[start..=end];
         let mean = mean_width(own, &widths[start..end]);
-        // A width that hardly differs from the one before is that.
+        // A width that hardly differs from the one before is replaced by it.
         if (mean - width).abs() > settings.width_step / 2.0 {
             width = mean;
         }
@@ -55,12 +55,13 @@ pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
     result
 }
 
-/// What remains of 1 after the golden section: multiples of it spread evenly over a loop.
+/// One minus the golden section: its multiples spread evenly over a loop.
 const GOLDEN: f64 = 0.381_966_011_250_105;
-/// The seam lies where the line is straightest within so many bead widths of its place.
+/// The seam is put where the line is straightest, within this many bead widths of its planned place.
 const SEAM: f64 = 3.0;
 
-/// The points with the first one of a closed line again at its end. It begins far from where the layers below begin.
+/// The points, widths and thin flags. A closed line begins far from where the layers below begin, and its first point
+/// is repeated at its end.
 fn opened(line: &Line, mut widths: Vec<f64>, settings: &LoopSettings) -> (Vec<DVec2>, Vec<f64>, Vec<bool>) {
     let (mut points, mut thin) = (line.points.clone(), line.thin.clone());
     if line.closed && !points.is_empty() {
@@ -79,7 +80,7 @@ fn opened(line: &Line, mut widths: Vec<f64>, settings: &LoopSettings) -> (Vec<DV
     (points, widths, thin)
 }
 
-/// The last point to which the widths of pieces stay within a step of each other, from a point on.
+/// The last point, from `start` on, up to which the widths of the pieces stay within a step of each other.
 fn alike(widths: &[f64], thin: &[bool], start: usize, step: f64) -> usize {
     let (mut low, mut high) = (widths[start], widths[start]);
     let mut end = start + 1;

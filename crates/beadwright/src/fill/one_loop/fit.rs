@@ -1,34 +1,35 @@
 //! Flat beads fitted edge to edge: an edge beside a gap moves out, one that lies over its neighbour moves back.
 //!
-//! From every point one looks to both sides, as far as the next bead or the outline. What is missing is shared by a move and
-//! a change of width, so that each edge does its part. In a corner of the outline a bead goes deeper and narrows.
+//! Every point looks to both sides, as far as the next bead or the outline. A gap or an overlap is made up by a move
+//! and a change of width together, so that each edge does its part. In a corner of the outline a bead goes deeper and
+//! gets narrower.
 
 use super::LoopSettings;
 use super::line::Line;
 use super::room::Room;
 use glam::{DVec2, I64Vec2};
 
-/// Beads lie over each other by so many bead widths.
+/// Neighbouring beads overlap by this many bead widths.
 const OVERLAP: f64 = 0.028;
-/// Part of a gap that an edge closes in a round, and of an overlap that it takes back.
+/// Fraction of a gap that an edge closes in a round, and fraction of an overlap that it takes back.
 const CLOSE: f64 = 1.0;
 const BACK: f64 = 0.1;
-/// No overlap counts as more than this, and no gap is looked for farther away, in bead widths.
+/// Overlaps count as at most this deep, and gaps are looked for up to this reach, in bead widths.
 const DEEPEST: f64 = 0.3;
 const REACH: f64 = 0.35;
-/// Each round a point is drawn this part of the way to the middle of its neighbours.
+/// Each round a point is pulled this fraction of the way to the midpoint of its neighbours.
 const TENSION: f64 = 0.03;
-/// Each round widths go this part of the way back to what they were first.
+/// Each round widths go this fraction of the way back to their first values.
 const RETURN: f64 = 0.02;
-/// Pieces of the same line nearer than so many bead widths along it are no neighbours.
+/// Pieces of the same line less than this many bead widths apart along it do not count as neighbours.
 const APART: f64 = 0.9;
-/// A corner is where both legs touch the outline within this and their joint misses it by more, in bead widths.
+/// At a corner both legs touch the outline to within this, and their joint misses it by more, in bead widths.
 const TOUCH: f64 = 0.06;
-/// Part of that by which the joint moves in a round, and how much the bead narrows with it in a square corner: twice the
-/// move over √2.
+/// Fraction of that miss by which the joint moves in a round, and how much the bead narrows with the move in a square
+/// corner: twice the move over √2.
 const INTO_CORNER: f64 = 0.3;
 const NARROWS: f64 = std::f64::consts::SQRT_2;
-/// Sides of a piece that lean more than this (cosine) to the line of sight are seen by its round ends.
+/// Where the cosine between a piece's normal and the line of sight is no more than this, only its round ends are seen.
 const LEAST_LEAN: f64 = 0.2;
 
 /// Fits lines edge to edge.
@@ -91,7 +92,7 @@ impl Moves {
     }
 }
 
-/// How far one sees to a side, and what is there.
+/// The free distance to one side, mm, and whether the outline ends it.
 #[derive(Debug, Clone, Copy)]
 struct Free {
     distance: f64,
@@ -99,7 +100,7 @@ struct Free {
 }
 
 impl Free {
-    /// How far an edge that lies `half` away ought to move out, mm.
+    /// How far an edge `half` (mm) from the centre-line should move out, mm.
     fn wanted(self, half: f64, settings: &LoopSettings) -> f64 {
         let w = settings.bead_width;
         if self.is_outline {
@@ -110,7 +111,7 @@ impl Free {
     }
 }
 
-/// How the joint of two legs in a corner of the outline moves (to the left above 0), and how the bead narrows.
+/// How far the joint of two legs in a corner of the outline moves (left is positive), and the change of bead width, mm.
 fn corner(free: &[Free; 2], half: f64, room: f64, narrowest: f64, settings: &LoopSettings) -> Option<(f64, f64)> {
     let touch = TOUCH * settings.bead_width;
     let is_corner = |free: &&Free| free.is_outline && free.distance - half > touch && room - half < touch;
@@ -172,7 +173,7 @@ impl Sight {
         [round(ax, ay), round(bx, by), if ay * by < 0.0 { side() } else { None }]
     }
 
-    /// Distance to the outline that way, no farther than `most`: as far as is safe, step by step.
+    /// Distance to the outline in the direction `way`, up to about `most` (mm), in steps short enough not to overshoot.
     fn to_outline(&self, way: DVec2, most: f64, room: &Room, settings: &LoopSettings) -> f64 {
         let mut along = 0.0;
         for _ in 0..6 {
@@ -186,7 +187,7 @@ impl Sight {
     }
 }
 
-/// Where a line of sight runs through a bead: the middle, above 0 to the left, and from there to its edges.
+/// Where a line of sight runs through a bead: the middle (left is positive), and the distance from it to the edges.
 struct Crossing {
     middle: f64,
     depth: f64,
@@ -247,7 +248,7 @@ impl Pieces {
         Self { pieces, lengths, cell, low, size, starts, order }
     }
 
-    /// The pieces about a place.
+    /// Visits the pieces around a place.
     fn near(&self, p: DVec2, mut visit: impl FnMut(&Piece)) {
         let home = (p / self.cell).floor().as_i64vec2() - self.low;
         let (left, right) = ((home.x - 1).max(0), (home.x + 1).min(self.size.x - 1));

@@ -1,27 +1,27 @@
-//! Flips: rings joined to one loop.
+//! Flips: rings joined into one loop.
 //!
-//! Where two neighbouring rings run beside each other for a stretch, both stretches are taken out and two links laid
-//! between their ends: the same metal in the same place, and two loops are one. A spanning tree of flips over all rings
-//! that lie beside each other makes one loop of an island, whatever its holes and branches.
+//! Where two neighbouring rings run side by side, a stretch of each is taken out and two links are laid between their
+//! ends: the same metal in the same place, but two loops have become one. A spanning tree of flips over all
+//! neighbouring rings makes one loop of an island, whatever its holes and branches.
 //!
-//! Flips lie where both rings are straight and parallel, apart from each other, and on other places on the next layers.
+//! Flips are placed where both rings are straight and parallel, apart from each other, elsewhere on the next layers.
 
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring};
 use glam::{DVec2, I64Vec2};
 use std::collections::HashMap;
 
-/// Rings farther apart than so many stepovers are no neighbours.
+/// Rings farther apart than this many stepovers are not neighbours.
 const FARTHEST: f64 = 1.6;
-/// At most this part of a ring is taken out.
+/// At most this fraction of a ring is taken out.
 const MOST: f64 = 0.3;
-/// Flips keep so many stepovers from each other where they can.
+/// Flips stay this many stepovers apart where they can.
 const APART: f64 = 2.2;
-/// Layers take turns with places of so many stepovers.
+/// Side of the squares in which layers take turns to place flips, in stepovers.
 const FIELD: f64 = 4.0;
-/// So many layers pass before a place is as good again.
+/// After this many layers it is a square's turn again.
 const TURNS: i64 = 3;
-/// Between two rings nothing lies nearer to the middle than this part of their distance.
+/// No other ring comes closer to the middle between two rings than this fraction of their distance.
 const BETWEEN: f64 = 0.35;
 
 /// A place where two rings can be joined: a stretch of each, by the numbers of their points.
@@ -31,7 +31,7 @@ struct Flip {
     /// From one end to the other; the first points lie beside each other, and the last.
     stretches: [Vec<usize>; 2],
     place: DVec2,
-    /// The less the better.
+    /// The lower the better.
     score: f64,
 }
 
@@ -40,7 +40,7 @@ struct Flip {
 pub struct Joined {
     /// Closed lines: one, if all rings could be joined.
     pub loops: Vec<Vec<DVec2>>,
-    /// Where.
+    /// Where they were joined.
     pub flips: Vec<DVec2>,
 }
 
@@ -52,7 +52,7 @@ pub fn join(rings: &[Ring], settings: &LoopSettings) -> Joined {
     let mut taken = vec![false; points.at.len()];
     let mut flips = candidates(&points, settings);
     flips.sort_by(|a, b| a.score.total_cmp(&b.score).then_with(|| a.stretches.cmp(&b.stretches)));
-    // First apart from each other, then wherever they can be.
+    // First well apart, then wherever possible.
     for apart in [APART * settings.stepover, 0.0] {
         for flip in &flips {
             let free = || flip.stretches.iter().flatten().all(|&point| !taken[point]);
@@ -95,7 +95,7 @@ impl Groups {
     }
 }
 
-/// All points of all rings, numbered through.
+/// All points of all rings, numbered consecutively.
 struct Points {
     at: Vec<DVec2>,
     ring: Vec<usize>,
@@ -122,14 +122,14 @@ impl Points {
         self.start[ring + 1] - self.start[ring]
     }
 
-    /// The point so many places further on its ring.
+    /// The point `by` places further along its ring.
     fn further(&self, point: usize, by: isize) -> usize {
         let ring = self.ring[point];
         let (start, count) = (self.start[ring], self.count(ring) as isize);
         start + (point as isize - start as isize + by).rem_euclid(count) as usize
     }
 
-    /// No other flip may take these points, nor half as many before and behind.
+    /// Marks the points of a flip, and half as many before and after, so that no other flip takes them.
     fn take(&self, flip: &Flip, taken: &mut [bool]) {
         for stretch in &flip.stretches {
             let pad = stretch.len() as isize / 2;
@@ -139,7 +139,7 @@ impl Points {
         }
     }
 
-    /// The closed lines that are left when the flips are made.
+    /// The closed lines that remain once the flips are made.
     fn joined(&self, flips: &[&Flip]) -> Vec<Vec<DVec2>> {
         let around = |i: usize| [Some(self.further(i, -1)), Some(self.further(i, 1))];
         let mut beside: Vec<[Option<usize>; 2]> = (0..self.at.len()).map(around).collect();
@@ -208,7 +208,7 @@ fn candidates(points: &Points, settings: &LoopSettings) -> Vec<Flip> {
     flips
 }
 
-/// Of each ring numbered higher than that of point `i` the nearest of the nearby points.
+/// For each ring with a higher number than that of point `i`, the nearest of the nearby points.
 fn nearest_of_each_ring(points: &Points, i: usize, nearby: &[usize]) -> Vec<usize> {
     let square = |j: usize| points.at[j].distance_squared(points.at[i]);
     let mut nearest: Vec<usize> = Vec::new();
@@ -249,7 +249,8 @@ fn flip(points: &Points, i: usize, j: usize, settings: &LoopSettings) -> Option<
     Some(Flip { rings, stretches, place, score })
 }
 
-/// What it costs to lie where another layer's turn is. Places are squares; along rows and columns their turns alternate.
+/// The cost of a place where it is another layer's turn. Places are squares whose turns alternate along rows and
+/// columns.
 fn out_of_turn(place: DVec2, settings: &LoopSettings) -> f64 {
     let square = ((place - settings.datum) / (FIELD * settings.stepover)).floor().as_i64vec2();
     let turn = (square.x + 2 * square.y - settings.layer as i64).rem_euclid(TURNS);

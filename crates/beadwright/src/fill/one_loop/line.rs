@@ -4,11 +4,11 @@ use super::LoopSettings;
 use super::room::Room;
 use glam::DVec2;
 
-/// Beads keep this much more from the outline than they must, in bead widths: what the lattice does not know.
+/// Extra distance that beads keep from the outline, in bead widths: what the lattice does not resolve.
 const MARGIN: f64 = 5e-4;
-/// An edge is drawn to the outline where it lies nearer than this, in bead widths.
+/// A bead edge closer to the outline than this, in bead widths, is moved onto it.
 const SNAP: f64 = 0.05;
-/// No edge moves farther at a time, in bead widths.
+/// No edge moves farther than this at a time, in bead widths.
 const MOST: f64 = 0.2;
 
 /// A centre-line.
@@ -16,9 +16,9 @@ const MOST: f64 = 0.2;
 pub struct Line {
     /// Its points; the first one of a closed line is not repeated.
     pub points: Vec<DVec2>,
-    /// Bead width of the piece behind each point, mm; the last one of an open line has no meaning.
+    /// Bead width of the piece after each point, mm; the last one of an open line has no meaning.
     pub widths: Vec<f64>,
-    /// Whether the piece behind each point lies in a wall for one bead.
+    /// Whether the piece after each point lies in a wall for one bead.
     pub thin: Vec<bool>,
     /// Whether it ends where it began.
     pub closed: bool,
@@ -30,7 +30,7 @@ impl Line {
         if self.closed { self.points.len() } else { self.points.len().saturating_sub(1) }
     }
 
-    /// Number of the point before; an open line's first point itself.
+    /// Index of the point before `i`; at the first point of an open line, `i` itself.
     pub fn before(&self, i: usize) -> usize {
         match i.checked_sub(1) {
             Some(before) => before,
@@ -39,7 +39,7 @@ impl Line {
         }
     }
 
-    /// Number of the point behind; an open line's last point itself.
+    /// Index of the point after `i`; at the last point of an open line, `i` itself.
     pub fn behind(&self, i: usize) -> usize {
         match i + 1 {
             behind if behind < self.points.len() => behind,
@@ -97,7 +97,7 @@ impl Line {
         line
     }
 
-    /// Each value and its two neighbours along the line, weighed 1 : 2 : 1.
+    /// Each value averaged with its two neighbours along the line, weighted 1 : 2 : 1.
     pub fn smoothed<T>(&self, values: &[T]) -> Vec<T>
     where
         T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -105,7 +105,7 @@ impl Line {
         (0..values.len()).map(|i| values[i] * 0.5 + (values[self.before(i)] + values[self.behind(i)]) * 0.25).collect()
     }
 
-    /// Widths of the pieces as means over so many mm along the line.
+    /// Widths of the pieces, averaged over `length` (mm) along the line.
     pub fn smooth_widths(&self, length: f64) -> Vec<f64> {
         let (n, count) = (self.points.len(), self.count());
         let mean = self.length() / count.max(1) as f64;
@@ -120,14 +120,14 @@ impl Line {
         (0..count).map(smooth).collect()
     }
 
-    /// Draws every point a part of the way to the middle of its neighbours; ends stay.
+    /// Pulls every point by the fraction `part` towards the midpoint of its neighbours; ends stay.
     pub fn tighten(&mut self, part: f64) {
         let middle = |i: usize| (self.points[self.before(i)] + self.points[self.behind(i)]) / 2.0;
         let drawn = |i: usize| if self.is_end(i) { self.points[i] } else { self.points[i].lerp(middle(i), part) };
         self.points = (0..self.points.len()).map(drawn).collect();
     }
 
-    /// Moves points that lie too near to the outline for the narrowest bead.
+    /// Moves points inwards if they lie too close to the outline for the narrowest bead.
     pub fn keep_inside(&mut self, room: &Room, settings: &LoopSettings) {
         for i in 0..self.points.len() {
             let least = settings.limits(self.thin[i]).0 / 2.0 + MARGIN * settings.bead_width;
@@ -142,7 +142,7 @@ impl Line {
         }
     }
 
-    /// Draws edges that reach out of the outline, or hardly miss it, to the outline; the other edge stays where it is.
+    /// Moves bead edges that reach beyond the outline, or just miss it, onto it; the other edge stays where it is.
     pub fn meet_outline(&mut self, room: &Room, settings: &LoopSettings) {
         let w = settings.bead_width;
         let excess: Vec<f64> = (0..self.points.len())
@@ -158,7 +158,7 @@ impl Line {
         }
     }
 
-    /// Narrows beads that would reach out of the outline.
+    /// Narrows beads that would reach beyond the outline.
     pub fn fit_inside(&mut self, room: &Room, settings: &LoopSettings) {
         let room_at = |p: &DVec2| 2.0 * (room.at(*p) - MARGIN * settings.bead_width);
         let rooms: Vec<f64> = self.points.iter().map(room_at).collect();

@@ -1,21 +1,21 @@
-//! One loop an island: rings that fill it evenly, joined to one path; one arc start where others need many.
+//! One loop per island: rings that fill it evenly, joined into one path, with one arc start where others need many.
 //!
 //! | step | file |
 //! | --- | --- |
-//! | what has room for two beads, and walls for one | [`thin`](super::thin) |
+//! | parts with room for two beads, and walls for one | [`thin`](super::thin) |
 //! | the room: distances and the middle of walls | [`room`] |
 //! | how many rings lie on each side of the middle | [`counts`] |
-//! | a phase that is whole on rings and half in the middle | [`phase`] |
+//! | a phase that is whole on rings and half-way between in the middle | [`phase`] |
 //! | rings: lines of whole phase | [`rings`] |
-//! | rings joined by flips, or to a spiral | [`flips`], [`spiral`] |
+//! | rings joined by flips, or into a spiral | [`flips`], [`spiral`] |
 //! | walls for one bead tied in | [`tie`] |
 //! | widths by cell | [`cells`] |
 //! | relaxation: by heights ([`relax`] on a [`field`]), flat beads by their edges ([`fit`]) | |
 //! | few pieces, widths in steps | [`finish`] |
 //!
-//! Everything is our own. Rings are level sets: closed by construction, nested, crossing nothing. There are as many on one
-//! side of a wall as on the other, so no bead is odd and none ends; where the room is no whole number of beads all of them
-//! grow or shrink a little.
+//! The whole method is our own. Rings are level sets: closed by construction, nested, and never crossing. There are as
+//! many on one side of a wall as on the other, so no bead is left over and none ends; where the room is not a whole
+//! number of beads wide, all of them get a little wider or narrower.
 
 pub mod cells;
 pub mod counts;
@@ -40,64 +40,64 @@ use line::Line;
 use planar::{Bounds, Join, Polygon, Region};
 use room::Room;
 
-/// One loop an island.
+/// One loop per island.
 pub struct OneLoop;
 
-/// What a profile says of loops.
+/// What a profile sets for loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopOptions {
     /// The narrowest and the widest bead, mm.
     pub width_limits: (f64, f64),
-    /// Widths change no faster than over this, mm.
+    /// Length over which widths are averaged, so that they change no faster, mm.
     pub smoothing_length: f64,
     /// Widths change in steps of about this, mm.
     pub width_step: f64,
     /// Rounds of relaxation.
     pub rounds: u32,
-    /// Length of the stretches that a flip takes out, in distances of the rings.
+    /// Length of the stretches that a flip takes out, in distances between rings.
     pub flip_length: f64,
     /// Whether nested rings become a spiral.
     pub spirals: bool,
 }
 
-/// All that the steps need to know; lengths in mm.
+/// All settings that the steps need; lengths in mm.
 #[derive(Debug, Clone, Copy)]
 pub struct LoopSettings<'a> {
     /// Index of the layer.
     pub layer: usize,
-    /// What places of flips are measured from: the same on all layers.
+    /// The point from which the places of flips are measured: the same on all layers.
     pub datum: DVec2,
     /// The nominal bead.
     pub bead: Bead,
     /// How a bead's height follows its width.
     pub law: &'a Law,
-    /// Its width.
+    /// Width of the nominal bead.
     pub bead_width: f64,
-    /// Distance of neighbouring lines.
+    /// Distance between neighbouring lines.
     pub stepover: f64,
     /// The narrowest and the widest bead where two or more lie side by side.
     pub width_limits: (f64, f64),
-    /// The narrowest and the widest bead in a wall of its own.
+    /// The narrowest and the widest bead alone in a wall.
     pub single: (f64, f64),
     /// From this thickness on a wall has room for two beads.
     pub double: f64,
     /// How far an end stays away from a line that passes, in bead widths.
     pub end_gap: f64,
-    /// Shorter passes are left out.
+    /// Passes shorter than this are left out.
     pub shortest: f64,
-    /// Widths change no faster than over this.
+    /// Length over which widths are averaged, so that they change no faster.
     pub smoothing_length: f64,
     /// Widths change in steps of about this.
     pub width_step: f64,
     /// Rounds of relaxation.
     pub rounds: u32,
-    /// Length of the stretches that a flip takes out, in distances of the rings.
+    /// Length of the stretches that a flip takes out, in distances between rings.
     pub flip_length: f64,
     /// Whether nested rings become a spiral.
     pub spirals: bool,
 }
 
-/// Points of lines that are being relaxed lie so many to a stepover.
+/// Points per stepover on lines that are being relaxed.
 const POINTS_PER_STEPOVER: f64 = 7.0;
 /// Coordinates are rounded to this, mm, so that an island is filled alike wherever it lies.
 const GRAIN_MM: f64 = 1e-6;
@@ -111,14 +111,14 @@ impl Strategy for OneLoop {
         let placed = steps(island, settings).into_iter();
         let passes = placed.flat_map(|(steps, middle)| steps.lines.into_iter().map(move |line| pass(line, middle)));
         let passes: Vec<Path> = passes.collect();
-        // A single loop begins where its seam was put; others in whatever way is short.
+        // A single loop begins where its seam was put; several begin wherever the travel is short.
         let alone = matches!(&passes[..], [pass] if pass.closed);
         Fill { stages: vec![passes], fixed_order: alone }
     }
 }
 
-/// The steps of an island, about the middle of its box, and where that lies. A machining allowance may join an island to
-/// itself or, where it is negative, take it apart: then there are several.
+/// The steps of an island with the middle of its bounding box as origin, and where that middle lies. A machining
+/// allowance may join an island to itself or, if negative, split it: then there are several.
 pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
     let parts = island.offset(settings.machining_allowance, Join::ROUND);
     let placed = parts.polygons().iter().map(|part| {
@@ -128,7 +128,7 @@ pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
     placed.collect()
 }
 
-/// The polygon with the middle of its box in the origin, and where that was.
+/// The polygon moved so that the middle of its bounding box is the origin, and where that middle was.
 fn about_origin(polygon: &Polygon) -> (Polygon, DVec2) {
     let bounds = Bounds::of(polygon.outer.points().iter().copied()).unwrap_or(Bounds::EMPTY);
     let middle = bounds.center();
@@ -167,27 +167,27 @@ impl<'a> LoopSettings<'a> {
         }
     }
 
-    /// How far a bead's cell ends before its edge.
+    /// How far inside a bead's edge its cell ends, mm.
     pub fn edge(&self) -> f64 {
         (self.bead_width - self.stepover) / 2.0
     }
 
-    /// The window of widths of a piece, mm.
+    /// The range of widths of a piece, mm.
     pub fn limits(&self, thin: bool) -> (f64, f64) {
         if thin { self.single } else { self.width_limits }
     }
 
-    /// The window of widths of rings, in bead widths.
+    /// The range of widths of rings, in bead widths.
     pub fn width_ratios(&self) -> (f64, f64) {
         (self.width_limits.0 / self.bead_width, self.width_limits.1 / self.bead_width)
     }
 
-    /// The mean height that a layer ought to have, in nominal bead heights.
+    /// The mean height that a layer should have, in nominal bead heights.
     pub fn target(&self) -> f64 {
         self.bead.rise(self.stepover) / self.bead.height
     }
 
-    /// Width of the bead whose metal fills a cell that wide, mm.
+    /// Width of the bead whose metal fills a cell of width `cell` (mm), mm.
     pub fn width_for(&self, cell: f64) -> f64 {
         self.law.width_of_area(&self.bead, self.bead.rise(self.stepover) * cell)
     }
@@ -203,7 +203,7 @@ impl<'a> LoopSettings<'a> {
     }
 }
 
-/// All steps of one island, to be tested and drawn.
+/// The results of all steps for one island, to be tested and drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steps {
     /// Thick parts and walls for one bead.
@@ -216,21 +216,21 @@ pub struct Steps {
     pub joined: Vec<Line>,
     /// The relaxed lines.
     pub relaxed: Vec<Line>,
-    /// What is laid.
+    /// The finished lines, as they are laid.
     pub lines: Vec<Line>,
 }
 
 impl Steps {
-    /// Goes all steps of an island that lies about the origin.
+    /// Runs all steps for an island that lies around the origin.
     pub fn of(island: &Polygon, settings: &LoopSettings) -> Self {
         let split = split(island, &settings.thin_limits());
         let (mut rings, mut flips, mut paths) = (Vec::new(), Vec::new(), Vec::new());
         let room = Room::of(island, settings);
         for part in &split.thick {
-            // Mostly all of an island is thick.
+            // Usually the whole island is thick.
             let own =
                 if part == island { rings_of(&room, settings) } else { rings_of(&Room::of(part, settings), settings) };
-            // A wall that hangs on an open path would cost an arc start.
+            // A thin wall tied to an open path would cost an arc start.
             let open = settings.spirals && split.thin.is_empty();
             match Some(&own).filter(|_| open).and_then(|own| spiral::spiral(own, settings)) {
                 Some(path) => paths.push(path_pass(path, false)),
@@ -264,7 +264,7 @@ fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings
     }
 }
 
-/// A width of 0 tells pieces whose width is not known yet.
+/// A width of 0 marks pieces whose width is not known yet.
 fn path_pass(points: Vec<DVec2>, closed: bool) -> Path {
     Path { kind: PassKind::Contour, closed, points, width: Along::Same(0.0), reversible: true }
 }

@@ -1,9 +1,9 @@
-//! Phase: a field that is 1 on the first ring, 2 on the second, and so on, and ends between two rings in the middle of
-//! every wall.
+//! Phase: a field that is 1 on the first ring, 2 on the second, and so on, and half-way between two whole numbers in
+//! the middle of every wall.
 //!
-//! u = (D − e + φ)/d + ½, D the distance from the outline. φ is harmonic, 0 on the outline and drawn softly to what is
-//! missing to a whole number of rings in the middle. Where the room is a whole number of beads φ is 0 and rings are
-//! plain offsets.
+//! u = (D − e + φ)/d + ½, with D the distance from the outline. φ is harmonic, 0 on the outline, and in the middle
+//! pulled softly towards what is missing to a whole number of rings. Where the room is a whole number of beads wide, φ
+//! is 0 and the rings are plain offsets.
 
 use super::LoopSettings;
 use super::room::{HALVINGS, Room};
@@ -13,7 +13,7 @@ use planar::lattice::Lattice;
 const HOLD: f32 = 9.6;
 /// Sweeps on each lattice, from the coarsest to the finest.
 const SWEEPS: usize = 12;
-/// Each sweep goes this much farther than it must (successive over-relaxation).
+/// Each step is this many times the step to the local solution (successive over-relaxation).
 const OVER: f32 = 1.5;
 
 /// The field, as 32-bit numbers on the room's lattice; below ½ outside.
@@ -28,7 +28,7 @@ pub fn phase(room: &Room, counts: &[u32], settings: &LoopSettings) -> Vec<f32> {
         }
     }
     let free: Vec<bool> = room.distance.iter().map(|&distance| f64::from(distance) > e).collect();
-    // φ is smooth: every second point tells it.
+    // φ is smooth: every second lattice point is enough.
     let (coarse, coarse_free, coarse_pins) = halved(&room.lattice, &free, &pins);
     let phi = harmonic(&coarse, &coarse_free, &coarse_pins, HALVINGS - 1);
     let phi = refined(&room.lattice, &coarse, &phi, &free);
@@ -41,8 +41,8 @@ struct Pins {
     value: Vec<f32>,
 }
 
-/// The harmonic field that is 0 where nothing is free and drawn to the pins: solved on lattices from coarse to fine, each
-/// begun with the one before.
+/// The harmonic field that is 0 at points that are not free and pulled towards the pins; solved on lattices from coarse
+/// to fine, each starting from the one before.
 fn harmonic(lattice: &Lattice, free: &[bool], pins: &Pins, halvings: u32) -> Vec<f32> {
     let mut field = if halvings == 0 {
         vec![0.0; lattice.len()]
@@ -81,7 +81,7 @@ fn halved(lattice: &Lattice, free: &[bool], pins: &Pins) -> (Lattice, Vec<bool>,
         }
     }
     for (i, &weight) in pins.weight.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-        // What lies between coarse points is shared among them.
+        // A pin between coarse points is shared among them.
         let (row, column) = (i / lattice.columns, i % lattice.columns);
         for r in [row / 2, row.div_ceil(2)] {
             for c in [column / 2, column.div_ceil(2)] {

@@ -1,7 +1,7 @@
-//! Relaxation on the height field: lines move to where metal lacks, and their widths follow the height around them.
+//! Relaxation on the height field: lines move to where metal is missing, and widths follow the height around them.
 //!
-//! Points go down the slope of the blurred heights, across their line; a little tension keeps lines smooth. Steps and gains
-//! fall from round to round, and the best round is kept.
+//! Points move down the slope of the blurred heights, mainly across their line; a little tension keeps lines smooth.
+//! Strides and gains fall from round to round, and the best round is kept.
 
 use super::LoopSettings;
 use super::field::{Faults, Field};
@@ -10,21 +10,21 @@ use super::room::Room;
 use glam::DVec2;
 use planar::Region;
 
-/// A point moves by this, in bead widths, for a slope of one bead height a width.
+/// A point moves by this, in bead widths, for a slope of one bead height per bead width.
 const STRIDE: f64 = 0.03;
-/// No point moves farther in a round, in bead widths.
+/// No point moves farther than this in a round, in bead widths.
 const FARTHEST: f64 = 0.05;
-/// Part of the slope along the line that does not count.
+/// Fraction of the slope along the line that is ignored.
 const ACROSS: f64 = 0.8;
-/// Each round a point is drawn this part of the way to the middle of its neighbours.
+/// Each round a point is pulled this fraction of the way to the midpoint of its neighbours.
 const TENSION: f64 = 0.08;
-/// How the stride falls from round to round.
+/// Factor by which the stride falls from round to round.
 const STRIDE_FALL: f64 = 0.95;
-/// Widths change by this power of wanted over present height.
+/// Widths change by the ratio of wanted to present height, raised to this power.
 const GAIN: f64 = 0.5;
-/// How the gain falls from round to round.
+/// Factor by which the gain falls from round to round.
 const GAIN_FALL: f64 = 0.8;
-/// Heights are taken as no lower than this, and no width changes by more than this part in a round.
+/// Lower heights count as the first value, and no width changes by more than the second, as a fraction, in a round.
 const LOWEST: f64 = 0.3;
 const MOST_CHANGE: f64 = 0.1;
 
@@ -53,7 +53,7 @@ pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &Loop
     best
 }
 
-/// Moves the points of a line down the slope; those in walls of their own stay in the middle.
+/// Moves the points of a line down the slope; those in walls for one bead stay in the middle.
 fn shift(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings, stride: f64) {
     let w = settings.bead_width;
     let step = |i: usize| {
@@ -74,7 +74,7 @@ fn shift(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings,
     line.keep_inside(room, settings);
 }
 
-/// Changes the widths of a line by the heights about its pieces. In a wall of its own a bead stays as wide as the wall.
+/// Changes the widths of a line by the heights around its pieces. A bead alone in a wall stays as wide as the wall.
 fn adapt(line: &mut Line, heights: &[f32], room: &Room, settings: &LoopSettings, gain: f64) {
     let target = settings.target();
     let wanted = |(a, b, width): (DVec2, DVec2, f64)| {

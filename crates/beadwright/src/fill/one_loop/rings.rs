@@ -6,17 +6,17 @@ use glam::DVec2;
 use planar::isolines::isolines;
 use planar::polyline;
 
-/// Points of a ring lie so many to a stepover.
+/// Points per stepover on a ring.
 pub const POINTS_PER_STEPOVER: f64 = 10.0;
 /// Rounds of smoothing over neighbouring lattice steps.
 const SMOOTHING: usize = 6;
-/// The shortest ring, in stepovers: about as small as a bead can turn. Smaller ones are widened to it.
+/// Length of the shortest ring, in stepovers: about as tight as a bead can turn. Shorter ones become circles this long.
 const SHORTEST: f64 = 2.2;
 
 /// A closed centre-line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
-    /// How many rings lie between it and the outline, and one.
+    /// Number of the ring, counted inwards from the outline, from 1.
     pub level: u32,
     /// Its points, about evenly spaced; the first one is not repeated.
     pub points: Vec<DVec2>,
@@ -53,7 +53,7 @@ pub fn perimeter(points: &[DVec2]) -> f64 {
     polyline::length(points) + closing
 }
 
-/// A closed line with its points evenly spaced, about `step` (mm) apart, six at least.
+/// A closed line with its points evenly spaced, about `step` (mm) apart, and at least six of them.
 pub fn resampled(points: &[DVec2], step: f64) -> Vec<DVec2> {
     let Some(&first) = points.first() else { return Vec::new() };
     let length = perimeter(points);

@@ -8,10 +8,10 @@ use planar::{Bounds, Polygon, Region, Ring};
 
 /// Lattice points across a bead.
 const POINTS_ACROSS: f64 = 12.0;
-/// The lattice can be halved so often.
+/// How many times the lattice can be halved.
 pub(super) const HALVINGS: u32 = 4;
-/// Cosine of 115°: a place is in the middle of a wall when its nearest outlines lie in directions farther apart than that.
-/// The branches of the medial axis into square corners do not count.
+/// Cosine of 115°: a place is in the middle of a wall if the directions to its nearest outlines are farther apart than
+/// that. The branches of the medial axis into square corners do not count.
 const COS_BETWEEN: f64 = -0.4226;
 
 /// A place in the middle of a wall.

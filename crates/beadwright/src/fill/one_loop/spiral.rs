@@ -1,27 +1,27 @@
-//! Spirals: rings that lie in one another like onion skins, joined by ramps.
+//! Spirals: rings nested like onion skins, joined by ramps.
 //!
-//! Where every ring has one neighbour inside at the most, no flip is needed: over a few stepovers a ring leads over to the
-//! next, and the path has no corner at all. It begins at the outermost ring on even layers and ends there on odd ones, so
-//! that a layer ends where the next begins.
+//! Where every ring has at most one neighbour inside it, no flip is needed: over a few stepovers a ring ramps over to
+//! the next, and the path has no corner at all. It begins at the outermost ring on even layers and ends there on odd
+//! ones, so that a layer ends where the next begins.
 
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring, perimeter};
 use glam::DVec2;
 use planar::polyline::point_at;
 
-/// Length of a ramp, in stepovers, and the part of the shorter ring that it takes at most.
+/// Length of a ramp, in stepovers, and the largest fraction of the shorter ring that it may take.
 const RAMP: f64 = 3.0;
 const MOST: f64 = 0.4;
-/// Neighbouring rings are nowhere farther apart than so many stepovers, on the mean over the way.
+/// Neighbouring rings are at most this many stepovers apart, averaged along the ring.
 const FARTHEST: f64 = 1.3;
-/// The ends of the path reach so far into the ramp beside them, as part of it.
+/// The ends of the path reach this far into the ramp beside them, as a fraction of the ramp.
 const END: f64 = 0.45;
-/// Places for the ramps are tried so many stepovers apart.
+/// Places for the ramps are tried this many stepovers apart.
 const TRIES: f64 = 1.0;
-/// More than so many places are not looked at.
+/// At most this many places are looked at.
 const MOST_TRIES: usize = 64;
 
-/// The open path through nested rings, from the outermost to the innermost; none where they are not nested, or two only.
+/// The open path through nested rings, from the outermost to the innermost; none if not nested or fewer than three.
 pub fn spiral(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<DVec2>> {
     let chain = chain(rings, settings)?;
     let d = settings.stepover;
@@ -31,7 +31,7 @@ pub fn spiral(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<DVec2>> {
     Some(best.path())
 }
 
-/// The rings from outside in, if each lies in the one before and nowhere far from it.
+/// The rings from outside in, if each lies inside the one before and close to it.
 fn chain(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<Vec<DVec2>>> {
     let mut sorted: Vec<&Ring> = rings.iter().collect();
     sorted.sort_by_key(|ring| ring.level);
@@ -55,14 +55,14 @@ fn chain(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<Vec<DVec2>>> {
     nested.then(|| sorted.into_iter().map(turned).collect())
 }
 
-/// How far some of the points lie from the others, on the mean.
+/// Mean distance of a sample of `points` from `others`, mm.
 fn mean_distance(points: &[DVec2], others: &[DVec2]) -> f64 {
     let some = points.iter().step_by(points.len().div_ceil(MOST_TRIES));
     let distance = |p: &DVec2| others.iter().map(|q| q.distance_squared(*p)).fold(f64::INFINITY, f64::min).sqrt();
     some.clone().map(distance).sum::<f64>() / some.count() as f64
 }
 
-/// The rings turned so that they begin beside each other.
+/// The rings rotated so that they begin beside each other.
 struct Aligned {
     rings: Vec<Vec<DVec2>>,
     ramps: Vec<f64>,
@@ -128,7 +128,7 @@ impl Aligned {
         path
     }
 
-    /// From the beginning of a ring to a ramp's length behind that of the next.
+    /// Leads from the start of ring `k` to a ramp's length past the start of the next.
     fn ramp(&self, k: usize, ramp: f64, path: &mut Vec<DVec2>) {
         let count = (ramp / self.step).ceil().max(2.0) as usize;
         for j in 0..count {

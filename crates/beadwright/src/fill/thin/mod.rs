@@ -1,9 +1,10 @@
 //! Thin walls: the parts of an island in which there is room for one bead only.
 //!
-//! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches is
-//! *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]). Where a thin
-//! wall meets a thick part its bead is tied to the passes there ([`tie`](mod@tie)). Corners, and walls no longer than they are wide,
-//! are none: they stay with the thick part that they belong to. `around` does all of it for a strategy.
+//! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches
+//! is *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]).
+//! Where a thin wall meets a thick part, its bead is tied to the passes there ([`tie`](mod@tie)). Corners, and walls no
+//! longer than they are wide, do not count as thin walls: they stay with the thick part they belong to. `around` does
+//! all of this for a strategy.
 
 pub mod tie;
 
@@ -38,18 +39,18 @@ pub struct ThinWall {
 /// How a thin wall ends.
 #[derive(Debug, Clone, PartialEq)]
 pub enum End {
-    /// Nowhere.
+    /// Free: it meets nothing.
     Free,
-    /// At other thin walls, or at its own other end: all that meet there have this number.
+    /// At other thin walls, or at its own other end: all ends that meet there have this number.
     Junction(usize),
-    /// In a thick part, into which its middle goes on along these nodes.
+    /// In a thick part: the middle of the wall continues into it along these nodes.
     Mouth(Vec<Node>),
 }
 
 /// An island taken apart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Split {
-    /// What has room for two beads and more.
+    /// The parts with room for two beads or more.
     pub thick: Vec<Polygon>,
     /// The walls for one bead.
     pub thin: Vec<ThinWall>,
@@ -57,27 +58,27 @@ pub struct Split {
     pub open: Region,
 }
 
-/// A wall that hangs on a thick part by one end is as long as this at least, in bead widths.
+/// Minimum length of a wall that is attached at one end only, in bead widths.
 const SHORTEST: f64 = 1.5;
-/// A thin piece is no smaller than this, in squared bead widths.
+/// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
-/// What is open is taken so many bead widths larger: its edges then lie apart from those of the island, and what is cut from
-/// the island has no slivers.
+/// The open region is grown by this many bead widths: its edges then stay clear of those of the island, and the pieces
+/// cut from the island have no slivers.
 const GROWN: f64 = 0.02;
-/// Points of an outline nearer than this to their neighbours' line are left out, in bead widths.
+/// Outline points closer than this to the line between their neighbours are dropped, in bead widths.
 const SIMPLER: f64 = 0.001;
-/// What is cut out is this exact, in bead widths.
+/// Accuracy of the shapes that are cut out, in bead widths.
 const ACCURACY: f64 = 0.005;
-/// A disc of this part of the narrowest bead fits into a thin piece.
+/// A disc with this fraction of the narrowest bead width as its diameter fits into every thin piece.
 const ROOMY: f64 = 0.8;
-/// A neck this near to the room of two beads gets them.
+/// A neck gets two beads if it is at least this fraction as wide as two beads need.
 const NEARLY_DOUBLE: f64 = 0.94;
-/// The middle of a wall is followed so far into the thick part, in bead widths.
+/// The middle of a wall is followed this far into the thick part, in bead widths.
 const TAIL: f64 = 1.5;
-/// The medial axis is sampled so often across a bead width.
+/// Samples of the medial axis per bead width.
 const SAMPLES: f64 = 10.0;
 
-/// From this thickness on, in bead widths, walls are left to strategies whose beads are all as wide.
+/// Walls from this thickness on, in bead widths, are left to the strategy if all its beads have the same width.
 const DOUBLE: f64 = 1.4;
 
 /// Fills the thick parts of an island by `fill`, and ties a bead for each thin wall to the passes there.
@@ -113,7 +114,7 @@ pub(super) fn around<'a>(
     result
 }
 
-/// Widths that stay until they are half a step off: few moves change the speed.
+/// Holds each width until the wanted one is more than half a step off, so that few moves change the speed.
 fn step_widths(pass: &mut Path, step: f64) {
     let Along::Each(widths) = &mut pass.width else { return };
     let mut held = f64::NEG_INFINITY;
@@ -181,7 +182,7 @@ fn opened(region: &Region, radius: f64, grown: f64, round: Join) -> Region {
 
 /// The medial axis about thin pieces of `whole`.
 fn axis(pieces: &[Polygon], whole: &Region, round: Join, limits: &ThinLimits) -> MedialAxis {
-    // Beyond its mouths a piece is drawn out, so that the axis runs straight through them.
+    // The piece is extended beyond its mouths, so that the axis runs straight through them.
     let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round);
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
@@ -199,7 +200,7 @@ fn walls(piece: &Polygon, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWal
     if walls.iter().all(|wall| neck(wall) && hangs(wall)) { Vec::new() } else { walls }
 }
 
-/// The stretches of a branch within the thin piece and wide enough for a bead.
+/// The stretches of a branch that lie within the thin piece and are wide enough for a bead.
 fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
@@ -237,7 +238,7 @@ fn stretches(fits: &[bool]) -> Vec<Range<usize>> {
     stretches
 }
 
-/// The nodes from the one of that number on, for so many mm.
+/// The nodes from number `from` on, up to a length of `reach` (mm).
 fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
     let on: Vec<Node> = if outwards { nodes[from..].to_vec() } else { nodes[..=from].iter().rev().copied().collect() };
     let mut along = 0.0;
@@ -249,7 +250,8 @@ fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
     on[..count].to_vec()
 }
 
-/// Walls that end freely and are hardly longer than wide are corners; junctions where they ended may be none any more.
+/// Drops walls with one free end that are hardly longer than wide: they are corners. The junctions where they ended may
+/// then be junctions no more.
 fn drop_stubs(walls: &mut Vec<ThinWall>, limits: &ThinLimits) {
     loop {
         let mut degrees = std::collections::BTreeMap::new();

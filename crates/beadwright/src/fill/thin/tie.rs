@@ -1,7 +1,8 @@
-//! Thin walls tied to the passes of the thick parts where they meet: the fewest passes that lay everything once.
+//! Thin walls tied to the passes of the thick parts they meet, so that the fewest passes lay everything once.
 //!
-//! Passes and walls are the edges of a plane graph. Its nodes are where walls end at passes or meet, and the ends of open
-//! passes; a set of [`trails`] lays all of it with max(1, odd nodes / 2) arc starts a connected part.
+//! Passes and walls are the edges of a plane graph. Its nodes are the places where walls meet passes or each other, and
+//! the ends of open passes. A set of [`trails`] lays every edge, with max(1, odd nodes / 2) arc starts per connected
+//! component.
 
 use super::{End, ThinLimits, ThinWall};
 use crate::fill::Path;
@@ -10,15 +11,15 @@ use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::polyline;
 
-/// A wall's end looks for a pass within so many bead widths.
+/// The end of a wall looks for a pass within this many bead widths.
 const REACH: f64 = 1.5;
-/// Walls that meet a pass nearer to each other than this, in bead widths, meet it at one place.
+/// Walls that meet a pass closer together than this, in bead widths, meet it at one place.
 const SAME_PLACE: f64 = 0.5;
-/// The direction in which an edge leaves a node is judged over so many bead widths.
+/// The direction in which an edge leaves a node is measured over this many bead widths.
 const SIGHT: f64 = 0.5;
-/// Where two passes touch at a node each keeps so many bead widths from it.
+/// Where two passes touch at a node, each keeps this many bead widths away from it.
 const ASIDE: f64 = 0.25;
-/// At most this part of an edge is held back from a node.
+/// An end is held back from a node by at most this fraction of its edge.
 const MOST: f64 = 0.45;
 
 /// How ends are tied.
@@ -28,11 +29,11 @@ pub struct TieSettings {
     pub limits: ThinLimits,
     /// How far an end stays away from the pass that goes on there, in bead widths.
     pub end_gap: f64,
-    /// Passes are no shorter than this where that can be had, mm.
+    /// Passes are made at least this long where possible, mm.
     pub shortest: f64,
 }
 
-/// Passes and walls laid by the fewest passes.
+/// Joins passes and walls into the fewest passes.
 pub fn tie(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
     if walls.is_empty() {
         return passes;
@@ -64,7 +65,7 @@ struct Line {
     closed: bool,
 }
 
-/// Where a wall meets a pass: the number of a piece, the part of it that lies before, and the node there.
+/// Where a wall meets a pass: the index of a piece, the fraction of it that lies before the place, and the node there.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     piece: usize,
@@ -123,7 +124,7 @@ impl Graph {
         let mut nodes = wall.nodes.clone();
         let mut ends = [0, 0];
         for side in [0, 1] {
-            // The end that is looked at comes last.
+            // The end being handled comes last.
             if side == 0 {
                 nodes.reverse();
             }
@@ -232,8 +233,8 @@ impl Graph {
         if dart.is_multiple_of(2) { line } else { line.reversed() }
     }
 
-    /// Where a trail shorter than that (mm) ends at a node that another goes through, it goes on along one half of that
-    /// one, if both are longer then. Where three meet nothing comes to cross.
+    /// A trail shorter than `shortest` (mm) that ends at a node another trail runs through takes over one half of that
+    /// trail, if both are then longer than it was. Only nodes where three edges meet are used: nothing can cross there.
     fn lengthen(&self, trails: &mut [Trail], network: &Network, shortest: f64) {
         let length = |darts: &[Dart]| darts.iter().map(|dart| self.edges[dart / 2].0.length()).sum::<f64>();
         let back = |darts: &[Dart]| darts.iter().rev().map(|&dart| other_end(dart)).collect::<Vec<_>>();
@@ -328,11 +329,11 @@ struct Meeting {
     piece: usize,
     share: f64,
     at: DVec2,
-    /// How many points of the path lie before, behind its first one.
+    /// Number of points of the path between its first point and the meeting.
     passed: usize,
 }
 
-/// Where a path first meets one of the lines; where it meets none, the place nearest to its beginning.
+/// Where a path first meets one of the lines; if it meets none, the place nearest to its start, within `reach` (mm).
 fn meeting(path: &[DVec2], lines: &[Line], reach: f64) -> Option<Meeting> {
     let start = *path.first()?;
     let mut first: Option<(f64, Meeting)> = None;
@@ -363,7 +364,7 @@ fn meeting(path: &[DVec2], lines: &[Line], reach: f64) -> Option<Meeting> {
     first.or(nearest).map(|(_, met)| met)
 }
 
-/// Where two segments cross: the part of the first that lies before, and the place.
+/// Where two segments cross: the fraction of the first that lies before the crossing, and the place.
 fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, DVec2)> {
     let (r, s) = (b - a, d - c);
     let area = r.perp_dot(s);

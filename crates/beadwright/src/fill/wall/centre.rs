@@ -5,15 +5,16 @@ use glam::DVec2;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
 use planar::{Bounds, Polygon};
 
-/// Around a sharp turn the largest disc is larger than along the walls by at least this part: 1/(1 + sin(θ/2)) to 1/2.
+/// At a sharp turn between walls at an angle θ, the largest disc is larger than along the walls by at least this
+/// fraction. The radii are 1/(1 + sin(θ/2)) and 1/2 of the wall thickness.
 const BUMP: f64 = 0.015;
-/// Nodes are at least this part of the spacing apart.
+/// Nodes are at least this fraction of the spacing apart.
 const CLOSEST: f64 = 0.5;
-/// How far around a turn one looks for the walls that meet there, in disc radii.
+/// How far from a turn the walls that meet there are looked for, in disc radii.
 const SIGHT: f64 = 1.5;
 
-/// The centre-lines with half the thickness along them, sampled about `spacing` (mm) apart. A disc has none and is a
-/// line across it.
+/// The centre-lines, with half the wall thickness along them, sampled about `spacing` (mm) apart. A disc has no
+/// centre-line and gets a short line across it.
 pub fn lines(island: &Polygon, spacing: f64) -> Vec<Line> {
     let options = MedialOptions { spacing, ..MedialOptions::default() };
     let axis = MedialAxis::of(island, &options).pruned(CORNER);
@@ -23,7 +24,7 @@ pub fn lines(island: &Polygon, spacing: f64) -> Vec<Line> {
     axis.branches.iter().map(|branch| thinned(branch, CLOSEST * spacing)).flat_map(|b| cut_at_corners(&b)).collect()
 }
 
-/// Without nodes that lie nearer to the one before than `least` (mm): there the axis may step back by as little.
+/// Drops nodes closer than `least` (mm) to the one before: over such short distances the axis may step backwards.
 fn thinned(branch: &Branch, least: f64) -> Branch {
     let mut nodes: Vec<Node> = Vec::with_capacity(branch.nodes.len());
     for node in &branch.nodes {
@@ -56,11 +57,11 @@ fn cut_at_corners(branch: &Branch) -> Vec<Line> {
     }
     let ends: Vec<usize> = std::iter::once(0).chain(corners).chain([nodes.len() - 1]).collect();
     let piece = |w: &[usize]| Line { nodes: nodes[w[0]..=w[1]].to_vec(), closed: false };
-    // A loop goes on where it began, unless that is a junction: the graph joins what passes without a kink.
+    // A loop continues through its start, unless that is a junction: the graph joins pieces that meet without a kink.
     ends.windows(2).filter(|w| w[0] < w[1]).map(piece).collect()
 }
 
-/// The nodes of a loop, begun where it lies farthest to the right of its middle: so loops on top of each other begin
+/// The nodes of a loop, starting at the rightmost point level with its middle, so that loops on top of each other start
 /// above each other.
 fn placed(nodes: &[Node], closed: bool) -> Vec<Node> {
     let mut nodes = nodes.to_vec();
@@ -108,7 +109,7 @@ fn corners(branch: &Branch) -> Vec<usize> {
     found
 }
 
-/// Nodes with their distances along the line, mm, and the length of a closed one.
+/// Nodes with their distances along the line, mm, and the total length if the line is closed.
 struct Walk<'a> {
     nodes: &'a [Node],
     along: &'a [f64],
@@ -116,7 +117,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// What lies so far before and behind a node; none where an open line ends first.
+    /// The nodes `reach` (mm) before and after node `i`; none where an open line ends first.
     fn around(&self, i: usize, reach: f64) -> Option<[Node; 2]> {
         Some([self.at(self.along[i] - reach)?, self.at(self.along[i] + reach)?])
     }

@@ -1,14 +1,14 @@
-//! Centre-lines joined to a graph.
+//! Centre-lines joined into a graph.
 //!
-//! Lines are cut where they cross and where another line ends beside them (T and L); ends within the tolerance
-//! become one node, so that two T-junctions that nearly face each other are one X; pieces shorter than that vanish in
-//! their node. A node where only two pieces meet without a kink is none, and they become one edge.
+//! Lines are cut where they cross and where another line ends beside them (T and L). Ends within the tolerance become
+//! one node, so that two T-junctions that nearly face each other become one X; pieces shorter than the tolerance vanish
+//! in their node. A node where only two pieces meet without a kink is removed, and they become one edge.
 
 use glam::DVec2;
 use planar::medial::Node;
 use planar::polyline::point_at;
 
-/// Two edges that meet with a smaller turn than this are one, rad (25°).
+/// Two edges that meet with a smaller turn than this become one, rad (25°).
 pub const KINK: f64 = 25.0 * std::f64::consts::PI / 180.0;
 
 /// A centre-line.
@@ -40,11 +40,11 @@ pub struct Graph {
     pub edges: Vec<Edge>,
 }
 
-/// A place on a line: the number of a segment, and the share of it that lies before.
+/// A place on a line: the index of a segment, and the fraction of it that lies before the place.
 type Cut = (usize, f64);
 
 impl Edge {
-    /// The line, mm.
+    /// The points of the edge, mm.
     pub fn path(&self) -> Vec<DVec2> {
         self.nodes.iter().map(|node| node.at).collect()
     }
@@ -54,7 +54,7 @@ impl Edge {
         self.nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
     }
 
-    /// The direction in which it leaves its first node (or its last, not `forward`), judged over `reach` (mm).
+    /// The direction in which it leaves its first node (its last if not `forward`), measured over `reach` (mm).
     pub fn direction(&self, forward: bool, reach: f64) -> DVec2 {
         let mut path = self.path();
         if !forward {
@@ -72,7 +72,7 @@ impl Edge {
 }
 
 impl Graph {
-    /// The graph of centre-lines; what lies closer together than `tolerance` (mm) meets.
+    /// The graph of centre-lines; lines that come closer together than `tolerance` (mm) meet.
     pub fn of(lines: &[Line], tolerance: f64) -> Self {
         let lines: Vec<Line> = lines.iter().filter_map(opened).collect();
         let mut cuts = crossings(&lines);
@@ -88,7 +88,7 @@ impl Graph {
         Self::joining(pieces, tolerance).without_passed(tolerance)
     }
 
-    /// Whether an edge closes in itself and meets nothing, without a kink.
+    /// Whether an edge is a ring: it returns to its start without a kink and meets no other edge.
     pub fn is_ring(&self, edge: &Edge, degrees: &[usize]) -> bool {
         let reach = edge.nodes.first().map_or(0.0, |node| 2.0 * node.radius);
         let turn = edge.direction(true, reach).angle_to(-edge.direction(false, reach)).abs();
@@ -102,7 +102,7 @@ impl Graph {
         degrees
     }
 
-    /// Ends within the tolerance become one node, where cuts have a greater say than ends.
+    /// Joins ends within the tolerance into one node; cuts outweigh other ends in placing it.
     fn joining(pieces: Vec<(Vec<Node>, [bool; 2])>, tolerance: f64) -> Self {
         let ends: Vec<(DVec2, bool)> = pieces
             .iter()
@@ -129,7 +129,7 @@ impl Graph {
         Self { places, edges }
     }
 
-    /// Without nodes that a line only passes, and those where nothing meets.
+    /// Removes nodes that a line only passes through, and those where nothing meets.
     fn without_passed(mut self, tolerance: f64) -> Self {
         for node in 0..self.places.len() {
             let at: Vec<usize> =
@@ -165,7 +165,7 @@ impl Graph {
     }
 }
 
-/// A line with its first point again at the end of a closed one; none for a point.
+/// A line, with its first point repeated at the end if it is closed; none if it is a single point.
 fn opened(line: &Line) -> Option<Line> {
     let mut nodes = line.nodes.clone();
     nodes.dedup_by(|a, b| a.at == b.at);
@@ -201,7 +201,7 @@ fn crossings(lines: &[Line]) -> Vec<Vec<Cut>> {
     cuts
 }
 
-/// Where two segments cross or touch, as shares of them.
+/// Where two segments cross or touch, as fractions along each.
 fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, f64)> {
     let (r, s) = (b - a, d - c);
     let area = r.perp_dot(s);
@@ -210,7 +210,7 @@ fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, f64)> {
     (within(t) && within(u)).then_some((t, u))
 }
 
-/// The nearest place, within the tolerance, on every other line that ends at none of its own ends there.
+/// The place nearest to `end` on every other line, if within the tolerance; cuts at a line's ends drop out later.
 fn touches(lines: &[Line], own: usize, end: DVec2, tolerance: f64) -> impl Iterator<Item = (usize, Cut)> + '_ {
     let near = move |(other, line): (usize, &Line)| {
         let mut best = (tolerance, None);
@@ -227,7 +227,7 @@ fn touches(lines: &[Line], own: usize, end: DVec2, tolerance: f64) -> impl Itera
     lines.iter().enumerate().filter(move |(other, _)| *other != own).filter_map(near)
 }
 
-/// The pieces of a line between its cuts, each with whether its ends are cuts.
+/// The pieces of a line between its cuts, each with whether its start and its end are cuts.
 fn pieces_of(line: &Line, cuts: &mut Vec<Cut>, tolerance: f64) -> Vec<(Vec<Node>, [bool; 2])> {
     let mut along = vec![0.0];
     for w in line.nodes.windows(2) {
@@ -238,7 +238,7 @@ fn pieces_of(line: &Line, cuts: &mut Vec<Cut>, tolerance: f64) -> Vec<(Vec<Node>
     cuts.sort_by(|a, b| place(a).total_cmp(&place(b)));
     cuts.dedup_by(|a, b| place(a) - place(b) < 1e-9);
     if !line.closed {
-        // A cut at an end is that end.
+        // A cut at an end counts as that end.
         cuts.retain(|cut| place(cut) > tolerance && place(cut) < total - tolerance);
     }
     let mut pieces = Vec::new();
@@ -252,7 +252,7 @@ fn pieces_of(line: &Line, cuts: &mut Vec<Cut>, tolerance: f64) -> Vec<(Vec<Node>
         }
         piece.push(w[1]);
     }
-    // What is left of a closed line goes on into its first piece.
+    // The remainder of a closed line continues into its first piece.
     match pieces.first_mut().filter(|_| line.closed) {
         Some((first, [is_cut, _])) => {
             piece.extend(first.drain(..).skip(1));
@@ -267,7 +267,7 @@ fn pieces_of(line: &Line, cuts: &mut Vec<Cut>, tolerance: f64) -> Vec<(Vec<Node>
     pieces
 }
 
-/// The number of the cluster of each end: those within the tolerance of one another, of others between.
+/// The cluster index of each end: ends within the tolerance of each other, directly or through others, share a cluster.
 fn clusters(ends: &[(DVec2, bool)], tolerance: f64) -> Vec<usize> {
     let mut cluster = vec![usize::MAX; ends.len()];
     let mut count = 0;

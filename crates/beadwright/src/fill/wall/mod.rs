@@ -4,16 +4,16 @@
 //! | --- | --- |
 //! | the medial axis without corner branches, cut at corners | [`centre`] |
 //! | a graph of nodes and edges | [`graph`] |
-//! | edges straight into their nodes, and fitted smooth | [`smooth`] |
+//! | edges led straight into their nodes, and fitted smooth | [`smooth`] |
 //! | one bead or more along every edge, by its thickness | [`strand`] |
 //! | the fewest trails that lay all strands and never cross | [`trails`] |
 //! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
 //!
 //! Every second layer runs all paths backwards, the last one first: it starts where the layer below ended.
 //!
-//! A graph of one bead everywhere gets max(1, odd/2) arc starts a layer, the least there can be. Where beads lie side by
-//! side, a path never turns from one to its neighbour to save an arc start, except at the end of a wall: it would lay two
-//! hairpins beside each other.
+//! With one bead everywhere, a graph needs max(1, odd/2) arc starts per layer (odd: its nodes where an odd number of
+//! edges meet), the fewest possible. Where beads lie side by side, a path never turns from one into its neighbour to
+//! save an arc start, except at the end of a wall: that would lay two hairpins beside each other.
 
 pub mod centre;
 pub mod graph;
@@ -43,13 +43,13 @@ pub struct WallSettings {
     pub corner_radius: f64,
     /// How far paths that touch at a junction keep away from it, in bead widths.
     pub junction_gap: f64,
-    /// How far an end at a junction stays away from the paths that pass, in bead widths.
+    /// How far an end at a junction stays away from the paths that run through it, in bead widths.
     pub end_gap: f64,
     /// The narrowest and the widest bead of the process, mm.
     pub width_limits: (f64, f64),
 }
 
-/// The medial axis is sampled so often across a bead width.
+/// Samples of the medial axis per bead width.
 const SAMPLES: f64 = 20.0;
 
 impl Strategy for Wall {
@@ -75,7 +75,7 @@ impl Strategy for Wall {
 pub fn smooth_graph(lines: &[Line], settings: &FillSettings) -> Graph {
     let mut graph = Graph::of(lines, settings.wall.tolerance);
     smooth::straighten(&mut graph);
-    // A third for the curve, one for its chords, one for the points that are left out later.
+    // A third of the error for the curve, a third for its chords, a third for the points dropped later.
     smooth::fit(&mut graph, settings.wall.chord_error / 3.0);
     graph
 }
@@ -94,7 +94,7 @@ pub fn along(lines: &[Line], settings: &FillSettings) -> Fill {
     Fill { stages: vec![passes], fixed_order: true }
 }
 
-/// Each path next to the end of the one before; closed ones run counter-clockwise.
+/// Puts each path next to the end of the one before; closed ones run counter-clockwise.
 fn in_order(mut paths: Vec<Rounded>) -> Vec<Rounded> {
     paths.retain(|path| path.points.len() >= 2);
     let ring = |path: &Rounded| planar::Ring::new(path.points.iter().map(|p| p.at).collect()).area();
@@ -123,7 +123,7 @@ fn in_order(mut paths: Vec<Rounded>) -> Vec<Rounded> {
     ordered
 }
 
-/// A path as a pass; on the way from a point to the next holds the mean of both widths.
+/// The path as a pass; from one point to the next the mean of their widths holds.
 fn pass(path: Rounded) -> Path {
     let points: Vec<DVec2> = path.points.iter().map(|p| p.at).collect();
     let mut widths: Vec<f64> = path.points.iter().map(|p| p.width).collect();

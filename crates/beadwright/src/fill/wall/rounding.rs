@@ -1,10 +1,11 @@
 //! Trails become paths: corners rounded, junctions touched and left again, ends held back.
 //!
-//! At a node a path leaves one strand and enters the next. Where both are straight on it just passes. Elsewhere it leaves the
-//! first a tangent length L before the corner and enters the second L behind it, along a cubic with the tangents of both (for
-//! straight strands an arc of radius R = L cot(φ/2), φ the turn, to 3·10⁻⁴ R). R is the corner radius; where other paths touch
-//! the junction too, R is so large that the path keeps its distance from it, R (1/cos(φ/2) − 1): so two passes that touch lay
-//! no metal twice. Paths that end at a junction stop before the metal of the others.
+//! At a node a path leaves one strand and enters the next. If the two are in line, it just runs through. Otherwise it
+//! leaves the first a tangent length L before the corner and enters the second a length L after it, along a cubic with
+//! the tangents of both (between straight strands an arc of radius R = L cot(φ/2), φ the turn, to within 3·10⁻⁴ R). R
+//! is the corner radius; where other paths touch the junction too, R is made so large that the path keeps its distance
+//! from it, R (1/cos(φ/2) − 1), so that two passes that touch lay no metal twice. Paths that end at a junction stop
+//! before the metal of the others.
 
 use super::WallSettings;
 use super::strand::{Point, Strand};
@@ -12,15 +13,15 @@ use crate::fill::trails::{Dart, Network, Trail};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Smaller turns are none, rad (8°).
+/// Smaller turns count as straight, rad (8°).
 const STRAIGHT: f64 = 8.0 * PI / 180.0;
-/// Larger turns go back on the neighbouring strand, rad (150°).
+/// Larger turns lead back along the neighbouring strand, rad (150°).
 const BACK: f64 = 150.0 * PI / 180.0;
-/// At most this part of a strand is given away to a curve or gap at either end.
+/// At most this fraction of a strand is given up to a curve or gap at either end.
 const MOST: f64 = 0.45;
-/// A curve around a corner begins at most so many bead widths before it.
+/// A curve around a corner begins at most this many bead widths before it.
 const LONGEST: f64 = 3.0;
-/// Ends go back in steps of this part of a bead width.
+/// Ends are pulled back in steps of this fraction of a bead width.
 const STEP: f64 = 0.02;
 
 /// A path along strands.
@@ -50,7 +51,7 @@ pub fn paths(strands: &[Strand], network: &Network, trails: &[Trail], settings: 
     paths
 }
 
-/// For each dart, whether a path that turns there shares its node with another one that passes.
+/// For each dart, whether the path that turns there shares its node with another path that runs through.
 fn touched(network: &Network, trails: &[Trail]) -> Vec<bool> {
     let mut paired = vec![false; 2 * network.walls.len()];
     for trail in trails {
@@ -87,7 +88,7 @@ impl Lanes<'_> {
     fn path(&self, trail: &Trail) -> Rounded {
         let mut trail = trail.clone();
         if trail.closed {
-            // It begins in the middle of its longest strand, which is halved.
+            // Start in the middle of the longest strand, which is halved.
             let longest = |a: &usize, b: &usize| {
                 length(&self.leg(trail.darts[*a])).total_cmp(&length(&self.leg(trail.darts[*b]))).then(b.cmp(a))
             };
@@ -130,7 +131,7 @@ impl Lanes<'_> {
         points
     }
 
-    /// The curve from one leg into the next, which are shortened or drawn out for it.
+    /// The curve from one leg into the next; both legs are shortened or extended for it.
     fn turn(&self, from: &mut Vec<Point>, to: &mut Vec<Point>, entered: Dart) -> Vec<Point> {
         let (Some(&end), Some(&start)) = (from.last(), to.first()) else { return Vec::new() };
         let reach = 0.5 * end.width.max(start.width);
@@ -150,7 +151,7 @@ impl Lanes<'_> {
         curve(p, q, way, onward, self.settings.chord_error)
     }
 
-    /// Tangent length, and how far before and behind the ends the corner lies, mm.
+    /// Tangent length, and how far the corner lies beyond the end of one leg and before the start of the next, mm.
     fn tangent(
         &self,
         way: DVec2,
@@ -213,7 +214,7 @@ fn end_way(points: &[Point], reach: f64) -> DVec2 {
     (end.at - from).normalize_or(DVec2::X)
 }
 
-/// Draws a line out straight by `by` (mm), or takes as much off its end where that is negative.
+/// Extends a line straight by `by` (mm), or shortens its end by that much if negative.
 fn move_end(points: &mut Vec<Point>, by: f64) {
     if by > 0.0 {
         let way = end_way(points, 1e-3);
@@ -235,14 +236,15 @@ fn move_end(points: &mut Vec<Point>, by: f64) {
     }
 }
 
-/// The inner points of a cubic from `p` to `q` with these directions, like an arc; chords leave it by at most `error`.
+/// The inner points of a cubic from `p` to `q` with these directions, close to an arc; chords deviate from it by at
+/// most `error` (mm).
 fn curve(p: Point, q: Point, way: DVec2, onward: DVec2, error: f64) -> Vec<Point> {
     let angle = way.angle_to(onward).abs();
     let chord = p.at.distance(q.at);
     if chord < 1e-9 {
         return Vec::new();
     }
-    // Of an arc: radius = chord / (2 sin(φ/2)), handles 4/3 tan(φ/4) of it; a third of the chord where it is straight.
+    // Arc: radius = chord / (2 sin(φ/2)), handles = 4/3 tan(φ/4) radius; straight: handles = a third of the chord.
     let handle =
         if angle < 1e-3 { chord / 3.0 } else { 4.0 / 3.0 * (angle / 4.0).tan() * chord / (2.0 * (angle / 2.0).sin()) };
     let (a, b) = (p.at + way * handle, q.at - onward * handle);
@@ -258,7 +260,7 @@ fn curve(p: Point, q: Point, way: DVec2, onward: DVec2, error: f64) -> Vec<Point
     (1..count).map(at).collect()
 }
 
-/// Takes so much off an end that it keeps the end gap from all other paths, and from its own beyond that strand.
+/// Shortens an end until it keeps the end gap from all other paths, and from its own path beyond that strand.
 fn hold_back(
     path: &mut Rounded,
     (number, at_start): (usize, bool),
@@ -291,7 +293,7 @@ fn hold_back(
     }
 }
 
-/// The pieces of a path; of its own path those beyond so many mm from the start or the end.
+/// The pieces of a path; of the path being shortened, only those more than a given length (mm) from its start or end.
 fn segments(path: &Rounded, own: Option<(bool, f64)>) -> Vec<[DVec2; 2]> {
     let again = path.closed.then(|| path.points.first()).flatten();
     let mut points: Vec<Point> = path.points.iter().chain(again).copied().collect();

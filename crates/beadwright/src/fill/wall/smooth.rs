@@ -1,23 +1,24 @@
 //! Edges made smooth: straight into their nodes, and fitted.
 //!
 //! Near a corner or a junction the medial axis leaves the middle of the walls, since the disc reaches into the room
-//! where they meet. There its radius falls on the way out; an edge keeps only what lies beyond, and goes on straight to the
-//! node, which is put where these lines come nearest to each other (least squares). The thickness there is that of the wall.
+//! where they meet. There the disc's radius falls on the way out of the node. An edge keeps only what lies beyond that
+//! stretch and continues straight to the node, which is moved to where these lines come nearest to each other (least
+//! squares). The thickness along the straight stretch is that of the wall.
 
 use super::graph::Graph;
 use crate::curve::Nurbs;
 use glam::{DMat2, DVec2, DVec3};
 use planar::medial::Node;
 
-/// A radius that falls by less than this per mm is that of the wall.
+/// Where the radius falls by less than this per mm, it is that of the wall.
 const LEVEL: f64 = 0.02;
-/// So much farther, in radii, the wall is taken as undisturbed: there the radius levels off slowly.
+/// The wall counts as undisturbed only this much farther on, in radii: the radius levels off slowly.
 const MARGIN: f64 = 0.4;
-/// The slope of the radius and the direction of a wall are judged over this part of the radius.
+/// The slope of the radius and the direction of a wall are measured over this fraction of the radius.
 const WINDOW: f64 = 0.5;
-/// So far from a node, in its radii, an edge may be made straight.
+/// An edge may be straightened up to this far from a node, in radii at the node.
 const FARTHEST: f64 = 3.0;
-/// At most this part of an edge is made straight at either end.
+/// At most this fraction of an edge is straightened at either end.
 const MOST: f64 = 0.45;
 
 /// Straightens the ends of all edges at nodes where edges meet, and moves the nodes there.
@@ -44,8 +45,8 @@ pub fn straighten(graph: &mut Graph) {
     }
 }
 
-/// Takes the nodes near the first one away, as far as the radius falls; where the wall begins, and its direction from
-/// there to the node.
+/// Removes the nodes near the first one, as far as the radius falls. Returns where the wall begins, and its direction
+/// from there to the node.
 fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
     let radius = nodes.first()?.radius;
     let mut along = vec![0.0];
@@ -62,7 +63,7 @@ fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
         nodes[i].radius - nodes[far].radius > LEVEL * (along[far] - along[i])
     };
     let level = (0..nodes.len()).find(|&i| along[i] > limit || !falls(i))?;
-    // Where nothing falls nothing is disturbed.
+    // Where the radius does not fall, nothing is disturbed.
     let undisturbed = if level == 0 { 0.0 } else { (along[level] + MARGIN * nodes[level].radius).min(limit) };
     let first = along.partition_point(|&s| s < undisturbed).min(nodes.len() - 1);
     let (wall, far) = (nodes[first], nodes[ahead(first)]);
@@ -106,8 +107,8 @@ fn lead_to(nodes: &mut Vec<Node>, place: DVec2, straight: bool) {
     nodes.splice(0..0, lead);
 }
 
-/// Fits a smooth curve to every edge, place and thickness together, within `error` (mm), and takes chords of it that leave
-/// it by no more than that. What cannot be fitted stays as it is.
+/// Fits a smooth curve to every edge, position and thickness together, within `error` (mm), and replaces the edge by
+/// chords that deviate from the curve by no more than that. Edges that cannot be fitted stay as they are.
 pub fn fit(graph: &mut Graph, error: f64) {
     let degrees = graph.degrees();
     let rings: Vec<bool> = graph.edges.iter().map(|edge| graph.is_ring(edge, &degrees)).collect();

@@ -1,8 +1,9 @@
-//! Beads side by side: every edge becomes one strand or more, by its thickness.
+//! Beads side by side: every edge becomes one or more strands, depending on its thickness.
 //!
-//! n beads of width b with the overlap of the profile, stepover/width = q, are b (1 + (n − 1) q) wide together. n is the number
-//! whose beads come nearest to the nominal width, and b follows the wall along the edge within the limits of the process. Strands are
-//! edges of the graph of paths: so walls of one bead and of many join, and what holds for the one holds for the other.
+//! Together, n beads of width b with the overlap of the profile, stepover/width = q, are b (1 + (n − 1) q) wide. n is
+//! the number that brings b nearest to the nominal width, and b follows the wall along the edge within the limits of
+//! the process. Strands are edges of the graph of paths, so walls of one bead and of many join, and the same rules hold
+//! for both.
 
 use super::WallSettings;
 use super::graph::{Edge, Graph};
@@ -11,9 +12,9 @@ use crate::fill::trails::{Dart, Network};
 use glam::DVec2;
 use planar::medial::Node;
 
-/// No wall gets more beads side by side.
+/// No wall gets more beads side by side than this.
 const MOST_BEADS: usize = 1000;
-/// Widths are rounded to this part of a bead width, so that equal walls get equal beads.
+/// Widths are rounded to this fraction of a bead width, so that equal walls get equal beads.
 const GRAIN: f64 = 0.01;
 
 /// A point of a strand.
@@ -66,7 +67,7 @@ pub fn strands(graph: &Graph, settings: &FillSettings) -> (Vec<Strand>, Network)
     (strands, network)
 }
 
-/// Number of beads across an edge, by its thickness halfway.
+/// Number of beads across an edge, by its median thickness.
 fn beads(edge: &Edge, settings: &FillSettings) -> usize {
     let mut thickness: Vec<f64> = edge.nodes.iter().map(|node| 2.0 * node.radius).collect();
     thickness.sort_by(f64::total_cmp);
@@ -95,7 +96,7 @@ fn beside(edge: &Edge, side: f64, count: usize, ring: bool, settings: &FillSetti
     simplified(&points, settings.wall.chord_error / 3.0)
 }
 
-/// Without the points that stretches of one width do not need within `tolerance` (mm).
+/// Drops the points that stretches of one width do not need within `tolerance` (mm).
 fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
     let mut kept = Vec::with_capacity(points.len());
     for stretch in points.chunk_by(|a, b| a.width == b.width) {
@@ -106,7 +107,7 @@ fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
     kept
 }
 
-/// The direction of a line at a node: the mean of those before and behind.
+/// The direction of a line at a node: the mean of the directions before and after it.
 fn way(nodes: &[Node], i: usize, ring: bool) -> DVec2 {
     let last = nodes.len() - 1;
     let before = if i > 0 {

@@ -42,7 +42,7 @@ pub(super) fn zigzag(region: &Region, settings: &FillSettings) -> Vec<Path> {
     }
 }
 
-/// Zigzag paths through a region, their lines that far apart.
+/// Zigzag paths through a region, with the given spacing of their lines.
 pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: Spacing) -> Vec<Path> {
     let scan = Scan::new(region, settings.raster_angle, spacing);
     let (Spacing::AtMost(distance) | Spacing::Exact(distance)) = spacing;

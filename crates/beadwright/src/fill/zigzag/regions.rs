@@ -1,10 +1,10 @@
 //! Sub-regions of scan lines, and how they are merged into paths (Han et al. 2018, 3.2).
 //!
-//! A sub-region is a run of lines each of which is joined to the next on both sides. It has four key points, the ends
-//! of its first and its last line, and is laid from one of them to another: an odd number of lines ends on the other
-//! side, an even number on the same (four-point rule). So each sub-region has two ways, by its lower left or by its
-//! lower right point, and a way out of one sub-region that is a way into the next merges both. The ways are chosen so
-//! that as many as possible merge.
+//! A sub-region is a run of lines, each joined to the next on both sides. It has four key points, the ends of its first
+//! and its last line, and is laid from one of them to another: an odd number of lines ends on the other side, an even
+//! number on the same side (four-point rule). So each sub-region can be laid in two ways, from its lower left or from
+//! its lower right point; where the exit of one sub-region is the entry of the next, the two merge. The ways are chosen
+//! so that as many as possible merge.
 
 use glam::DVec2;
 use planar::scan::{Chain, End, Scan};
@@ -12,7 +12,7 @@ use planar::scan::{Chain, End, Scan};
 /// A link along an edge that lies closer than this to a scan line (in stepovers) would lay metal twice.
 const MIN_LINK_GAP: f64 = 0.3;
 
-/// Only links longer than this (in stepovers) are tested for it.
+/// Only links longer than this (in stepovers) are tested for that.
 const SHORT_LINK: f64 = 2.0;
 
 /// Scan lines as sub-regions.
@@ -31,7 +31,7 @@ pub struct SubRegion {
 }
 
 impl SubRegion {
-    /// The side of the last line on which a way ends that begins on `entry` of the first.
+    /// The side of the last line on which a way ends if it enters the first line at `entry`.
     fn exit(&self, entry: End) -> End {
         if self.spans.len() % 2 == 1 { entry.other() } else { entry }
     }
@@ -91,7 +91,7 @@ impl<'a> Weave<'a> {
         (0..self.regions.len()).map(|region| vec![(region, End::Left)]).collect()
     }
 
-    /// Sub-regions merged by the four-point rule, as few ways as the search finds.
+    /// Sub-regions merged by the four-point rule into as few ways as the search finds.
     pub fn merged(&self) -> Vec<Way> {
         let entries = self.choose_entries();
         let mut next = vec![None; self.regions.len()];
@@ -112,8 +112,8 @@ impl<'a> Weave<'a> {
         self.regions[joint.lower].exit(entries[joint.lower]) == joint.side && entries[joint.upper] == joint.side
     }
 
-    /// By which end each sub-region is entered so that many merge: from below one after another, and then single ones
-    /// and both sides of a joint are changed as long as more merge.
+    /// The end by which each sub-region is entered, chosen so that many merge: single sub-regions, from the lowest up,
+    /// and then both sides of each joint are switched as long as more merge.
     fn choose_entries(&self) -> Vec<End> {
         let mut entries = vec![End::Left; self.regions.len()];
         let mut of: Vec<Vec<usize>> = vec![Vec::new(); self.regions.len()];
