@@ -1,9 +1,9 @@
 //! How long a machine takes along a path: it speeds up, and slows down before corners.
 //!
-//! Every piece of a path has the trapezoid of speed over time: up with the acceleration, on at the wanted speed, down
-//! again. At a corner the velocity may jump by at most the corner speed, so sharp corners are passed slowly and
+//! Along every piece of a path the speed over time is a trapezoid: up with the acceleration, on at the wanted speed,
+//! down again. At a corner the velocity may jump by at most the corner speed, so sharp corners are passed slowly and
 //! straight joints at full speed; a path begins and ends at rest. Without these values, as for robots whose controllers
-//! keep the speed, length over speed is the time.
+//! keep the speed, the time is length over speed.
 
 use crate::limit::{Limit, limits};
 use glam::DVec3;
@@ -29,7 +29,7 @@ struct Piece {
 }
 
 impl Motion {
-    /// What the numbers can be.
+    /// Limits of the values.
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
             "motion.acceleration": self.acceleration, 1.0, 1e6, "mm/s²",
@@ -52,8 +52,8 @@ impl Motion {
         pieces.iter().zip(speeds.windows(2)).map(|(piece, ends)| self.trapezoid(piece, ends[0], ends[1])).sum()
     }
 
-    /// Speed at the beginning of each piece and at the end of the last, mm/s: what corners allow, and what can be
-    /// reached from the one before and slowed down to the one behind.
+    /// Speed at the beginning of each piece and at the end of the last, mm/s: what the corners allow, what can be
+    /// reached from the joint before, and what can be slowed down from before the joint after.
     fn joint_speeds(&self, pieces: &[Piece]) -> Vec<f64> {
         let corner = |w: &[Piece]| {
             let jump = (w[1].way - w[0].way).length();

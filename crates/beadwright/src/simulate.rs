@@ -11,10 +11,10 @@ use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::Bounds;
 
-/// The passes of a program by layer. Widths are `width`; else, where the program tells the volume as printers do, those of
-/// beads that high with that volume; else the program's own, else those that the bead law gives beads laid so fast. The speed of
-/// a piece is that at which the nominal wire feed lays its metal: the program's own where the arc tells of metal, and
-/// from the volume where the program tells that.
+/// The passes of a program by layer. The width of a piece is the first of these that is known: `width`; where the
+/// program gives the volume, as printers do, the width of a bead of the layer's height with that volume; the width that
+/// the program gives; the width that the bead law gives at the program's speed; the nominal width. Its pace follows
+/// from the volume where the program gives that; otherwise it is the program's speed.
 pub fn layers(program: &ReadProgram, settings: &DepositSettings, law: &Law, width: Option<f64>) -> Vec<Layer> {
     let read = program.layers();
     let layer = |(index, read): (usize, ReadLayer)| {
@@ -26,7 +26,7 @@ pub fn layers(program: &ReadProgram, settings: &DepositSettings, law: &Law, widt
     read.into_iter().enumerate().map(layer).collect()
 }
 
-/// A bead is no narrower and no wider than this, in nominal bead widths: blobs and stringing are no beads.
+/// Least and greatest width of a bead, in nominal bead widths: blobs and stringing are not beads.
 const WIDTHS: (f64, f64) = (0.25, 4.0);
 
 fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64, width: Option<f64>) -> Option<Pass> {
@@ -51,15 +51,15 @@ fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64
             None => nominal.pace,
         });
     }
-    // The last point has no piece behind it.
+    // The last point has no piece after it.
     widths.push(*widths.last()?);
     paces.push(*paces.last()?);
     let kind = crate::pass::PassKind::Infill;
     Some(Pass { kind, closed: false, points, width: Along::Each(widths), pace: Along::Each(paces) })
 }
 
-/// Where the part lies in the program's coordinates: nowhere else if the program's beads keep within the part, grown by
-/// a bead width; else their middles are brought together and the shift is told, mm.
+/// The shift, mm, that brings the middle of the program's passes to the middle of the part. `None` where the passes
+/// already keep within the part grown by a bead width: they are taken as they lie.
 pub fn shift(layers: &[Layer], mesh: &Mesh, settings: &DepositSettings) -> Option<DVec2> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let (beads, (low, high)) = (Bounds::of(points)?, mesh.bounds());

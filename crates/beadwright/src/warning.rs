@@ -19,7 +19,8 @@ pub enum WarningKind {
     ThinFeature,
     /// A whole island is narrower than a bead and gets none; the size is its area, mm².
     IslandTooSmall,
-    /// Part of the slice is narrower than the narrowest bead and gets that, which reaches outside; the size is its area, mm².
+    /// Part of the slice is narrower than the narrowest bead and gets such a bead, which reaches outside; the size is
+    /// its area, mm².
     ThinWall,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,

@@ -1,26 +1,27 @@
 //! Lines of many points fitted by few straight pieces and circular arcs.
 //!
-//! From each point the farthest later point is sought that one piece reaches within the tolerance; the arc to it is
-//! the one through both ends that encloses the same area with the chord as the line does. A piece fits when every
-//! point of the line lies within the tolerance of it *and* the line runs along it without turning back, so that the
-//! two are nowhere farther apart than that, seen from either. The ends of pieces are points of the line.
+//! From each point on, a piece is made as long as the tolerance allows. An arc passes through both ends of its piece
+//! and encloses the same area with the chord as the line does. A piece fits when every point of the line lies within
+//! the tolerance of it *and* the line runs along it without turning back, so that the two are nowhere farther apart
+//! than that, measured from either. The ends of pieces are points of the line.
 
 use crate::DVec2;
 use std::f64::consts::PI;
 
-/// No arc turns farther: controllers take less than half a turn, and three points tell less the farther it goes.
+/// Greatest sweep of an arc: controllers take less than half a turn, and the farther it turns, the less exactly three
+/// points define it.
 pub const MAX_SWEEP: f64 = 170.0 / 180.0 * PI;
 
-/// No arc turns less: one degree, which ABB controllers ask for.
+/// Least sweep of an arc: one degree, as ABB controllers require.
 pub const MIN_SWEEP: f64 = PI / 180.0;
 
-/// No arc has a shorter chord, mm: its three points lie 0.1 mm apart or more.
+/// Shortest chord of an arc, mm: its three points lie 0.1 mm apart or more.
 const MIN_CHORD: f64 = 0.25;
 
-/// An arc replaces at least this many straight pieces; through three points there always is one.
+/// An arc replaces at least this many straight pieces: through three points there is always an arc.
 const MIN_REPLACED: usize = 3;
 
-/// Flatter arcs are lines to a controller, mm.
+/// Largest radius of an arc, mm: flatter ones are lines to a controller.
 const MAX_RADIUS: f64 = 1e4;
 
 /// How a line is fitted.
@@ -34,7 +35,7 @@ pub struct Fit {
     pub grid: f64,
 }
 
-/// A circular arc; where it begins and ends is told by the pieces.
+/// A circular arc; the pieces tell where it begins and ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// A point in its middle, a multiple of [`Fit::grid`], mm.
@@ -64,7 +65,7 @@ impl Arc {
         let to_centre = (a.perp() * b.length_squared() - b.perp() * a.length_squared()) / (2.0 * cross);
         let (centre, radius) = (from + to_centre, to_centre.length());
         let sweep = (from - centre).angle_to(to - centre);
-        // The middle point lies right of the chord on the way round to the left.
+        // Turning left, the middle point lies to the right of the chord.
         let inside = cross * sweep > 0.0 && (via - centre).dot((from + to) / 2.0 - centre) > 0.0;
         (radius.is_finite() && inside).then_some(Self { via, centre, radius, sweep })
     }
@@ -87,8 +88,8 @@ impl Fit {
         self.farthest(points, 0)
     }
 
-    /// The piece from a point that replaces most. Coarse arcs begin with pieces that no straight one replaces, so it
-    /// is sought from there too.
+    /// The longest piece from a point. On a coarsely sampled arc even the first few pieces cannot be replaced by a
+    /// straight one, so an arc over the fewest pieces is tried as a start as well.
     fn farthest(&self, points: &[DVec2], start: usize) -> Piece {
         let one = self.grown(points, start, Piece { end: start + 1, arc: None });
         let least = start + MIN_REPLACED;
@@ -98,7 +99,7 @@ impl Fit {
         self.piece(&points[start..=least], least).map_or(one, |arc| self.grown(points, start, arc))
     }
 
-    /// A piece made as long as doubling and halving steps find.
+    /// Lengthens a piece in steps that double while it fits and then halve.
     fn grown(&self, points: &[DVec2], start: usize, mut best: Piece) -> Piece {
         let (mut step, mut grows) = (1, true);
         while step > 0 {
@@ -160,7 +161,8 @@ impl Fit {
     }
 }
 
-/// The angle of the arc whose area with its chord is that many squared half chords; none beyond [`MAX_SWEEP`].
+/// The sweep of the arc that encloses this area with its chord, in squared half chords; `None` from half a turn on
+/// ([`MAX_SWEEP`] is checked later).
 fn sweep_of_area(area: f64) -> Option<f64> {
     let of = |sweep: f64| (sweep - sweep.sin()) / (2.0 * (sweep / 2.0).sin().powi(2));
     let (mut low, mut high) = (0.0, PI);

@@ -15,7 +15,7 @@ pub enum Keep {
     Outside,
 }
 
-/// Pieces that the library left in two although nothing lies between them, put together again.
+/// Joins pieces that the library split although nothing lies between them.
 fn whole(pieces: Vec<Vec<GridPoint>>) -> Vec<Vec<GridPoint>> {
     let mut whole: Vec<Vec<GridPoint>> = Vec::with_capacity(pieces.len());
     for piece in pieces {
@@ -44,7 +44,7 @@ impl Region {
     /// The pieces of the open line through `points` inside or outside this region, in no fixed order; each runs
     /// in the direction of the line.
     pub fn clip_line(&self, points: &[DVec2], keep: Keep) -> Vec<Vec<DVec2>> {
-        // Inverted, the library takes the flag the other way round: true leaves the boundary to the inside in both cases.
+        // With `invert` the library reverses this flag: true counts the boundary as inside in both cases.
         let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: true };
         let path: Vec<_> = points.iter().map(|&p| to_grid(p)).collect();
         let pieces = region_to_grid(self).clip_path(&path, FillRule::NonZero, rule);

@@ -1,4 +1,4 @@
-//! Lines along which a field on a lattice has a whole number as its value (marching squares).
+//! Lines along which the value of a field on a lattice is a whole number (marching squares).
 //!
 //! The lines are closed as long as the field is below 1 at the rim of the lattice; they are nested and never cross. The
 //! higher ground lies to their left.
@@ -63,7 +63,7 @@ fn pieces(lattice: &Lattice, values: &[f32]) -> Vec<(Key, Key)> {
                 let leaves = |side: &usize| !above[*side] && above[(side + 1) % 4];
                 let middle = corners.iter().sum::<f32>() / 4.0 >= level as f32;
                 for enter in (0..4).filter(enters) {
-                    // At a saddle the high corners hang together or not, as the middle says.
+                    // At a saddle the value in the middle decides whether the high corners are connected.
                     let turn = |k: usize| (enter + k) % 4;
                     let order = if middle { [turn(1), turn(2), turn(3)] } else { [turn(3), turn(2), turn(1)] };
                     if let Some(leave) = order.into_iter().find(leaves) {

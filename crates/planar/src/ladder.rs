@@ -11,8 +11,8 @@ use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::cmp::Ordering;
 
-/// A ladder that ends freely and is shorter than this many times its first rung leads into a corner. A right angle makes
-/// 0.5, a corner of 60° 0.87.
+/// A ladder that ends freely and is shorter than this many times its first rung leads into a corner. A right angle
+/// gives 0.5, a corner of 60° 0.87.
 pub const CORNER: f64 = 1.2;
 
 /// Two opposite points of the boundary.
@@ -22,7 +22,7 @@ pub struct Rung {
     pub left: DVec2,
     /// On the right.
     pub right: DVec2,
-    /// Distance of the two sides here, mm: rungs may be oblique.
+    /// Distance between the two sides here, mm: shorter than the rung where that is oblique.
     pub thickness: f64,
 }
 
@@ -69,7 +69,7 @@ pub fn ladders(region: &Region, spacing: f64) -> Vec<Ladder> {
 /// Triangles inside a polygon.
 struct Mesh {
     points: Vec<DVec2>,
-    /// Corners, and across the edge behind each the neighbour.
+    /// Corners, and for the edge that starts at each the neighbour across it.
     triangles: Vec<([usize; 3], [Option<usize>; 3])>,
 }
 
@@ -116,15 +116,15 @@ impl Mesh {
         self.triangles[triangle].1.iter().flatten().count()
     }
 
-    /// The rung that leaves a triangle through an edge: the triangle runs counter-clockwise, so whoever leaves it has
-    /// the edge's end on the left.
+    /// The rung by which a path leaves a triangle through an edge: the triangle runs counter-clockwise, so the end of
+    /// the edge is on the left on the way out.
     fn rung(&self, triangle: usize, k: usize) -> Rung {
         let (right, left) = self.edge(triangle, k);
         let (left, right) = (self.points[left], self.points[right]);
         Rung { left, right, thickness: left.distance(right).min(self.altitude(triangle)) }
     }
 
-    /// Distance of the corner of a sleeve triangle from its boundary edge; that is how far apart the sides are.
+    /// Distance of the corner of a sleeve triangle from its boundary edge: the distance between the sides.
     fn altitude(&self, triangle: usize) -> f64 {
         if self.links(triangle) != 2 {
             return f64::INFINITY;
@@ -138,7 +138,7 @@ impl Mesh {
     fn ladders(&self) -> Vec<Ladder> {
         let mut ladders = Vec::new();
         let mut used = vec![false; self.triangles.len()];
-        // From every fork and every end; what is left then are loops.
+        // From every fork and every end; only loops are left then.
         for start in 0..self.triangles.len() {
             if self.links(start) != 2 {
                 used[start] = true;
@@ -197,8 +197,9 @@ struct Walked {
     forks: [usize; 2],
 }
 
-/// Takes away the ladders into corners, fork by fork, and joins what then meets at a fork of two. Where all that meets at
-/// a fork leads into corners, the shortest goes: the shape is a blob, and the rest crosses it.
+/// Removes the ladders that run into corners, fork by fork, and joins two ladders that are all that is left at a fork.
+/// Where every ladder at a fork runs into a corner, only the shortest goes: the shape is a blob, and the rest crosses
+/// it.
 fn prune(mut walked: Vec<Walked>) -> Vec<Ladder> {
     loop {
         let corners: Vec<usize> = (0..walked.len()).filter(|&i| corner_length(&walked[i]).is_some()).collect();
@@ -225,7 +226,7 @@ fn prune(mut walked: Vec<Walked>) -> Vec<Ladder> {
     walked.into_iter().map(|w| w.ladder).collect()
 }
 
-/// The length of a ladder that leads into a corner.
+/// The length of a ladder that leads into a corner; `None` for any other.
 fn corner_length(walked: &Walked) -> Option<f64> {
     let Ladder { rungs, free, .. } = &walked.ladder;
     let base = match free {
@@ -242,7 +243,7 @@ fn inner_fork(walked: &Walked) -> usize {
     if walked.ladder.free[0] { walked.forks[1] } else { walked.forks[0] }
 }
 
-/// The ladders, and which of their ends, that meet at a fork.
+/// The ladders that meet at a fork, each with its end that does.
 fn ends_at(walked: &[Walked], fork: usize) -> Vec<(usize, usize)> {
     let ends = (0..walked.len()).flat_map(|i| [(i, 0), (i, 1)]);
     ends.filter(|&(i, end)| walked[i].forks[end] == fork && !walked[i].ladder.free[end]).collect()

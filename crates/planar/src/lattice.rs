@@ -63,8 +63,7 @@ impl Lattice {
         (p - self.low()) / self.step
     }
 
-    /// The value between the points about a place, linear in x and in y; that of the nearest point of the lattice
-    /// outside of it.
+    /// The value at `p`, interpolated linearly in x and in y; outside the lattice, that of the nearest place on it.
     pub fn value_at(&self, values: &[f32], p: DVec2) -> f64 {
         let at = self.in_steps(p).clamp(DVec2::ZERO, self.last());
         let cell = at.floor().min(self.last() - 1.0);
@@ -75,7 +74,7 @@ impl Lattice {
         f64::from(low + s.y * (high - low))
     }
 
-    /// How the value of [`Self::value_at`] rises there, per mm.
+    /// The gradient of [`Self::value_at`] at `p`, per mm.
     pub fn slope_at(&self, values: &[f32], p: DVec2) -> DVec2 {
         let at = self.in_steps(p).clamp(DVec2::ONE, self.last() - 1.0);
         let cell = at.floor().min(self.last() - 2.0);

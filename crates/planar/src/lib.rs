@@ -1,7 +1,7 @@
 //! Two-dimensional geometry for planning: regions with holes, booleans, offsets, scan lines, hulls.
 //!
-//! Everything is in millimetres as `f64` ([`glam::DVec2`]); no word of welding occurs here, and no type of
-//! the polygon library underneath leaves the crate.
+//! Everything is in millimetres as `f64` ([`glam::DVec2`]); nothing here is about welding, and no type of the polygon
+//! library underneath leaves the crate.
 //!
 //! | file | what it holds |
 //! | --- | --- |
@@ -10,7 +10,7 @@
 //! | [`boolean`] | union, difference, intersection of regions |
 //! | [`offset`](mod@offset) | growing and shrinking, with round or mitred joins |
 //! | [`clip`] | open lines cut by a region |
-//! | [`scan`] | parallel scan lines through a region, and how their ends hang together along its boundary |
+//! | [`scan`] | parallel scan lines through a region, and how their ends are connected along its boundary |
 //! | [`polyline`] | length, simplification |
 //! | [`isolines`] | closed lines of equal value of a field on a lattice |
 //! | [`hull`] | convex hull, minimum-area rectangle |
@@ -20,7 +20,7 @@
 //! | [`stroke`] | lines grown to areas |
 //! | [`medial`] | medial axis: centre-lines with local thickness |
 //! | [`triangulate`] | triangles that fill a polygon |
-//! | [`turns`] | number of ends of scan lines over their angle |
+//! | [`turns`] | number of ends of scan lines as a function of their angle |
 //!
 //! # The grid underneath
 //!

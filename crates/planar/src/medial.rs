@@ -13,7 +13,7 @@
 //!    changes sides: there lies a point of the medial axis. It is found exactly, against the true edges and not the
 //!    samples (bracketing on the two nearest edges; a tree of boxes over the edges tells which they are). A triangle
 //!    with three chords is a junction, its disc touches three edges (Newton); one with a single chord is a corner.
-//! 4. Noise is taken off (below), the rest cut into branches; junctions closer than 1 µm are one.
+//! 4. Noise is removed (below) and the rest cut into branches; junctions closer than 1 µm are one.
 //!
 //! Every node is thus equidistant from what it touches to 1e-9 mm, and no farther from the truth than the grid; only
 //! where a junction touches too many edges of an arc to choose from may it be 0.01 mm off. Nodes lie at most about
@@ -50,16 +50,16 @@ mod prune;
 /// Interior angle, rad (40°), of the sharpest corner that still counts as one in [`MedialAxis::pruned`].
 pub const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
-/// Branches between two junctions shorter than this are taken as no branch at all, mm.
+/// Branches between two junctions shorter than this are dropped and the junctions made one, mm.
 const MERGE_MM: f64 = 1e-3;
 
 /// The finest spacing, mm.
 const LEAST_SPACING_MM: f64 = 1e-3;
 
-/// Outlines that touch themselves so that they cannot be triangulated are shrunk by these until they can, mm.
+/// An outline that touches itself and cannot be triangulated is shrunk by these in turn until it can, mm.
 const SHRINK_MM: [f64; 4] = [0.0, 1e-3, 1e-2, 1e-1];
 
-/// How finely the axis is made and what of it is noise.
+/// How finely the axis is sampled, and what counts as noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MedialOptions {
     /// The boundary is sampled at most this far apart, mm, and the nodes of the axis lie about as dense; 0.25.
@@ -107,7 +107,8 @@ pub struct Branch {
 pub struct MedialAxis {
     /// The curves.
     pub branches: Vec<Branch>,
-    /// Where branches meet or end; a loop without junctions has one anywhere, and a disc's axis is one without branches.
+    /// Where branches meet or end. A loop without junctions has one somewhere; the axis of a disc is one without
+    /// branches.
     pub junctions: Vec<Node>,
 }
 

@@ -1,9 +1,9 @@
 //! Which of many segments is nearest to each point of a lattice: distance fields and Voronoi cells.
 //!
-//! Points beside a segment are measured against it; from there what is nearest spreads from point to neighbouring point,
-//! in two sweeps over the rows (Danielsson 1980, with segments in place of points). It spreads only over the wanted
-//! points: what lies behind a gap of others is not seen. Distances are true to the segment that is found; in rare
-//! places, where three cells meet, that is not the nearest one, by less than half a step.
+//! Points beside a segment are measured against it; from there the nearest segment spreads from point to neighbouring
+//! point, in two sweeps over the rows (Danielsson 1980, with segments in place of points). It spreads only over the
+//! wanted points: segments beyond a gap of unwanted points are not seen. The distance to the segment found is exact; in
+//! rare places, where three cells meet, another segment is nearer, by less than half a step.
 
 use crate::lattice::Lattice;
 use glam::{DVec2, Vec2};
@@ -115,7 +115,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Takes from the row beside, then along the row both ways.
+    /// Takes the nearest segments from the row beside, then along the row both ways.
     fn row(&mut self, row: usize, beside: Option<usize>) {
         let columns = self.columns;
         if let Some(beside) = beside {

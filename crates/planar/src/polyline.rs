@@ -8,7 +8,7 @@ pub fn length(points: &[DVec2]) -> f64 {
     points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
-/// The point that far (mm) along the open line through `points`; its last point behind the end.
+/// The point at `distance` (mm) along the open line through `points`; beyond the end, the last point.
 pub fn point_at(points: &[DVec2], distance: f64) -> Option<DVec2> {
     let mut left = distance;
     for pair in points.windows(2) {

@@ -1,4 +1,4 @@
-//! Where a region crosses horizontal rows: the way to ask for many points on a grid whether they lie inside.
+//! Where a region crosses horizontal rows: used to find which of many points on a grid lie inside.
 
 use crate::{Region, Ring};
 
@@ -27,8 +27,8 @@ pub(crate) fn crossings<'a>(
     rows
 }
 
-/// Adds the crossings of one ring. An edge holds its lower end and not its upper one, so every row is crossed an even
-/// number of times.
+/// Adds the crossings of one ring. An edge includes its lower end but not its upper one, so every row is crossed an
+/// even number of times.
 fn cross(ring: &Ring, first: f64, step: f64, rows: &mut [Vec<f64>]) {
     for (a, b) in ring.edges() {
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };

@@ -1,4 +1,4 @@
-//! Parallel scan lines through a region, and how their ends hang together along its boundary.
+//! Parallel scan lines through a region, and how their ends are connected along its boundary.
 //!
 //! The region is turned so that the lines run along x. Every crossing of a line with a ring remembers its place
 //! on the ring; two crossings that follow each other there are joined by a piece of boundary (a *chain*) that
@@ -32,7 +32,7 @@ pub enum End {
 }
 
 impl End {
-    /// The other one.
+    /// The other end.
     pub fn other(self) -> Self {
         match self {
             Self::Left => Self::Right,
@@ -99,15 +99,15 @@ impl Spacing {
     }
 }
 
-/// Edges parallel to the lines and so many distances long have a line along them.
+/// Edges parallel to the lines and longer than this get a line along them, in line distances.
 const LONG: f64 = 1.5;
-/// But none nearer to another than this, in distances.
+/// But not where that line would be closer than this to another one, in line distances.
 const NEAREST: f64 = 0.6;
-/// Lines may be this much farther apart than asked for where one more would lie much too near, in distances.
+/// Lines may be this much farther apart than asked, where one more would put them much too close, in line distances.
 const FARTHER: f64 = 0.25;
 
-/// Lines along all long edges that run along x, and evenly between, about `distance` apart; none where there are no such
-/// edges but the lowest and the highest.
+/// Lines along all long edges that run along x, and evenly spaced between them, about `distance` apart; `None` where
+/// the only such edges are the lowest and the highest.
 fn fitted(rings: &[Ring], low: f64, high: f64, distance: f64) -> Option<Vec<f64>> {
     let edges = rings.iter().flat_map(Ring::edges);
     let long = edges.filter(|(a, b)| (b.y - a.y).abs() < NUDGE_MM && (b.x - a.x).abs() > LONG * distance);
@@ -139,8 +139,8 @@ impl Scan {
         Self::with_lines(region, angle, |_, low, high| spacing.lines(low, high))
     }
 
-    /// Lays scan lines at `angle` (radians from x) through `region`, about `distance` (mm) apart, so that one runs along every
-    /// long edge that is parallel to them: no strip of less than a distance is left beside it.
+    /// Lays scan lines at `angle` (radians from x) through `region`, about `distance` (mm) apart, so that one runs
+    /// along every long edge parallel to them: no strip narrower than `distance` is left beside such an edge.
     pub fn fitted(region: &Region, angle: f64, distance: f64) -> Self {
         Self::with_lines(region, angle, |rings, low, high| {
             fitted(rings, low, high, distance).unwrap_or_else(|| Spacing::AtMost(distance).lines(low, high))
@@ -183,7 +183,7 @@ impl Scan {
         }
     }
 
-    /// Left of an upward crossing and right of a downward one lies the inside.
+    /// The inside lies to the left of an upward crossing and to the right of a downward one.
     fn pair_spans(&mut self, line_count: usize) {
         let mut by_line: Vec<Vec<usize>> = vec![Vec::new(); line_count];
         for (i, crossing) in self.crossings.iter().enumerate() {

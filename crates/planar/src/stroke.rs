@@ -10,7 +10,7 @@ use i_overlay::mesh::int::style::{IntLineCap, IntLineJoin, IntStrokeStyle};
 use i_overlay::mesh::math::MathMode;
 
 /// All points within `distance` (mm) of the lines; `closed` joins the last point of each to its first. Corners and ends
-/// are round, and all is true within `tolerance` (mm).
+/// are round, and the result is accurate to `tolerance` (mm).
 pub fn buffer(lines: &[Vec<DVec2>], closed: bool, distance: f64, tolerance: f64) -> Region {
     let width = (2.0 * distance / GRID_MM).round() as i32;
     let join = Join::Round(tolerance / 2.0).to_style(distance);

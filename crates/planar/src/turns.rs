@@ -1,4 +1,4 @@
-//! How many ends scan lines have, over their angle.
+//! The number of ends of scan lines as a function of their angle.
 //!
 //! Every crossing of a scan line with a ring is an end at which a path turns. Their number U(α) (Han et al. 2018,
 //! eqs 6–8) changes only where a line passes a vertex that is a local extreme across the lines, or where another line
@@ -10,10 +10,10 @@ use crate::scan::{Scan, Spacing};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// A number of ends that changes by steps over the angle, from 0 to π.
+/// The number of ends as a step function of the angle, from 0 to π.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Turns {
-    /// Angles from which on a number holds, and the number; ascending, the first at 0.
+    /// The angle from which each number holds, and the number; ascending, the first at 0.
     steps: Vec<(f64, i64)>,
     /// Directions of edges, radians in 0..π, and their length, mm: the longest first.
     edges: Vec<(f64, f64)>,
@@ -22,7 +22,7 @@ pub struct Turns {
 /// No more edge directions than this are kept.
 const MOST_EDGES: usize = 24;
 
-/// Directions closer than this are one, radians.
+/// Directions closer than this count as one, radians.
 const SAME_ANGLE: f64 = 1e-6;
 
 impl Turns {
@@ -41,7 +41,7 @@ impl Turns {
                 corners.iter().for_each(|c| c.events(&stretch, &piece, spacing, &mut events));
             }
             events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-            // Counted once, far from all events, and from there on by the changes.
+            // Counted once, far from all events; from there the changes are added up.
             let (place, known) = widest_gap(&piece, &events);
             let before: i64 = events[..known].iter().map(|e| e.1).sum();
             let mut count = ends_at(region, place, spacing) - before;
@@ -60,7 +60,7 @@ impl Turns {
         after.checked_sub(1).map_or(0, |i| self.steps[i].1)
     }
 
-    /// The angles from which on a number holds, and the number; ascending.
+    /// The angle from which each number holds, and the number; ascending.
     pub fn steps(&self) -> &[(f64, i64)] {
         &self.steps
     }
@@ -81,7 +81,7 @@ impl Turns {
         Self { steps, edges: self.edges.iter().map(|e| (turn(e.0), e.1)).collect() }
     }
 
-    /// The sum of two.
+    /// The sum of two such functions.
     pub fn plus(&self, other: &Self) -> Self {
         if self.steps.is_empty() {
             return other.clone();
@@ -103,7 +103,7 @@ impl Turns {
     }
 }
 
-/// A place within the widest stretch without events, and how many events come before it.
+/// An angle within the widest stretch without events, and how many events come before it.
 fn widest_gap(piece: &Piece, events: &[(f64, i64)]) -> (f64, usize) {
     let starts = [piece.from].into_iter().chain(events.iter().map(|e| e.0));
     let ends = events.iter().map(|e| e.0).chain([piece.to]);
@@ -118,7 +118,7 @@ pub fn ends_at(region: &Region, angle: f64, spacing: Spacing) -> i64 {
     2 * Scan::new(region, angle, spacing).spans().len() as i64
 }
 
-/// A vertex that is an extreme across the lines for the angles from `from` on over `turn`.
+/// A vertex that is an extreme across the lines for the angles from `from` to `from + turn`.
 struct Corner {
     at: DVec2,
     next: DVec2,
@@ -156,7 +156,7 @@ impl Corner {
         for (from, to, lowest) in self.extremes(stretch.from, stretch.to) {
             let up = if lowest { -2 } else { 2 };
             match spacing {
-                // Lines divide the extent: the place among them is a monotone function of the angle.
+                // Lines divide the extent: a vertex's place among them is a monotone function of the angle.
                 Spacing::AtMost(_) => {
                     let gaps = piece.gaps as f64;
                     let place = |angle: f64| {

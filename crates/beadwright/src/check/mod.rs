@@ -108,8 +108,7 @@ pub struct LayerFigures {
     pub growth: Vec<Growth>,
 }
 
-/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's number and judgement to
-/// `each`.
+/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`.
 ///
 /// # Errors
 /// [`Cancelled`].

@@ -132,7 +132,7 @@ impl ArcLength<'_> {
         self.curve.point(self.parameter(length))
     }
 
-    /// Parameters that cut the curve into `pieces` (at least 1) pieces of equal length, both ends included.
+    /// Parameters that cut the curve into `pieces` (at least 1) parts of equal length, both ends included.
     pub fn equal_parameters(&self, pieces: usize) -> Vec<f64> {
         let (start, end) = self.curve.domain();
         let pieces = pieces.max(1);

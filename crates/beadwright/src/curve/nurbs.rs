@@ -34,18 +34,6 @@ impl Nurbs {
         Ok(curve)
     }
 
-    /// A polynomial curve with clamped uniform knots from 0 to 1 (equation 4), for use where no knots are given.
-    ///
-    /// # Errors
-    /// [`CurveError`] as for [`Nurbs::new`].
-    pub fn clamped_uniform(degree: usize, points: Vec<DVec3>) -> Result<Self, CurveError> {
-        let spans = points.len().saturating_sub(degree).max(1);
-        let inner = (1..spans).map(|i| i as f64 / spans as f64);
-        let end = |value| std::iter::repeat_n(value, degree.min(MAX_DEGREE) + 1);
-        let knots = end(0.0).chain(inner).chain(end(1.0)).collect();
-        Self::new(degree, knots, vec![1.0; points.len()], points)
-    }
-
     fn check_counts(&self) -> Result<(), CurveError> {
         let (degree, points) = (self.degree, self.points.len());
         if !(1..=MAX_DEGREE).contains(&degree) {

@@ -13,7 +13,7 @@ const SAFETY: f64 = 0.9;
 /// A piece is halved at most this often.
 const MAX_DEPTH: u32 = 14;
 
-/// Most pieces of equal length.
+/// Largest number of pieces of equal length.
 const MAX_PIECES: f64 = 1e7;
 
 impl Nurbs {

@@ -1,4 +1,4 @@
-//! A turbine blade as a thin wall: an arched mean line that turns with height, the same metal to both sides of it.
+//! A turbine blade as a thin wall: an arched mean line that turns with height, with equal thickness on both sides.
 
 use super::solid::Solid;
 use crate::curve::Nurbs;
@@ -47,7 +47,7 @@ fn share(k: u32) -> f64 {
     f64::from(k) / f64::from(PIECES)
 }
 
-/// A point of the mean line at the foot before it is turned, by its share of the chord, and the way to its left.
+/// A point of the mean line at the foot, before the twist, by its share of the chord, and the unit normal to its left.
 fn mean(x: f64) -> (DVec2, DVec2) {
     let span = if x < CREST { CREST } else { 1.0 - CREST };
     let off = (x - CREST) / span;

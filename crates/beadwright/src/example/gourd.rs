@@ -1,5 +1,5 @@
-//! A bottle gourd: two bellies, a waist and a neck, open below and above. The wall is measured level, as every layer
-//! shows it.
+//! A bottle gourd: two bellies, a waist and a neck, open at both ends. The wall thickness is measured horizontally, as
+//! every layer shows it.
 
 use super::solid::Solid;
 use crate::curve::Nurbs;

@@ -1,8 +1,8 @@
-//! Example parts, made from their measures: to try the program, to test it, to compare settings.
+//! Example parts, generated from their dimensions: to try the program, to test it, to compare settings.
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one massive part each |
+//! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | [`blade`], `gourd`, `pot`, `tian` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 //! | `solid` | outlines become closed triangle meshes |
@@ -26,7 +26,7 @@ use crate::model::iges::{self, WriteOptions};
 use glam::DVec3;
 use solid::Solid;
 
-/// A part that the program can make by itself; it stands on z = 0, centred about the z axis.
+/// A part that the program itself can generate; it stands on z = 0, centred about the z axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Example {
     /// What people type: `propeller`.
@@ -123,7 +123,7 @@ impl Example {
         bytes
     }
 
-    /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are no thin walls.
+    /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are not thin walls.
     pub fn iges(&self) -> Option<String> {
         let curves = (self.curves?)();
         let named: Vec<(&str, &Nurbs)> = curves.iter().map(|curve| (self.name, curve)).collect();

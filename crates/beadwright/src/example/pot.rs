@@ -1,4 +1,4 @@
-//! A pot without a bottom, square below and round above. The wall is measured level, as every layer shows it.
+//! A pot without a bottom, square below and round above. The wall is measured horizontally, as every layer shows it.
 
 use super::outline;
 use super::solid::Solid;
@@ -13,7 +13,7 @@ const WALL: f64 = 4.0;
 const HALF_WIDTH: (f64, f64) = (50.0, 30.0);
 /// Outer corner radius at the foot; at the rim it is the half width, a circle.
 const FOOT_RADIUS: f64 = 8.0;
-/// Corners have as many chords as keep within 0.03 mm at four times the radius of the rim: 0.0075 mm.
+/// Corners have the chords of an arc with this many times the rim's radius: 0.03 mm there is 0.0075 mm on the rim.
 const FINE: f64 = 4.0;
 
 pub(super) fn build() -> Solid {
@@ -33,7 +33,7 @@ pub(super) fn curves() -> Vec<Nurbs> {
     [0.0, HEIGHT].into_iter().filter_map(curve).collect()
 }
 
-/// The outline at the foot, moved in by so much: straight sides and round corners.
+/// The outline at the foot, moved inwards by `in_by` (mm): straight sides and round corners.
 fn ring(in_by: f64) -> Ring {
     let corners = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
     let points = corners.iter().enumerate().flat_map(|(k, side)| {
@@ -44,7 +44,7 @@ fn ring(in_by: f64) -> Ring {
     Ring::new(points.collect())
 }
 
-/// Where a point of the foot has gone at height `z`, mm.
+/// Where a point of the foot lies at height `z`, mm.
 fn raised(p: DVec2, z: f64) -> DVec2 {
     let side = p.signum();
     let arm = p - side * (HALF_WIDTH.0 - FOOT_RADIUS);

@@ -17,7 +17,7 @@ const ROOT_HALF_WIDTH: f64 = 17.5;
 const WIDEST_HALF_WIDTH: f64 = 30.0;
 /// Where a blade is widest, from the axis.
 const WIDEST_RADIUS: f64 = TIP_RADIUS * 2.0 / 3.0;
-/// Radius of the hollow between blade and hub.
+/// Radius of the fillet between blade and hub.
 const FILLET_RADIUS: f64 = 12.0;
 /// Turn of the outline from bottom to top, radians.
 const TWIST: f64 = 6.0 * PI / 180.0;

@@ -57,7 +57,7 @@ impl Solid {
         solid
     }
 
-    /// With one vertex in every place (to 1 nm), and without the triangles that have no area then.
+    /// Merges vertices at the same position (to 1 nm) and drops the triangles that then have no area.
     pub(crate) fn welded(self) -> Self {
         let mut numbers = HashMap::new();
         let mut welded = Self::default();
@@ -107,8 +107,8 @@ impl Solid {
 /// How far a point may lie beside an edge and still be on it, mm.
 const ON_EDGE_MM: f64 = 1e-9;
 
-/// Triangles over `base`, whose points are `points`. Ear clipping passes over points in line with their
-/// neighbours; each edge is split there, so that the cap has the same edges as the walls.
+/// Triangles over `base`, whose points are `points`. Ear clipping skips points in line with their neighbours; edges are
+/// split at these points, so that the cap has the same edges as the walls.
 fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
     let mut open = triangulate(base);
     let mut done = Vec::with_capacity(open.len());

@@ -1,4 +1,4 @@
-//! A vase with a curved wall: belly below, neck above. The wall is measured level, as every layer shows it.
+//! A vase with a curved wall: belly below, neck above. The wall is measured horizontally, as every layer shows it.
 
 use super::solid::Solid;
 use glam::DVec2;

@@ -1,4 +1,4 @@
-//! Files that are complete or absent: written into a temporary folder beside their place, moved at the end.
+//! Files that are complete or absent: written into a temporary folder beside their final place, moved at the end.
 
 use crate::dialect::Chunk;
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use tempfile::TempDir;
 pub struct FolderError {
     /// Where.
     pub path: PathBuf,
-    /// What the system says.
+    /// The error of the operating system.
     pub source: io::Error,
 }
 
@@ -72,7 +72,7 @@ impl Folder {
         self.open.take().map_or(Ok(()), |(_, mut writer)| writer.flush())
     }
 
-    /// Moves all files to their place, and tells their names in order.
+    /// Moves all files to their final place and returns their names in order.
     ///
     /// # Errors
     /// [`FolderError`].

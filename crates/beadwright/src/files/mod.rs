@@ -1,8 +1,8 @@
 //! The files of a plan: programs, `plan.json`, `metrics.json` and `report.html`.
 //!
-//! [`PlanFiles`] makes their text as the layers come, so command and desktop program write the same bytes. [`Folder`] puts
-//! files into a folder, all of them or none; it is the only part of the library that touches the disk, and there with the
-//! feature `files` only.
+//! [`PlanFiles`] makes their text layer by layer, so the command and the desktop program write the same bytes.
+//! [`Folder`] puts files into a folder, all of them or none; it is the only part of the library that touches the disk,
+//! and only with the feature `files`.
 
 #[cfg(feature = "files")]
 mod folder;
@@ -73,7 +73,7 @@ pub struct PlanFiles {
 }
 
 impl PlanFiles {
-    /// The files of a plan with its beginnings; the programs begin with the layer of that index.
+    /// Begins the files of a plan and returns their first text; the programs begin with layer index `from_layer`.
     pub fn begin(
         header: &Header,
         profile: &Profile,
@@ -89,7 +89,7 @@ impl PlanFiles {
         (files, chunks)
     }
 
-    /// Takes the next layer, and what the deposit model says of it.
+    /// Takes the next layer, and what the deposit model says of it; returns their text.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
         let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
@@ -100,7 +100,7 @@ impl PlanFiles {
         chunks
     }
 
-    /// What comes last; `total` is what the deposit model says of all layers.
+    /// The last text of all files; `total` is what the deposit model says of all layers.
     pub fn end(mut self, summary: &Summary, repair: &RepairReport, total: Option<&Figures>) -> Vec<Chunk> {
         let mut chunks = self.programs.end();
         chunks.push(Chunk::new(PLAN, plan_file::tail()));

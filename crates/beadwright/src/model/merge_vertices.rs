@@ -22,8 +22,8 @@ impl VertexMerger {
 
     /// Appends the triangles between `corners`, three for each; negative zero counts as zero.
     ///
-    /// Looking all corners of a block up before the first is needed lets the waits for memory overlap, which take
-    /// most of the time in a big model. Only what was not found that way is searched for one by one.
+    /// All corners of a block are looked up before the first is needed, so that the waits for memory overlap; they take
+    /// most of the time in a big model. Only what is not found that way is searched for one by one.
     pub(crate) fn add(&mut self, corners: &[[[f32; 3]; 3]], triangles: &mut Vec<[u32; 3]>) {
         for block in corners.chunks(BLOCK) {
             let mut found = [([0.0; 3], 0, None); 3 * BLOCK];

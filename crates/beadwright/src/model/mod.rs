@@ -8,7 +8,7 @@
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | [`units`] | millimetres or inches? |
-//! | `part` | a model is placed, and becomes what is planned |
+//! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
 pub(crate) mod adjacency;
@@ -74,7 +74,7 @@ pub enum ImportError {
         "this is an IGES file: its curves can be welded as walls, but here a solid is needed. Save the model as STL (binary or ASCII)."
     )]
     Iges,
-    /// Nothing known.
+    /// No known format.
     #[error("this is not an STL file: {reason}. Save the model as STL (binary or ASCII) and try again.")]
     NotStl {
         /// What speaks against it, with the byte or line.
@@ -94,7 +94,7 @@ pub enum ImportError {
         /// What was expected and what stands there.
         reason: String,
     },
-    /// A coordinate that is no number.
+    /// A coordinate that is not a finite number.
     #[error("triangle {triangle} has a coordinate that is not a finite number ({place}). Export the model again.")]
     NotFinite {
         /// Triangle number, from 1.
@@ -119,7 +119,7 @@ pub enum ImportError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Reads a model from the bytes of a file; the content decides the format, never a name.
+/// Reads a model from the bytes of a file; the content decides the format, not the file's name.
 ///
 /// # Errors
 /// [`ImportError`], with the byte or line and the reason.

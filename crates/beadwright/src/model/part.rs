@@ -26,7 +26,7 @@ pub struct Placement {
     /// Unit of the coordinates; guessed where it is left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
-    /// Enlarges the part.
+    /// Factor that enlarges the part.
     pub scale: f64,
     /// Turns the part about x, then y, then z, °.
     pub turn: DVec3,
@@ -40,7 +40,7 @@ impl Default for Placement {
     }
 }
 
-/// What is planned.
+/// The part that is planned.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
     /// A solid that stands on z = 0.
@@ -92,19 +92,19 @@ pub enum PartError {
     /// The curves are not those of a wall.
     #[error(transparent)]
     Curves(#[from] WallCurvesError),
-    /// The unit must be told.
+    /// The unit must be given.
     #[error(transparent)]
     Units(#[from] UnitsUnclear),
-    /// A height for a solid.
+    /// A height was given for a solid.
     #[error("a height belongs to walls given by curves (IGES), not to a solid")]
     HeightOfSolid,
-    /// Curves of one height, and none to end at.
+    /// All curves lie at one height, and no height was given at which the wall ends.
     #[error("the curves lie at one height: say how high the wall grows, mm")]
     NoHeight,
 }
 
 impl Model {
-    /// Reads a solid, or curves. The content decides, never a name.
+    /// Reads a solid, or curves. The content decides, not the file's name.
     ///
     /// # Errors
     /// [`PartError`].
@@ -112,7 +112,7 @@ impl Model {
         Ok(if is_iges(bytes) { Self::Curves(iges::read(bytes)?) } else { Self::Mesh(import(bytes, task)?) })
     }
 
-    /// The part. Curves of one height need one to end at, mm.
+    /// Places the model as a part. Curves that all lie at one height need the `height` (mm) at which the wall ends.
     ///
     /// # Errors
     /// [`PartError`].
@@ -129,7 +129,7 @@ impl Placement {
     /// A placed solid.
     ///
     /// # Errors
-    /// [`PartError::Units`] where the unit must be told, [`ImportError::TooFar`].
+    /// [`PartError::Units`] where the unit must be given, [`ImportError::TooFar`].
     pub fn solid(&self, mut import: Import, bead_width: f64) -> Result<Import, PartError> {
         let units = match self.units {
             Some(units) => units,
@@ -163,8 +163,8 @@ impl Placement {
         Ok(Part::Curves { curves, height, warnings })
     }
 
-    /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is the
-    /// part as this placement has it. The turn stays where there is no such face.
+    /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is
+    /// the part as placed now. Without such a face the turn stays as it is.
     pub fn laid_flat(&self, mesh: &Mesh) -> DVec3 {
         let Some(normal) = base_normal(mesh) else { return self.turn };
         let [x, y, z] = self.turn.map(f64::to_radians).to_array();
@@ -172,7 +172,7 @@ impl Placement {
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z)) * now;
         // R = Rz Ry Rx, as `Mesh::place` turns.
         let (z, y, x) = turn.to_euler(EulerRot::ZYX);
-        // Angles that are whole but for rounding are meant whole.
+        // Rounds, so that angles meant as whole degrees come out whole.
         DVec3::new(x, y, z).map(|angle| (angle.to_degrees() * 1e9).round() / 1e9)
     }
 }
@@ -220,13 +220,13 @@ fn curve_bounds(curves: &WallCurves, height: f64) -> Bounds {
     Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
 }
 
-/// Faces whose normals differ by less are one, as the length of the difference.
+/// Normals whose difference is shorter than this belong to one face.
 const SAME_NORMAL: f64 = 1e-3;
 
-/// Points this far below a face, in extents of the part, still let it stand on it.
+/// The part stands on a face if no point is farther below it than this, in extents of the part.
 const STANDING: f64 = 1e-3;
 
-/// Faces that are looked at, largest first.
+/// Number of faces examined, largest first.
 const CANDIDATES: usize = 64;
 
 /// Outward normal of the largest flat face with the whole part on one side.
@@ -244,7 +244,7 @@ fn base_normal(mesh: &Mesh) -> Option<DVec3> {
         face.0 += doubled.length() / 2.0;
     }
     let mut faces: Vec<_> = faces.into_values().collect();
-    // Equal faces in an order of their own: hash maps have none.
+    // A fixed order of equal faces: hash maps have none.
     let order = |face: &(f64, DVec3, f64)| (face.1.z, face.1.y, face.1.x, face.2);
     faces.sort_by(|a, b| {
         let tie = || order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal);

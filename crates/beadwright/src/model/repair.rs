@@ -1,8 +1,8 @@
-//! What is wrong with a mesh, and the mending that needs no guess: nothing is moved by more than a crack.
+//! Finds what is wrong with a mesh and mends what needs no guess: nothing is moved by more than the width of a crack.
 //!
-//! 1. degenerate triangles go;
+//! 1. degenerate triangles are removed;
 //! 2. vertices on open edges that lie within 1e-5 of the part's diagonal are merged (cracks from rounding);
-//! 3. duplicate triangles go;
+//! 3. duplicate triangles are removed;
 //! 4. triangles are turned to agree with their neighbours, each shell by its majority;
 //! 5. a mesh that is inside out as a whole is turned.
 
@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 
-/// Vertices on open edges closer than this part of the diagonal are one.
+/// Vertices on open edges closer than this fraction of the diagonal are one.
 const CRACK: f64 = 1e-5;
 
 /// What was found in a mesh and what was done about it.
@@ -26,7 +26,7 @@ pub struct RepairReport {
     pub vertices: usize,
     /// Triangles without an area, removed.
     pub degenerate: usize,
-    /// Triangles that stood there twice, removed.
+    /// Duplicate triangles, removed.
     pub duplicate: usize,
     /// Vertices moved onto a neighbour to close a crack.
     pub vertices_merged: usize,
@@ -74,7 +74,7 @@ impl RepairReport {
     }
 }
 
-/// Mends a mesh and tells what was done.
+/// Mends a mesh and reports what was done.
 pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, RepairReport) {
     let mut report = RepairReport { triangles_read: triangles.len(), ..RepairReport::default() };
     let mut mesh = Mesh { vertices, triangles, neighbours: Vec::new() };
@@ -176,8 +176,8 @@ fn merge_cracks(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     target.len()
 }
 
-/// Removes triangles that stand there twice. Two faces back to back stay when they separate two solids that
-/// touch, that is when each of their edges has further triangles in both directions.
+/// Removes duplicate triangles. Two faces back to back stay when they separate two solids that touch, that is when each
+/// of their edges has further triangles in both directions.
 fn drop_duplicates(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     let mut edges_of: HashMap<u32, usize> = HashMap::new();
     for edge in odd_edges {
@@ -227,12 +227,12 @@ fn turn_to_majority(mesh: &mut Mesh, adjacency: &mut Adjacency, flipped: &mut us
         }
     }
     let count = mesh.triangles.len();
-    // One place more stands for "no neighbour": always visited, so the walk needs no branch that is hard to guess.
+    // One extra place stands for "no neighbour": always visited, so the walk needs no branch that is hard to predict.
     let mut visited = vec![false; count + 1];
     visited[count] = true;
     let mut turned = vec![false; if against.is_empty() { 0 } else { count }];
     let (mut shells, mut any_turned) = (0, false);
-    // All triangles, shell by shell; the place behind `end` is written before it is known whether it counts.
+    // All triangles, shell by shell; the place at `end` is written before it is known whether it counts.
     let mut found = vec![0; count + 1];
     let mut end = 0;
     for seed in 0..count {

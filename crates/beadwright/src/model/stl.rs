@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
 }
 
-/// Size that the triangle count at byte 80 asks for.
+/// Size of the file according to the triangle count at byte 80.
 pub(super) fn announced_size(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(80..HEADER)?;
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]);

@@ -20,7 +20,7 @@ pub enum Units {
     Inch,
 }
 
-/// A part narrower than this many beads is asked about.
+/// The user must give the unit of a part narrower than this many beads.
 const MIN_BEADS: f64 = 3.0;
 
 impl Units {
@@ -62,7 +62,7 @@ fn size_text(size: DVec3, factor: f64) -> String {
 /// Asks for the unit when the part, taken as millimetres, is narrower than three beads in x and y.
 ///
 /// # Errors
-/// [`UnitsUnclear`], whose text tells the sizes in the other units.
+/// [`UnitsUnclear`], whose text gives the sizes in the other units.
 pub fn guess(size: DVec3, bead_width: f64) -> Result<Units, UnitsUnclear> {
     let widest = size.x.max(size.y);
     if widest < MIN_BEADS * bead_width { Err(UnitsUnclear { size, bead_width }) } else { Ok(Units::Millimetre) }

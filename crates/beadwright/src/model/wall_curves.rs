@@ -12,7 +12,7 @@ const LEVEL_MM: f64 = 0.05;
 /// Curves whose heights differ by no more than this belong to one height, mm.
 const SAME_HEIGHT_MM: f64 = 0.1;
 
-/// Points at which curves of neighbouring heights correspond, for leaning walls.
+/// Number of points at which curves of neighbouring heights correspond, for leaning walls.
 const PAIRS: usize = 64;
 
 /// The centre-lines of a wall.
@@ -22,7 +22,7 @@ pub struct WallCurves {
     levels: Vec<(f64, Vec<Curve>)>,
 }
 
-/// One centre-line: curves one behind the other.
+/// One centre-line: curves that follow each other.
 #[derive(Debug, Clone, PartialEq)]
 struct Curve {
     parts: Vec<Nurbs>,
@@ -50,7 +50,7 @@ pub enum WallCurvesError {
         /// Number of curves that belong to others.
         curves: usize,
     },
-    /// A curve rises.
+    /// A curve is not level.
     #[error(
         "the curve of directory entry {entry} is not level: it runs from z {low:.2} to z {high:.2} mm. The centre-lines \
          of a wall are level, one set for each height."
@@ -81,8 +81,8 @@ pub enum WallCurvesError {
 }
 
 impl WallCurves {
-    /// The visible curves of a drawing that stand for themselves, turned and scaled by `place`, with the lowest height on
-    /// z = 0.
+    /// The visible curves of a drawing that stand for themselves, turned and scaled by `place`; the lowest height
+    /// becomes z = 0.
     ///
     /// # Errors
     /// [`WallCurvesError`], with the directory entry or the height.
@@ -124,8 +124,9 @@ impl WallCurves {
         self.levels.first().map_or(0, |level| level.1.len())
     }
 
-    /// The centre-lines at height `z` (mm), their chords within `error` (mm): those given there, and between two
-    /// heights the straight way between corresponding points. Below and above they go straight on.
+    /// The centre-lines at height `z` (mm), their chords within `error` (mm): those given there, or, between two
+    /// heights, straight interpolation between corresponding points. Below and above all heights they continue
+    /// vertically.
     pub fn at(&self, z: f64, error: f64) -> Vec<Section> {
         match self.between(z) {
             Between::One(curves) => curves.iter().map(|c| c.section(error)).collect(),
@@ -135,7 +136,7 @@ impl WallCurves {
         }
     }
 
-    /// How far the centre-lines move sideways from one height to another, as a mean, mm.
+    /// Mean distance by which the centre-lines move sideways from one height to another, mm.
     pub fn offset(&self, low: f64, high: f64) -> f64 {
         let points = |z: f64| -> Vec<DVec2> {
             let paired = |curves: &[Curve]| curves.iter().flat_map(|c| c.evenly(PAIRS)).collect::<Vec<_>>();
@@ -201,7 +202,7 @@ impl Curve {
         Section { points, closed: self.closed }
     }
 
-    /// So many points at equal distances along the curve, both ends among them.
+    /// `count` points at equal distances along the curve, both ends among them.
     fn evenly(&self, count: usize) -> Vec<DVec2> {
         let path = self.path(1e-3);
         let length = planar::polyline::length(&path);
@@ -209,8 +210,8 @@ impl Curve {
         (0..count).filter_map(place).collect()
     }
 
-    /// The same, begun and run so that it corresponds to another curve: a closed curve begins at the same bearing from
-    /// its middle and runs round the same way.
+    /// The same points, their start and direction matched to another curve: a closed curve begins at the same bearing
+    /// from its middle and runs the same way round.
     fn turned_to(&self, other: &Self, count: usize) -> Vec<DVec2> {
         let (mut own, theirs) = (self.evenly(count), other.evenly(count));
         if !(self.closed && other.closed) {
@@ -239,7 +240,7 @@ fn mixed(lower: &[DVec2], upper: &[DVec2], share: f64) -> Vec<DVec2> {
     lower.iter().zip(upper).map(|(a, b)| a.lerp(*b, share)).collect()
 }
 
-/// The centre-line between two, at a share of the way up.
+/// The centre-line between two others, at a share of the way up.
 fn lofted(lower: &Curve, upper: &Curve, share: f64, error: f64) -> Section {
     // As many corresponding points as the finer curve needs.
     let count = (4 * lower.path(error).len().max(upper.path(error).len())).max(PAIRS);

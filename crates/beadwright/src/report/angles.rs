@@ -1,5 +1,5 @@
-//! What depends on the raster angle, as plots: turns, length of the scan lines, area laid twice at the turns
-//! (Han et al. 2018, figures of 3.1).
+//! Plots over the raster angle: turns, length of the scan lines, area laid twice at the turns (Han et al. 2018, figures
+//! of 3.1).
 
 use super::plot::{Curve, Plot};
 use crate::fill;
@@ -8,7 +8,7 @@ use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::profile::Profile;
 
-/// The plots; each has the angle in degrees below. `mark` is the angle that is laid, °.
+/// The plots; the x axis is the angle, °. `mark` is the angle that is laid, °.
 pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
     let plot = |title: &str, y: &str, points: &Vec<glam::DVec2>| Plot {
         title: title.to_owned(),

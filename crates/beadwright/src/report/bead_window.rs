@@ -38,7 +38,7 @@ pub fn plot(library: &BeadLibrary) -> Plot {
     }
 }
 
-/// The measured values of the second input; evenly spread ones where these are too many.
+/// The measured values of the second input, or evenly spaced ones where there are too many.
 fn levels(library: &BeadLibrary) -> Vec<f64> {
     let mut values: Vec<f64> = library.measured.iter().map(|s| s.inputs[1]).collect();
     values.sort_by(f64::total_cmp);
@@ -61,7 +61,7 @@ fn curve(library: &BeadLibrary, first: &Input, value: f64) -> Vec<DVec2> {
     (0..POINTS).filter_map(|k| point(at(k).min(first.max))).collect()
 }
 
-/// The measured beads on a curve: with further inputs than two none is, unless they are at the middle too.
+/// The measured beads on a curve; any inputs after the second must lie at the middle of their range too.
 fn dots(library: &BeadLibrary, value: f64) -> Vec<DVec2> {
     let on = |s: &&Sample| {
         let held =

@@ -11,12 +11,12 @@
 //! | islands, then for each: rings, points of each ring | outer ring first |
 //! | passes, then for each: kind + 256 if closed + 512 if it varies, points, width, speed | width in µm, speed in µm/s; at every point if it varies |
 //!
-//! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, from the lowest
-//! corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The rest is
-//! JSON: the warnings as `[x, y, text]`.
+//! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, starting at the
+//! lowest corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The
+//! rest is JSON: the warnings as `[x, y, text]`.
 //!
 //! The [height field](map) of a layer is base64 of a deflated body: lowest x and y, pixel, pixels in x and y (f64,
-//! little-endian), then a byte a pixel as in [`Picture`].
+//! little-endian), then one byte per pixel as in [`Picture`].
 
 use crate::deposit::{Figures, Picture};
 use crate::layer::Layer;
@@ -34,17 +34,17 @@ use std::io::Write;
 /// Numbers in the head; 18 × 8 bytes are 192 characters of base64, with nothing left over.
 pub const HEAD: usize = 18;
 
-/// Coordinates are at least this coarse, mm.
+/// Finest resolution of coordinates, mm.
 const FINEST: f64 = 0.01;
 
 /// A layer spans at most this many units, so that every difference fits in an Int16.
 const SPAN: f64 = 32_000.0;
 
-/// Warnings of one layer that are told singly.
+/// Most warnings that are listed for one layer.
 const MOST_WARNINGS: usize = 30;
 
-/// One layer, and what the deposit model says of it, as base64. It knows nothing of other layers, so callers may encode
-/// several at a time.
+/// One layer, and what the deposit model says of it, as base64. It does not depend on other layers, so callers may
+/// encode several in parallel.
 pub fn layer(layer: &Layer, process: &Process, figures: Option<&Figures>) -> String {
     let bounds = Bounds::of(points(layer)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let resolution = (bounds.size().max_element() / SPAN).max(FINEST);

@@ -7,9 +7,9 @@
 //! | [`rows`] | totals as people read them |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
-//! | [`angles`] | what depends on the raster angle |
+//! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
-//! | [`steps`] | the steps of the hybrid as pictures |
+//! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
 

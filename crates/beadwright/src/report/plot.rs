@@ -16,7 +16,7 @@ pub struct Curve {
 /// A plot.
 #[derive(Debug, Clone, Default)]
 pub struct Plot {
-    /// Title, and names of the axes with their units.
+    /// Title.
     pub title: String,
     /// Name of the x axis with its unit.
     pub x: String,
@@ -24,13 +24,13 @@ pub struct Plot {
     pub y: String,
     /// The curves.
     pub curves: Vec<Curve>,
-    /// Values of x with a vertical line and a word.
+    /// Vertical lines: the value of x and a label.
     pub marks: Vec<(f64, String)>,
-    /// Ranges of y that are shaded, with a word.
+    /// Shaded ranges of y: from, to and a label.
     pub bands: Vec<(f64, f64, String)>,
     /// Single points, in the colours of the curves with the same numbers.
     pub dots: Vec<Vec<DVec2>>,
-    /// The y axis begins near the data instead of at 0.
+    /// Whether the y axis begins near the data instead of at 0.
     pub floating: bool,
 }
 

@@ -47,7 +47,7 @@ impl Sheet {
         self.push(&format!("<div class=\"card\">{svg}</div>"))
     }
 
-    /// Height fields side by side under a slider; `labels` tells what a place of the slider is.
+    /// Height fields side by side under a slider; `labels` name the positions of the slider.
     pub fn maps(&mut self, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
         let map = |picture: &Option<&Picture>| format!("\"{}\"", picture.map(encode::map).unwrap_or_default());
         let column = |(name, pictures): &(String, Vec<Option<&Picture>>)| {

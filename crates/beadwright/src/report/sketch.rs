@@ -26,7 +26,7 @@ impl Sketch {
         self
     }
 
-    /// A line of a width, mm.
+    /// A line of this `width`, mm.
     pub fn line(&mut self, points: &[DVec2], closed: bool, colour: &str, width: f64) -> &mut Self {
         let (line, width) = (path(points, closed), fixed(width, 3));
         self.body += &format!("<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" d=\"{line}\"/>\n");

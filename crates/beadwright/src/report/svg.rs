@@ -7,11 +7,11 @@ use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
 
-/// Colour of what is for the contour.
+/// Colour of contour passes.
 const CONTOUR: &str = "#1f6fd6";
-/// Colour of what is inside.
+/// Colour of infill passes.
 const INFILL: &str = "#e8862a";
-/// Colour of what fills pockets.
+/// Colour of passes that fill pockets.
 const SKELETON: &str = "#7e57c2";
 /// Colour of walls.
 const WALL: &str = "#0f8b8d";
@@ -22,7 +22,7 @@ const START: &str = "#1a9c4b";
 /// Colour of arc ends.
 const END: &str = "#d92d3a";
 
-/// Text and lines scale with the picture: one unit is this part of its larger side.
+/// Text and lines scale with the picture: its larger side is this many units long.
 const UNITS: f64 = 100.0;
 /// Room for the legend, in units.
 const LEGEND_WIDTH: f64 = 91.0;
@@ -39,7 +39,7 @@ pub fn layer(layer: &Layer, title: &str) -> String {
     svg
 }
 
-/// Where things stand; y already runs downwards.
+/// Where things are drawn; y already runs downwards.
 struct Frame {
     low: DVec2,
     size: DVec2,
@@ -150,7 +150,7 @@ fn beads(svg: &mut String, layer: &Layer, unit: f64) {
     }
 }
 
-/// Beads show what lies below them.
+/// Opacity of beads, so that what lies below them shows through.
 const WIDE: &str = " stroke-opacity=\"0.45\"";
 
 fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>, closed: bool, width: f64, more: &str) {
@@ -173,7 +173,7 @@ fn marks(svg: &mut String, layer: &Layer, unit: f64) {
         line(svg, flip(from), flip(to), 0.25 * unit);
         svg.push_str(&format!(" stroke=\"{TRAVEL}\"{}/>\n", dashes(unit)));
     }
-    // On closed passes both fall together: the start stands on the end.
+    // On closed passes the two coincide: the start is drawn over the end.
     for pass in &layer.passes {
         let at = |p: Option<glam::DVec3>| p.map(|p| flip(p.truncate()));
         at(pass.end()).into_iter().for_each(|p| dot(svg, p, 0.75 * unit, END));
@@ -209,7 +209,7 @@ fn dot(svg: &mut String, center: DVec2, radius: f64, colour: &str) {
     svg.push_str(&format!(" fill=\"{colour}\"/>\n"));
 }
 
-/// `rest` is what stands from the last attributes on, escaped.
+/// `rest` is everything from the last attributes on, escaped.
 fn text(svg: &mut String, at: DVec2, size: f64, rest: &str) {
     svg.push_str("<text");
     attributes(svg, &[("x", at.x), ("y", at.y), ("font-size", size)]);

@@ -145,7 +145,7 @@ pub(super) fn files(files: &[String]) -> String {
     format!("<ul class=\"files\">\n{items}\n</ul>")
 }
 
-/// Everything that was mended, lost or does not fit, or that there is none of it.
+/// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
 pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
     let item = |(source, text): &(&str, String)| format!("<li><b>{source}</b> {}</li>", escape(text));
     let items: Vec<String> = remarks(summary, repair).iter().map(item).collect();

@@ -12,12 +12,12 @@ use crate::report::sheet::Sheet;
 use crate::task::Task;
 use std::collections::BTreeSet;
 
-/// The speed that the abstract of the paper would need at 0.02 m/s, mm/s.
+/// The speed that the abstract of the paper would need if its printed 0.02 m/min were 0.02 m/s, mm/s.
 const PRINTED_SPEED: f64 = 20.0;
-/// The layer that is drawn, from 0.
+/// Index of the layer that is drawn, from 0.
 const LAYER: usize = 4;
 
-/// Does the experiment.
+/// Runs the experiment.
 ///
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.
@@ -54,7 +54,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     Ok(Reproduced { page, lines, files })
 }
 
-/// Layer 5 by every strategy, and by the paper to the letter.
+/// Layer 5 planned with every strategy, and to the letter of the paper.
 fn entries(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Entry>, ReproduceError> {
     let (settings, chosen): (_, Chosen) = (plan::deposit_settings(profile), Some(BTreeSet::from([LAYER])));
     let mut literal = profile.clone();

@@ -1,7 +1,8 @@
 //! Han et al. 2018: order of contours, raster angle, merging and order of sub-regions, on three printed plates.
 //!
-//! The paper shows its parts only as pictures, so these are plates of the same kind. Plain is: loops in file order from
-//! their first vertex, scan lines at 0°, sub-regions one by one in scan order. One layer is counted, as in the paper.
+//! The paper shows its parts only as pictures, so these are plates of the same kind. The plain plan takes loops in file
+//! order from their first vertex, scan lines at 0°, and sub-regions one by one in scan order. One layer is counted, as
+//! in the paper.
 
 use super::{ReproduceError, Reproduced};
 use crate::fill::angle;
@@ -21,14 +22,14 @@ use planar::scan::{Scan, Spacing};
 use planar::{Bounds, Polygon, Region, Ring};
 use std::f64::consts::TAU;
 
-/// A plate, and what the paper found on its own: contour travel and layer time saved, %.
+/// A plate, and what the paper found on its own plate: contour travel and layer time saved, %.
 struct Plate {
     name: &'static str,
     polygon: Polygon,
     paper: [f64; 2],
 }
 
-/// What is done to a layer.
+/// How a layer is planned.
 #[derive(Debug, Clone, Copy)]
 struct Plan {
     name: &'static str,
@@ -42,7 +43,7 @@ struct Plan {
 
 const PLAIN: Plan = Plan { name: "plain", contours: None, best_angle: false, merge: false, fill: None };
 
-/// Each adds a step to the one before.
+/// The plans compared; each adds a step to the one before.
 const STEPS: [Plan; 5] = [
     PLAIN,
     Plan { name: "+ contour order and start points", contours: Some(Method::LocalSearch), ..PLAIN },
@@ -72,7 +73,7 @@ const LITERAL: Plan = Plan {
     fill: Some(Method::Nearest),
 };
 
-/// What a layer takes.
+/// The travels, time, paths and turns of a layer.
 struct Outcome {
     contour_travel: f64,
     fill_travel: f64,
@@ -81,7 +82,7 @@ struct Outcome {
     turns: usize,
 }
 
-/// Does the experiment.
+/// Runs the experiment.
 ///
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.
@@ -216,7 +217,7 @@ impl<'a> Layer<'a> {
         tour.iter().map(ring).collect()
     }
 
-    /// The fill as it is laid, from where the contours end.
+    /// The fill as it is laid, starting from the end of the contours.
     fn fill(&self, plan: &Plan, from: DVec2) -> Vec<Vec<DVec2>> {
         let scan = self.scan(plan);
         let weave = Weave::new(&scan, self.settings.stepover);

@@ -11,9 +11,9 @@ use crate::task::Task;
 use glam::DVec2;
 use std::collections::BTreeSet;
 
-/// The paper's distance of contour and zigzag, in bead widths.
+/// The paper's distance between contour and zigzag, in bead widths.
 const PAPER: f64 = 0.591;
-/// The distance of zigzag lines.
+/// The stepover of the zigzag lines, in bead widths.
 const TANGENT: f64 = 0.738;
 
 /// What the paper says of its four specimens.
@@ -24,7 +24,7 @@ const SPECIMENS: [(&str, &str, f64, &str); 4] = [
     ("compound", "compound, 0.591 w", PAPER, "dense, the shape is kept"),
 ];
 
-/// Does the experiment.
+/// Runs the experiment.
 ///
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.
@@ -66,7 +66,7 @@ fn entry_of(strategy: &str, gap: f64, task: &Task) -> Result<Entry, ReproduceErr
     profile.fill.raster_turn = RasterTurn::Fixed;
     let part = example::find("cross").ok_or_else(|| wrong(&"there is no example part called cross"))?;
     let mut mesh = part.mesh();
-    // One layer tells all.
+    // One layer is enough.
     let height = profile.layers.height;
     mesh.vertices.iter_mut().for_each(|v| v.z = v.z.min(height));
     let chosen = Some(BTreeSet::from([0]));

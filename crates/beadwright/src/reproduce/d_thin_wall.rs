@@ -1,5 +1,5 @@
-//! Li et al.: four thin-walled parts, the heights foretold for their layers, and the frame whose junctions must not pile
-//! up.
+//! Li et al.: four thin-walled parts, the heights predicted for their layers, and the frame whose junctions must not
+//! pile up.
 
 use super::{ReproduceError, Reproduced};
 use crate::bead::wall::WallBead;
@@ -37,7 +37,7 @@ const PARTS: [Part; 4] = [
 /// Layers of the frame that are judged.
 const JUDGED: usize = 8;
 
-/// Does the experiment.
+/// Runs the experiment.
 ///
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.

@@ -1,4 +1,4 @@
-//! The papers' experiments made again: ours beside theirs. A paper is one file and one line in [`PAPERS`].
+//! The papers' experiments repeated, with our results beside theirs. A paper is one file and one line in [`PAPERS`].
 
 pub mod a_skeleton_hybrid;
 pub mod b_fdm_order;
@@ -8,7 +8,7 @@ pub mod d_thin_wall;
 use crate::report::sheet::Sheet;
 use crate::task::Task;
 
-/// What came of an experiment.
+/// The result of an experiment.
 pub struct Reproduced {
     /// Tables and pictures.
     pub page: Sheet,
@@ -24,7 +24,7 @@ pub struct Paper {
     pub name: &'static str,
     /// Authors, year and subject.
     pub about: &'static str,
-    /// Does the experiment.
+    /// Runs the experiment.
     pub run: fn(&Task) -> Result<Reproduced, ReproduceError>,
 }
 
@@ -52,7 +52,7 @@ pub const PAPERS: [Paper; 4] = [
     },
 ];
 
-/// Why an experiment could not be made.
+/// Why an experiment could not be run.
 #[derive(Debug, thiserror::Error)]
 #[error("the experiment could not be made: {0}")]
 pub struct ReproduceError(pub String);

@@ -1,7 +1,7 @@
 //! Forward and inverse kinematics of a six-axis arm: angles in ° as its maker shows them, lengths in mm.
 //!
 //! The closed forms are those of Brandstötter, Angerer and Hofbaur (2014), as the crate `rs-opw-kinematics` has them.
-//! It counts in metres and radians, and does not get out of this file.
+//! That crate works in metres and radians; nothing of it leaves this file.
 
 use glam::{DQuat, DVec3};
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
@@ -22,23 +22,23 @@ const BEYOND_MM: f64 = 0.1;
 pub struct Frame {
     /// Origin, mm.
     pub position: DVec3,
-    /// Turn.
+    /// Rotation.
     pub rotation: DQuat,
 }
 
 impl Frame {
-    /// A frame in this frame.
+    /// `inner` is given in this frame; returns it in the frame in which this one is given.
     pub fn then(&self, inner: &Self) -> Self {
         Self { position: self.apply(inner.position), rotation: (self.rotation * inner.rotation).normalize() }
     }
 
-    /// This frame seen from the other side.
+    /// The inverse: `a_from_b` becomes `b_from_a`.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         Self { position: rotation * -self.position, rotation }
     }
 
-    /// A point of this frame, seen from outside, mm.
+    /// A point given in this frame, mm; returns it in the frame in which this one is given.
     pub fn apply(&self, point: DVec3) -> DVec3 {
         self.position + self.rotation * point
     }
@@ -93,12 +93,12 @@ impl Branch {
     }
 }
 
-/// How far a pose is from trouble, °; negative where a limit is overstepped.
+/// How far a pose is from limits and singularities, °; negative where a limit is exceeded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
     /// To the nearer limit of each joint.
     pub limits: [f64; 6],
-    /// Of joint 5 to where axes 4 and 6 fall together.
+    /// Of joint 5 to the angle at which axes 4 and 6 coincide.
     pub wrist: f64,
     /// Of the elbow to a straight or folded arm.
     pub elbow: f64,
@@ -138,7 +138,7 @@ impl std::fmt::Debug for Arm {
 }
 
 impl Arm {
-    /// An arm; offsets beyond ±360° are taken at their whole turns.
+    /// An arm; whole turns are dropped from the offsets.
     pub fn new(
         lengths: Lengths,
         offsets: Joints,
@@ -175,8 +175,8 @@ impl Arm {
         Frame { position: pose.translation * MM_PER_M, rotation: pose.rotation }
     }
 
-    /// All ways to put the flange there, also those beyond a limit. Every joint stands at the turn nearest to the
-    /// middle of its range.
+    /// All ways to put the flange there, including those beyond a limit. Of a joint's angles that differ by whole
+    /// turns, the one nearest to the middle of its range is returned.
     pub fn inverse(&self, base_from_flange: &Frame) -> Vec<(Branch, Joints)> {
         let Frame { position, rotation } = base_from_flange;
         if self.beyond(base_from_flange) > BEYOND_MM || !position.is_finite() {
@@ -251,7 +251,7 @@ impl Arm {
     }
 }
 
-/// The angle, plus whole turns, that is nearest to another one, °.
+/// `angle` plus the whole turns that bring it nearest to `near`, °.
 pub(super) fn turned_near(angle: f64, near: f64) -> f64 {
     angle - ((angle - near) / 360.0).round() * 360.0
 }

@@ -52,7 +52,7 @@ pub struct ArmTable {
     pub offsets: [f64; 6],
     /// 1 where the maker's positive direction is that of the model, −1 where not.
     pub signs: [i8; 6],
-    /// Whether joint 3 is driven through a parallelogram, so that it tells the forearm's angle to the floor.
+    /// Whether joint 3 is driven through a parallelogram, so that it shows the forearm's angle to the floor.
     pub parallelogram: bool,
     /// Least and greatest angle of each joint, °.
     pub limits: [[f64; 2]; 6],
@@ -111,7 +111,7 @@ pub enum CellError {
         /// What is wrong and what would be right.
         reason: String,
     },
-    /// A value that cannot be.
+    /// An impossible value.
     #[error("line {line} of the cell: {key} = {value} is impossible: {reason}")]
     Value {
         /// Line number, from 1.
@@ -229,7 +229,7 @@ impl PartPlace {
         Frame { position: DVec3::from(self.position), rotation: DQuat::from_rotation_z(self.rotation.to_radians()) }
     }
 
-    /// The place when the table under the part stands at that angle, °.
+    /// The place of the part when the table under it stands at that angle, °.
     pub fn turned_about(&self, table: &Table, angle: f64) -> Self {
         let turn = f64::from(table.direction) * angle;
         let axis = DVec3::new(table.axis[0], table.axis[1], 0.0);

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 pub enum Trouble {
     /// No joint angles put the torch there.
     OutOfReach {
-        /// How far the wrist would have to go beyond the arm's reach (or inside of it), mm; 0 where it is the chosen
-        /// branch that does not get there.
+        /// How far the wrist would have to go beyond the arm's reach (or inside of it), mm; 0 where only the chosen
+        /// branch cannot get there.
         beyond: f64,
         /// Greatest distance of the wrist from axis 2, mm.
         reach: f64,
@@ -38,15 +38,15 @@ pub enum Trouble {
         /// Whether the arc burns.
         arc: bool,
     },
-    /// Axes 4 and 6 nearly fall together.
+    /// Axes 4 and 6 nearly coincide.
     Wrist {
-        /// Distance of joint 5 from there, °.
+        /// Distance of joint 5 from the angle at which they do, °.
         margin: f64,
     },
 }
 
 impl Trouble {
-    /// Whether the program cannot be welded so. Slower travels and a near singularity are only told.
+    /// Whether this keeps the program from being welded. Slower travels and a near singularity are only reported.
     pub fn is_fatal(&self) -> bool {
         match self {
             Self::OutOfReach { .. } | Self::Limit { .. } => true,
@@ -55,7 +55,7 @@ impl Trouble {
         }
     }
 
-    /// Kind and joint: findings with the same ones are told together. Fatal kinds come first.
+    /// Kind and joint: findings that agree in both are reported together. Fatal kinds come first.
     fn key(&self) -> (u8, usize) {
         match *self {
             Self::OutOfReach { .. } => (0, 0),
@@ -84,7 +84,7 @@ pub struct ReachFinding {
     pub stop: Stop,
     /// What is wrong there.
     pub trouble: Trouble,
-    /// Where it is worst, and what it is there.
+    /// Where it is worst, and what is wrong there.
     pub worst: (Stop, Trouble),
     /// Number of stops.
     pub count: usize,

@@ -1,17 +1,18 @@
 //! Can the robot weld this plan? Joint paths, margins, and a better place for the part.
 //!
-//! A [`Cell`] is an [`Arm`] with its torch and the place of the part. [`Track`] turns a plan into the way of the
+//! A [`Cell`] is an [`Arm`] with its torch and the place of the part. [`Track`] turns a plan into the path of the
 //! torch, travels included; [`reach`] walks it with the torch straight down:
 //!
-//! 1. at stations along the way the margins of all torch angles are computed (`turn.rs`): the torch may stand at any
+//! 1. at stations along the path, the margins of all torch angles are computed (`turn.rs`): the torch may stand at any
 //!    angle about its own axis, and that freedom keeps joints away from limits;
-//! 2. dynamic programming picks one branch of the arm for the whole program, and of all courses of the torch angle with
-//!    the best least margin the one that turns least;
-//! 3. every point is walked with that course: angles, margins, speeds, [findings](finding) (`walk.rs`).
+//! 2. dynamic programming picks one branch of the arm for the whole program and, of all courses of the torch angle with
+//!    the greatest least margin, the one that turns least;
+//! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`).
 //!
-//! [`suggest()`] searches for a place of the part with more room, [`turn_table`] for the angle of a table under it.
+//! [`suggest()`] searches for a place of the part with greater margins, [`turn_table`] for the angle of a table under
+//! it.
 //!
-//! Not looked at: collisions of arm, torch and part, cables, and the load's dynamics.
+//! Not checked: collisions of arm, torch and part, cables, and the load's dynamics.
 
 pub mod arm;
 pub mod cell;
@@ -33,8 +34,8 @@ pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;
 
-/// The tool frame when the torch stands straight down over a point of the part, turned by `angle` (°) about itself; at
-/// 0 its x axis is the part's.
+/// The tool frame when the torch stands straight down over a point of the part, turned by `angle` (°) about its own
+/// axis; at 0 its x axis is the part's.
 pub fn part_from_tool(at: glam::DVec3, angle: f64) -> Frame {
     let rotation = DQuat::from_rotation_z(angle.to_radians()) * DQuat::from_rotation_x(std::f64::consts::PI);
     Frame { position: at, rotation }

@@ -7,7 +7,7 @@ use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
 use glam::DVec2;
 
-/// Most points of a curve: two of each stretch of the way, its least and its greatest.
+/// Most points of a curve: two for each stretch of the path, the least and the greatest value there.
 const POINTS: usize = 1200;
 /// Most marks of layers.
 const MARKS: usize = 12;
@@ -72,7 +72,7 @@ fn joint_rows(cell: &Cell, reach: &Reach) -> Vec<Row> {
     (0..6).filter_map(row).collect()
 }
 
-/// Way of each stop from the beginning, m.
+/// Distance of each stop from the beginning along the path, m.
 fn way(reach: &Reach) -> Vec<f64> {
     let mut total = 0.0;
     let mut last = None;
@@ -107,7 +107,7 @@ fn plot(title: &str, y: &str, reach: &Reach, way: &[f64], curves: Vec<Curve>) ->
     Plot { title, x: "way of the torch in m".to_owned(), y, curves, marks: layer_marks(reach, way), ..Plot::default() }
 }
 
-/// Where layers begin; every n-th of many.
+/// Where layers begin; if there are many, only every n-th.
 fn layer_marks(reach: &Reach, way: &[f64]) -> Vec<(f64, String)> {
     let starts: Vec<(f64, usize)> = (0..way.len())
         .filter(|&i| i == 0 || reach.poses[i].0.layer != reach.poses[i - 1].0.layer)

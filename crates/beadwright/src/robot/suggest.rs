@@ -1,7 +1,7 @@
 //! A better place for the part: a search over x, y, z and rotation for the greatest least margin.
 //!
-//! A grid over the room in front of the robot, then smaller and smaller steps from its best place. A place is judged by
-//! the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
+//! A grid over the space in front of the robot, then smaller and smaller steps from its best place. A place is judged
+//! by the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
 
 use super::arm::{Arm, Branch, Frame};
 use super::cell::{Cell, PartPlace};
@@ -11,17 +11,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Layers that are looked at.
+/// Number of layers examined.
 const LAYERS: usize = 5;
-/// Horizontal directions in which the outermost points are taken, each above and below.
+/// Number of horizontal directions in which the outermost points are taken, each tilted up and down.
 const DIRECTIONS: usize = 8;
-/// Torch angles that are tried on the grid.
+/// Number of torch angles tried on the grid.
 const COARSE: usize = 12;
-/// Torch angles that are tried from there on: those of the walk.
+/// Number of torch angles tried after that: those of the walk.
 const FINE: usize = super::turn::ANGLES;
-/// Less gain in margin than this is not worth moving a part, °.
+/// Least gain in margin that is worth moving a part, °.
 pub(super) const WORTH_MOVING: f64 = 5.0;
-/// Steps of the refinement, mm and °; the last ones are the grain of the answer.
+/// Steps of the refinement, mm and °; the last ones are the resolution of the answer.
 const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
 
 /// A place for the part.
@@ -29,7 +29,7 @@ const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2
 pub struct Suggestion {
     /// Where to put it.
     pub place: PartPlace,
-    /// Least margin of the points looked at, °.
+    /// Least margin of the points examined, °.
     pub margin: f64,
     /// The torch angle that gives it, °.
     pub torch_angle: f64,
@@ -57,7 +57,7 @@ impl Suggestion {
     }
 }
 
-/// Searches; none where the arm reaches all points from no place of the grid.
+/// Searches for a place; `None` where the arm cannot reach all points from any place tried.
 pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestion> {
     let points = outermost(track);
     let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
@@ -70,7 +70,7 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     let here = fine(start);
     let mut best = better(None, judged).and_then(|found| better(here, vec![fine(found.place)]))?;
     for (mm, degrees) in STEPS {
-        // Every step forward wins some margin, so this ends.
+        // Every step gains some margin, so this ends.
         loop {
             let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(fine).collect();
             let Some(found) = better(Some(best), tried).filter(|f| f.margin > best.margin + 0.05) else { break };
@@ -112,7 +112,7 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
         for axis in 0..3 {
             let mut position = place.position;
             position[axis] += sign * mm;
-            // The table does not go into the floor.
+            // The part does not go below the floor.
             if axis < 2 || position[axis] >= 0.0 {
                 places.push(PartPlace { position, ..place });
             }
@@ -122,7 +122,8 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
     places
 }
 
-/// The best least margin over branches and torch angles; none where a point is beyond reach or a limit in all of them.
+/// The best least margin over branches and torch angles; `None` where each of them leaves some point out of reach or
+/// beyond a limit.
 pub(super) fn rate(
     arm: &Arm,
     tool_from_flange: &Frame,
@@ -135,7 +136,7 @@ pub(super) fn rate(
     let mut least = vec![[f64::INFINITY; Branch::COUNT]; angles];
     for &point in points {
         for (k, least) in least.iter_mut().enumerate() {
-            // With this angle no branch has come so far.
+            // At this angle every branch has already failed.
             if least.iter().all(|margin| *margin < 0.0) {
                 continue;
             }
@@ -153,13 +154,13 @@ pub(super) fn rate(
         }
     }
     let of_angle = |margins: &[f64; Branch::COUNT]| margins.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // The first of equal ones.
+    // The first among equals.
     let best = least.iter().map(of_angle).enumerate().rev().max_by(|a, b| a.1.total_cmp(&b.1));
     let best = best.filter(|(_, margin)| margin.is_finite());
     best.map(|(k, margin)| Suggestion { place, margin, torch_angle: angle(k), now: None })
 }
 
-/// The outermost stops of a few layers, in each direction upwards and downwards.
+/// The outermost stops of a few layers, in each direction tilted up and down.
 pub(super) fn outermost(track: &Track) -> Vec<DVec3> {
     let mut layers: Vec<&[super::Stop]> = track.stops.chunk_by(|a, b| a.layer == b.layer).collect();
     let count = layers.len();

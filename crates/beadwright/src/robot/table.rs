@@ -1,7 +1,7 @@
 //! A turn table under the part: the one angle, for the whole program, that gives the robot the most margin.
 //!
-//! The part's frame turns with the table, as a base on external kinematics does, so the program's places stay what they
-//! are. Angles are judged as places of the part are (`suggest`): by the outermost points of a few layers.
+//! The part's frame turns with the table, as a base on external kinematics does, so the positions in the program stay
+//! as they are. Angles are judged like places of the part (`suggest`): by the outermost points of a few layers.
 
 use super::cell::{Cell, PartPlace};
 use super::suggest::{WORTH_MOVING, outermost, rate};
@@ -15,18 +15,18 @@ const STEP: f64 = 5.0;
 /// A table at one angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TableAngle {
-    /// Angle of the table as it shows it, °: `program.table_angle`.
+    /// Angle that the table shows, °: `program.table_angle`.
     pub angle: f64,
-    /// Where the part lies then.
+    /// Where the part lies at that angle.
     pub place: PartPlace,
-    /// Least margin of the points looked at, °.
+    /// Least margin of the points examined, °.
     pub margin: f64,
     /// Least margin of these points with the table at 0°; none where some are out of reach.
     pub unturned: Option<f64>,
 }
 
-/// The best angle of the cell's table for a part that lies at `place` while the table stands at 0°; none without a table, or
-/// where no angle brings all points within reach. A turned table must be worth it.
+/// The best angle of the cell's table for a part that lies at `place` while the table stands at 0°; `None` without a
+/// table, or where no angle brings all points within reach. Turning the table must gain enough to be worth it.
 pub fn turn_table(cell: &Cell, place: PartPlace, track: &Track) -> Option<TableAngle> {
     let table = cell.table.as_ref()?;
     let points = outermost(track);

@@ -1,4 +1,4 @@
-//! The way of the torch through a plan, travels included, in pieces short enough to be checked point by point.
+//! The path of the torch through a plan, travels included, in pieces short enough to be checked point by point.
 
 use crate::layer::Layer;
 use crate::profile::Profile;
@@ -7,10 +7,10 @@ use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Borrow;
 
-/// Longer moves are divided, mm: between two stops no joint may swing out unseen.
+/// Moves longer than this are divided, mm, so that no joint can swing out unseen between two stops.
 pub const PIECE_MM: f64 = 20.0;
 
-/// A point of the way.
+/// A point of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Stop {
     /// Layer, from 0.
@@ -27,7 +27,7 @@ pub struct Stop {
     pub arc: bool,
 }
 
-/// The way of the torch.
+/// The path of the torch.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Track {
     /// Its stops.
@@ -35,7 +35,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// The way through a plan's layers, as the programs made with the profile go it.
+    /// The path through a plan's layers, as programs made with the profile follow it.
     pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Self {
         let (mut track, travel_speed) = (Self::default(), profile.travel.speed);
         let mut programmer = profile.programmer().unfitted();
@@ -48,7 +48,7 @@ impl Track {
         track
     }
 
-    /// Length of the way, mm.
+    /// Length of the path, mm.
     pub fn length(&self) -> f64 {
         self.stops.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
     }
@@ -66,7 +66,7 @@ impl Track {
                     self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true });
                 }
                 Instruction::WireFeed { .. } | Instruction::Crater { .. } | Instruction::Dwell { .. } => {}
-                // The number of the pass, from 1, is the next one's from 0.
+                // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.
                 Instruction::ArcOff { pass: number } => pass = number,
             }
         }
@@ -80,7 +80,7 @@ impl Track {
             return;
         };
         let length = from.distance(stop.at);
-        // No way is long enough to make that many stops needful.
+        // No move is long enough to need more stops.
         let pieces = (length / PIECE_MM).ceil().clamp(1.0, 1e4);
         let part = |k: usize| Stop {
             at: from.lerp(stop.at, (k as f64 / pieces).min(1.0)),

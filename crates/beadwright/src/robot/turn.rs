@@ -1,26 +1,26 @@
 //! The course of the torch angle: which way the torch is turned about its own axis, station by station.
 //!
-//! Two dynamic programs over a table of margins (station × branch × angle): the first finds the greatest least margin
-//! of any course, the second, of all courses that keep it, the one that turns least. A turn from one station to the
-//! next is at most one step of the table. Posts write one angle for the whole program, so one that does nearly as well
-//! is preferred.
+//! Two dynamic programs run over a table of margins (station × branch × angle): the first finds the greatest least
+//! margin of any course; the second finds, of all courses that keep it, the one that turns least. A turn from one
+//! station to the next is at most one step of the table. Posts write one angle for the whole program, so a single angle
+//! that does nearly as well is preferred.
 
 use super::arm::{Arm, Branch, Frame};
 use super::part_from_tool;
 use super::track::{PIECE_MM, Stop};
 use rayon::prelude::*;
 
-/// Torch angles that are tried.
+/// Number of torch angles tried.
 pub(super) const ANGLES: usize = 36;
-/// Between two of them, °.
+/// Step from one to the next, °.
 pub(super) const STEP: f64 = 360.0 / ANGLES as f64;
 /// The torch does not turn in less time than this from one station to the next, s.
 const TURNING_SECONDS: f64 = 0.2;
-/// Margin of a pose that no joint angles give, °.
+/// Margin of a pose that cannot be reached, °.
 const NOWHERE: f32 = -1e3;
-/// Margin that is given up so that the torch need not turn at all, °.
+/// Margin that may be given up so that the torch need not turn at all, °.
 const WORTH_TURNING: f32 = 5.0;
-/// Margins that differ by less are the same, °.
+/// Margins that differ by less count as the same, °.
 const SAME: f32 = 1e-2;
 /// What a station beyond a limit costs, in turns.
 const BAD: u64 = 1 << 12;
@@ -30,7 +30,7 @@ type Row = [[f32; Branch::COUNT]; ANGLES];
 
 /// The chosen course.
 pub(super) struct Course {
-    /// The way the arm reaches.
+    /// The branch of the arm.
     pub(super) branch: Branch,
     /// Torch angle at every stop, °.
     pub(super) angles: Vec<f64>,
@@ -54,7 +54,7 @@ pub(super) fn course(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame
     } else if least[greatest] >= 0.0 {
         (greatest, steps(greatest).fewest_turns(least[greatest] - SAME).1)
     } else {
-        // Nothing reaches all: the branch that reaches most.
+        // No branch reaches every station: the one that reaches most.
         let tried = (0..Branch::COUNT).map(|b| (b, steps(b).fewest_turns(0.0)));
         tried.min_by_key(|(b, (cost, _))| (*cost, *b)).map_or((0, Vec::new()), |(b, (_, path))| (b, path))
     };
@@ -119,7 +119,7 @@ impl Steps<'_> {
         self.rows[station][k][self.branch]
     }
 
-    /// Angles from which the angle `k` of a station can be come to, the unturned one first.
+    /// Angles at the station before from which angle `k` can be reached, the unturned one first.
     fn before(&self, station: usize, k: usize) -> impl Iterator<Item = usize> + use<> {
         let count = if self.turnable[station] { 3 } else { 1 };
         [k, (k + 1) % ANGLES, (k + ANGLES - 1) % ANGLES].into_iter().take(count)
@@ -166,14 +166,14 @@ impl Steps<'_> {
         (costs[end], path)
     }
 
-    /// The best angle that is never changed, as a number of steps, and its least margin, °.
+    /// The best constant angle, as a number of steps, and its least margin, °.
     fn single(&self) -> (usize, f32) {
         let least = |k: usize| (0..self.rows.len()).map(|s| self.margin(s, k)).fold(f32::INFINITY, f32::min);
         (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE))
     }
 }
 
-/// The angles of all stops: between stations the torch turns evenly with the way.
+/// The angles of all stops: between stations the torch turns evenly along the path.
 fn spread(stops: &[Stop], stations: &[usize], chosen: &[usize]) -> Vec<f64> {
     let mut angles = vec![0.0; stops.len()];
     let mut last: Option<(usize, f64)> = None;

@@ -1,4 +1,4 @@
-//! The walk along the whole way: joint angles, margins, speeds, and what is wrong.
+//! The walk along the whole path: joint angles, margins, speeds, and what is wrong.
 
 use super::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
 use super::cell::{Cell, PartPlace};
@@ -8,7 +8,7 @@ use super::{part_from_tool, turn};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Below this distance of joint 5 from its singular angle a finding tells of it, °: |sin J5| = 0.087.
+/// A finding is reported where joint 5 is closer than this to its singular angle, °: |sin J5| = 0.087.
 pub(super) const WRIST_MARGIN: f64 = 5.0;
 
 /// The arm at one stop.
@@ -18,7 +18,7 @@ pub struct Pose {
     pub torch_angle: f64,
     /// Angles of the joints, °.
     pub joints: Joints,
-    /// How far from trouble.
+    /// How far it is from limits and singularities.
     pub margins: Margins,
     /// Speed of each joint on the way here, °/s.
     pub speeds: [f64; 6],
@@ -47,13 +47,13 @@ impl Turning {
 pub struct Reach {
     /// Where the part lies.
     pub place: PartPlace,
-    /// How the arm reaches.
+    /// The branch of the arm.
     pub branch: Branch,
-    /// The stops with the arm there; none where it cannot be.
+    /// The stops with the pose of the arm; `None` where it cannot get there.
     pub poses: Vec<(Stop, Option<Pose>)>,
     /// The torch angle.
     pub turning: Turning,
-    /// What is wrong, the fatal first, one of each kind and joint.
+    /// What is wrong, one finding for each kind and joint, the fatal ones first.
     pub findings: Vec<ReachFinding>,
     /// Poses whose joint angles were computed.
     pub computed: usize,
@@ -109,7 +109,7 @@ impl Walk<'_> {
             self.before = None;
             return None;
         };
-        // A joint goes on from where it is, and does not spring by a whole turn.
+        // A joint continues from where it is and does not jump by a whole turn.
         for (joint, before) in joints.iter_mut().zip(self.before.into_iter().flatten()) {
             *joint = turned_near(*joint, before);
         }
@@ -140,12 +140,12 @@ impl Walk<'_> {
 }
 
 impl Reach {
-    /// Whether the robot can weld it all.
+    /// Whether the robot can weld the whole program.
     pub fn is_reachable(&self) -> bool {
         self.findings.iter().all(|f| !f.trouble.is_fatal())
     }
 
-    /// The finding that comes first on the way, of those that forbid the program.
+    /// The first fatal finding along the path.
     pub fn first_bad(&self) -> Option<&ReachFinding> {
         self.findings.iter().filter(|f| f.trouble.is_fatal()).min_by_key(|f| (f.stop.layer, f.stop.pass, f.stop.point))
     }
@@ -155,7 +155,7 @@ impl Reach {
         self.reached().map(|(_, pose)| pose.margins.least()).min_by(f64::total_cmp)
     }
 
-    /// Stops with the arm there.
+    /// The stops that the arm reaches, with its pose.
     pub fn reached(&self) -> impl Iterator<Item = (&Stop, &Pose)> {
         self.poses.iter().filter_map(|(stop, pose)| Some((stop, pose.as_ref()?)))
     }

@@ -16,7 +16,7 @@ struct End {
     last: bool,
 }
 
-/// Joins open chains into rings; what stays open is dropped. `tell` hears of the widest gap and of every drop.
+/// Joins open chains into rings; what stays open is dropped. `tell` is called with the widest gap and with every drop.
 pub(super) fn close(
     chains: Vec<Vec<DVec2>>,
     gap: f64,

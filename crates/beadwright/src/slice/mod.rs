@@ -102,7 +102,7 @@ impl<'a> Slicer<'a> {
         Self::of_slabs(mesh, slabs, options, task)
     }
 
-    /// Sorts the triangles into layers of any thickness, the lowest first; `options.layer_height` tells their usual one.
+    /// Sorts the triangles into layers of any thickness, the lowest first; `options.layer_height` is the usual one.
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
@@ -224,7 +224,7 @@ fn crossed(levels: &[u32], triangle: &[u32; 3]) -> Range<usize> {
     a.min(b).min(c) as usize..a.max(b).max(c) as usize
 }
 
-/// Well-wound contours keep their area when they are united; a difference tells of overlaps or wrong winding.
+/// Well-wound contours keep their area when they are united; a difference reveals overlaps or wrong winding.
 fn area_balance(layer: usize, rings: &[Ring], region: &Region) -> Option<Warning> {
     let signed: f64 = rings.iter().map(Ring::area).sum();
     let area = region.area();

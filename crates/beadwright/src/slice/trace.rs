@@ -41,15 +41,15 @@ impl Scratch {
     }
 }
 
-/// By which of its edges a triangle lets the contour in and out.
+/// The edges by which a contour enters and leaves a triangle.
 #[derive(Clone, Copy)]
 struct Crossed {
     falling: usize,
     rising: usize,
 }
 
-/// For the set of corners that lie above the plane, corner k being bit k. A table, because which corners they are
-/// is as good as random and would be guessed wrong by the processor at every step.
+/// Indexed by the set of corners that lie above the plane, corner k being bit k. A table instead of branches, because
+/// the set is as good as random and the processor would mispredict it at every step.
 const CROSSED: [Option<Crossed>; 8] = {
     const fn edges(falling: usize, rising: usize) -> Option<Crossed> {
         Some(Crossed { falling, rising })

@@ -37,8 +37,8 @@ impl<'a> Graph<'a> {
         graph
     }
 
-    /// A junction may lie outside its triangle, beyond a chord; a disc found on the chord itself then is on another
-    /// branch.
+    /// A junction may lie outside its triangle, beyond a chord; a disc that was found on the chord itself is then on
+    /// another branch and is dropped.
     fn drop_overtaken(&mut self, cell: usize, junction: DVec2) {
         let mesh = self.mesh;
         for (mut chord, mut corner) in mesh.cells[cell].chords() {
@@ -74,7 +74,7 @@ fn corner_disc(mesh: &Mesh, cell: &Cell) -> Disc {
     Disc { at, radius: 0.0, angle: PI - (p - at).angle_to(q - at).abs() }
 }
 
-/// From the edges of the samples; on a jagged outline from those that the discs of the chords touch.
+/// The disc at a junction: from the edges of the samples; on a jagged outline from those that the chords' discs touch.
 fn junction_disc(boundary: &Boundary, mesh: &Mesh, number: usize, chords: &[TentDisc]) -> Option<Disc> {
     let (cell, guess) = (&mesh.cells[number], mesh.centres[number]?);
     let own = cell.corners.map(|c| mesh.samples[c].edge);

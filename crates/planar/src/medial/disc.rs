@@ -1,4 +1,4 @@
-//! Largest discs: the one between two samples, which touches both sides, and the one at a junction, which touches three.
+//! Largest discs: the one between two samples touches both sides, the one at a junction touches three.
 
 use super::boundary::{Boundary, Foot};
 use super::mesh::Sample;
@@ -7,10 +7,10 @@ use glam::DVec2;
 /// Nodes are equidistant from what they touch to this, mm.
 const TOLERANCE_MM: f64 = 1e-9;
 
-/// Nearer edges that the search for a disc may come upon before it takes what it has.
+/// Number of nearer edges after which the search for a disc settles for what it has.
 const MOST_STEPS: usize = 60;
 
-/// A circle through three samples may reach over the boundary by this, mm, and still stand for the disc.
+/// A circle through three samples may reach beyond the boundary by this, mm, and still be taken for the disc.
 const NEAR_MM: f64 = 0.01;
 
 /// A largest disc and how it touches.
@@ -22,7 +22,7 @@ pub(super) struct Disc {
     pub angle: f64,
 }
 
-/// The way between two samples on which a disc is looked for: over a peak near the axis, or straight where there is none.
+/// The path between two samples on which a disc is sought: over a peak near the axis, or straight where there is none.
 #[derive(Clone, Copy)]
 pub(super) struct Tent {
     pub ends: [Sample; 2],
@@ -54,8 +54,8 @@ struct Bracket {
     edge: usize,
 }
 
-/// Where on the way between two samples the nearest edge changes sides. Brackets it like a root finder, but each step
-/// goes to where the two nearest edges known so far balance, so that one or two steps do.
+/// Where on the path between two samples the nearest edge changes sides. Brackets it like a root finder, but each step
+/// goes to where the two nearest edges known so far are equally far, so that one or two steps suffice.
 pub(super) fn on_tent(boundary: &Boundary, tent: &Tent) -> TentDisc {
     let mut low = Bracket { t: 0.0, edge: edge_at(boundary, tent.ends[0], tent.at(1e-6)) };
     let mut high = Bracket { t: 1.0, edge: edge_at(boundary, tent.ends[1], tent.at(1.0 - 1e-6)) };
@@ -75,7 +75,8 @@ pub(super) fn on_tent(boundary: &Boundary, tent: &Tent) -> TentDisc {
             continue;
         }
         radius = nearer.map_or(radius, |foot| foot.distance);
-        // In the middle of an arc any of its edges may come out as the nearest: what the samples see is what counts.
+        // In the middle of an arc any of its edges may come out as nearest, so the angle between the samples counts
+        // too.
         let [a, b] = tent.ends.map(|s| s.at);
         let angle = angle_between(at, feet[0].at, feet[1].at).min(angle_between(at, a, b));
         return TentDisc { disc: Disc { at, radius, angle }, feet };
@@ -90,7 +91,7 @@ fn edge_at(boundary: &Boundary, sample: Sample, close_by: DVec2) -> usize {
     if is_vertex && distance(edge.previous) < distance(sample.edge) { edge.previous } else { sample.edge }
 }
 
-/// Where the edges of both brackets are equally far (Illinois). At `low` its own edge is the nearer, at `high` its own.
+/// Where the edges of both brackets are equally far (Illinois method). At each bracket its own edge is nearer.
 fn balance(boundary: &Boundary, tent: &Tent, low: Bracket, high: Bracket) -> f64 {
     let lead = |t: f64| {
         let at = tent.at(t);
@@ -132,8 +133,8 @@ pub(super) fn at_junction(boundary: &Boundary, guess: DVec2, edges: [usize; 3]) 
     None
 }
 
-/// The circle through three samples as it is, reduced to touch, where that takes less than [`NEAR_MM`]: on an arc the
-/// edges that it touches are too many to choose from.
+/// The circle through three samples, reduced until it only touches the boundary, where that takes less than
+/// [`NEAR_MM`]: on an arc it touches too many edges to choose from.
 pub(super) fn through_samples(boundary: &Boundary, centre: DVec2, samples: [DVec2; 3]) -> Option<Disc> {
     let reach = centre.distance(samples[0]);
     let foot = boundary.nearest(centre, f64::INFINITY)?;

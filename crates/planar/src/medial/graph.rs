@@ -14,7 +14,8 @@ const SAME_MM: f64 = 1e-6;
 /// A gap between two nodes is filled with at most this many pieces.
 const MOST_PIECES: f64 = 50.0;
 
-/// A node below the least object angle where the curve turns by more than this, rad, is not on it but on noise beside.
+/// A node below the least object angle where the curve turns by more than this, rad, is not on it but on noise beside
+/// it.
 const SPUR_TURN: f64 = PI / 6.0;
 
 /// Discs and which of them follow each other. The discs of chords come first, under the numbers of their chords.
@@ -58,7 +59,7 @@ impl Graph<'_> {
         }
     }
 
-    /// Takes free ends away for as long as their object angle is below `min_angle`, the smallest discs first; one disc
+    /// Removes free ends for as long as their object angle is below `min_angle`, the smallest discs first; one disc
     /// always stays. What remains of a branch then ends exactly where the angle is reached.
     pub(super) fn peel(&mut self, min_angle: f64) {
         let key = |graph: &Self, node: usize| Reverse((graph.discs[node].radius.to_bits(), node));
@@ -101,7 +102,7 @@ impl Graph<'_> {
         Some(on_tent(self.boundary, &Tent { ends: [mesh.samples[shared], moved], peak }).disc)
     }
 
-    /// Between a chord that stays and the next that went: the last disc of at least `min_angle`.
+    /// The last disc of at least `min_angle` between a chord that stays and the next one, which was removed.
     fn last_disc(&self, kept: usize, gone: usize, min_angle: f64) -> Disc {
         let (mut low, mut high) = (0.0, 1.0);
         let mut last = self.discs[kept];
@@ -117,7 +118,7 @@ impl Graph<'_> {
         last
     }
 
-    /// Traces the branches between discs that have not just two neighbours, and then the loops without such discs.
+    /// Traces the branches between discs whose number of neighbours is not two, and then the loops without such discs.
     pub(super) fn into_axis(mut self, options: &MedialOptions) -> MedialAxis {
         let mut axis = MedialAxis::default();
         let mut junction_of = vec![None; self.discs.len()];
@@ -146,7 +147,7 @@ impl Graph<'_> {
         }
     }
 
-    /// From a junction to the next, taking the links away on the way.
+    /// Walks from a junction to the next and removes the links on the way.
     fn walk(&mut self, start: usize, junction_of: &[Option<usize>]) -> Vec<usize> {
         let mut path = vec![start];
         let mut here = start;
@@ -176,7 +177,7 @@ impl Graph<'_> {
             }
             kept.push(disc);
         }
-        // The ends are junctions and stay; what repeats the first is the second.
+        // The ends are junctions and stay: a second node that repeats the first goes.
         if kept.len() > 2 && kept[1].at.distance(kept[0].at) < SAME_MM {
             kept.remove(1);
         }

@@ -1,9 +1,9 @@
-//! Branches joined where only two meet, and junctions that lie together made one.
+//! Joins branches where only two meet, and merges junctions that lie together.
 
 use super::{Branch, MedialAxis, Node};
 
 impl MedialAxis {
-    /// Junctions that a branch shorter than `least` (mm) links are one: the one with the larger disc.
+    /// Merges junctions linked by a branch shorter than `least` (mm) into the one with the larger disc.
     pub(super) fn merged(mut self, least: f64) -> Self {
         let mut leader: Vec<usize> = (0..self.junctions.len()).collect();
         for branch in self.branches.iter().filter(|b| b.length() < least) {
@@ -28,7 +28,7 @@ impl MedialAxis {
         self.chained(|_| true)
     }
 
-    /// [`Self::joined`], and only the junctions that `keep` names.
+    /// As [`Self::joined`], but keeps only the junctions that `keep` accepts.
     fn chained(self, keep: impl Fn(usize) -> bool) -> Self {
         let degrees = self.degrees();
         let mut at_junction: Vec<Vec<usize>> = vec![Vec::new(); self.junctions.len()];
@@ -60,7 +60,7 @@ impl MedialAxis {
         axis
     }
 
-    /// The number of a junction of the old axis in this one.
+    /// The index in this axis of a junction of the old axis.
     fn junction(&mut self, number: &mut [Option<usize>], old: usize, node: Node) -> usize {
         *number[old].get_or_insert_with(|| {
             self.junctions.push(node);

@@ -7,16 +7,16 @@ use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::HashMap;
 
-/// Samples in all, about, at most; the spacing grows where it would take more.
+/// Rough upper limit on the number of samples; the spacing grows where more would be needed.
 const MOST_SAMPLES: f64 = 1e6;
 
 /// Vertices that turn by less than this, rad, never get samples of their own.
 const LEAST_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// Vertices that turn by more than this, rad, always do: so every triangle has a corner that does.
+/// Vertices that turn by more than this, rad, always get them: every triangle has a corner that does.
 const MOST_TURN: f64 = 90.0 * std::f64::consts::PI / 180.0;
 
-/// The circle about a peak through the samples below must be free of boundary up to this part of its radius.
+/// The circle about a peak, through the samples below it, must be free of boundary up to this fraction of its radius.
 const FREE_REACH: f64 = 0.8;
 
 /// A point on the boundary.
@@ -98,8 +98,8 @@ impl Mesh {
         self.chords.len() - 1
     }
 
-    /// The way over the middle of the Voronoi edge that belongs to a chord. Without a peak where that lies outside or
-    /// the samples are too far apart for the thickness.
+    /// The path over the middle of the Voronoi edge that belongs to a chord. It has no peak where that middle lies
+    /// outside or the samples are too far apart for the thickness.
     pub(super) fn tent(&self, boundary: &Boundary, chord: usize) -> Tent {
         let ends = self.chords[chord].map(|s| self.samples[s]);
         let [p, q] = self.sides[chord].map(|cell| self.centres[cell]);
@@ -128,7 +128,7 @@ fn circumcentre([a, b, c]: [DVec2; 3]) -> Option<DVec2> {
     centre.is_finite().then_some(centre)
 }
 
-/// By face index: an odd number of boundaries lies between it and the outside.
+/// Whether each face lies inside, by its index: an odd number of boundaries lies between it and the outside.
 fn faces_inside(cdt: &Cdt) -> Vec<bool> {
     let mut inside: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
     let outer = cdt.outer_face();
@@ -199,7 +199,7 @@ fn guard(boundary: &Boundary, edge: usize, min_angle: f64) -> Option<f64> {
     (guard > 0.0).then_some(guard)
 }
 
-/// Places of the samples between the ends of an edge, as parts of its length: from a guarded end in doubling steps,
+/// Places of the samples between the ends of an edge, as fractions of its length: from a guarded end in doubling steps,
 /// and then evenly.
 fn stations(length: f64, guards: [Option<f64>; 2], spacing: f64) -> Vec<f64> {
     let half = length / 2.0;
@@ -212,7 +212,7 @@ fn stations(length: f64, guards: [Option<f64>; 2], spacing: f64) -> Vec<f64> {
     places.iter().map(|x| x / length).filter(|&t| t > 0.0 && t < 1.0).collect()
 }
 
-/// Places from an end up to, and without, the middle of the edge, mm.
+/// Places from an end up to the middle of the edge, which is left out, mm.
 fn half_stations(half: f64, guard: Option<f64>, spacing: f64) -> Vec<f64> {
     let mut places = Vec::new();
     if let Some(guard) = guard {

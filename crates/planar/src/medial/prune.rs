@@ -1,8 +1,8 @@
-//! Corner branches taken away.
+//! Removes branches that run into corners.
 
 use super::{MedialAxis, Node, length};
 
-/// The slope of the radius is taken over at least this part of the radius: nodes that nearly coincide have no say.
+/// The slope is taken over at least this fraction of the radius, so that nodes that nearly coincide have no say.
 const WINDOW: f64 = 1e-3;
 
 impl MedialAxis {
@@ -11,7 +11,7 @@ impl MedialAxis {
     /// From every free end the axis is cut back for as long as the radius grows by at least sin(`corner` / 2) per mm,
     /// as it does on the way out of a corner of interior angle `corner` (rad, usually [`CORNER`](super::CORNER)) or
     /// blunter. Then branches that are the only two at a junction become one, and so on until nothing changes.
-    /// Of a square, a triangle or a disc one junction without branches remains.
+    /// Of a square, a triangle or a disc, only one junction without branches remains.
     #[must_use]
     pub fn pruned(mut self, corner: f64) -> Self {
         let slope = (corner / 2.0).sin().max(1e-6);
@@ -21,7 +21,7 @@ impl MedialAxis {
         self
     }
 
-    /// Without the free branches along which the radius grows, from end to end, as under an object angle below
+    /// Without the free branches along which the radius grows, from end to end, as fast as at an object angle below
     /// `min_angle`: noise with a sharp tip.
     pub(super) fn without_noise(mut self, min_angle: f64) -> Self {
         let slope = (min_angle / 2.0).cos();
@@ -35,7 +35,8 @@ impl MedialAxis {
         self
     }
 
-    /// One round: from every free end as many steps as `steps` says of the nodes from there on. Whether any were cut.
+    /// One round: cuts every free end back by as many steps as `steps` returns for the nodes from there on. Returns
+    /// whether any were cut.
     fn cut_back(&mut self, steps: impl Fn(&[Node]) -> usize) -> bool {
         let degrees = self.degrees();
         let mut gone = vec![false; self.junctions.len()];
@@ -71,7 +72,7 @@ impl MedialAxis {
     }
 }
 
-/// How many steps from the first node on the radius grows by at least `slope` per mm.
+/// For how many steps from the first node on the radius grows by at least `slope` per mm.
 fn rising_steps(nodes: &[Node], slope: f64) -> usize {
     let rises = |from: &usize| {
         let (first, mut last, mut along) = (nodes[*from], nodes[*from], 0.0);

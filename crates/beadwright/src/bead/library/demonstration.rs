@@ -1,8 +1,8 @@
 //! Invented measurements, for trying the library before you have measured beads of your own.
 
-/// CSV of invented single beads over current and deposition speed; its first line says that they are invented. Wire 1.2
-/// mm; the wire feed follows the current along a synergic line, wire and bead hold the same metal (parabola), and λ is
-/// 2.5 to 3 at 100–150 A and 6–10 mm/s. The scatter of 1 % comes from a fixed sequence.
+/// CSV of invented single beads over current and deposition speed; its first line says that they are invented. The wire
+/// has 1.2 mm; the wire feed follows the current along a synergic line, wire and bead hold the same metal (parabola),
+/// and λ is 2.5 to 3 at 100–150 A and 6–10 mm/s. The scatter of 1 % comes from a fixed sequence.
 pub fn demonstration_csv() -> String {
     let mut csv = String::from(
         "# SYNTHETIC data for demonstration: invented by `beadwright bead example`, no bead was measured.\n\

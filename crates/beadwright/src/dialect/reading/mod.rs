@@ -69,13 +69,13 @@ pub struct ReadProgram {
 
 /// Codes that light and end the arc, besides those that a dialect knows by itself.
 ///
-/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`, `SetDO
-/// doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
+/// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`,
+/// `SetDO doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ArcCodes {
     /// Codes that light the arc.
     pub on: Vec<String>,
-    /// Codes that end it.
+    /// Codes that end the arc.
     pub off: Vec<String>,
 }
 

@@ -9,6 +9,7 @@ use super::graph::Graph;
 use crate::curve::Nurbs;
 use glam::{DMat2, DVec2, DVec3};
 use planar::medial::Node;
+use planar::polyline::distance_squared_to_segment;
 
 /// Where the radius falls by less than this per mm, it is that of the wall.
 const LEVEL: f64 = 0.02;
@@ -20,6 +21,13 @@ const WINDOW: f64 = 0.5;
 const FARTHEST: f64 = 3.0;
 /// At most this fraction of an edge is straightened at either end.
 const MOST: f64 = 0.45;
+
+/// Nodes are at most this many radii apart when a curve is fitted to them.
+const STEP: f64 = 0.5;
+/// Steps between two nodes at most.
+const MOST_STEPS: f64 = 1000.0;
+/// A fitted curve that strays from the nodes by more than this many tolerances is not taken.
+const STRAY: f64 = 4.0;
 
 /// Straightens the ends of all edges at nodes where edges meet, and moves the nodes there.
 pub fn straighten(graph: &mut Graph) {
@@ -113,15 +121,54 @@ pub fn fit(graph: &mut Graph, error: f64) {
     let degrees = graph.degrees();
     let rings: Vec<bool> = graph.edges.iter().map(|edge| graph.is_ring(edge, &degrees)).collect();
     for (edge, closed) in graph.edges.iter_mut().zip(rings) {
-        let mut points: Vec<DVec3> = edge.nodes.iter().map(|n| n.at.extend(2.0 * n.radius)).collect();
-        if closed {
-            points.pop();
-        }
-        let Ok(fit) = Nurbs::fitted(&points, closed, error) else { continue };
-        let node = |p: DVec3| Node { at: p.truncate(), radius: p.z / 2.0 };
-        edge.nodes = fit.curve.points_by_chord(error).into_iter().map(node).collect();
+        let Some(nodes) = fitted(&edge.nodes, closed, error) else { continue };
+        edge.nodes = nodes;
         if let (true, Some(first)) = (closed, edge.nodes.first()) {
             graph.places[edge.from] = first.at;
         }
     }
+}
+
+/// A smooth line near nodes, as nodes; `None` where there is none that stays near them all the way.
+fn fitted(nodes: &[Node], closed: bool, error: f64) -> Option<Vec<Node>> {
+    let mut points: Vec<DVec3> = dense(nodes).map(|node| node.at.extend(2.0 * node.radius)).collect();
+    if closed {
+        points.pop();
+    }
+    let fit = Nurbs::fitted(&points, closed, error).ok()?;
+    let node = |p: DVec3| Node { at: p.truncate(), radius: p.z / 2.0 };
+    let smooth: Vec<Node> = fit.curve.points_by_chord(error).into_iter().map(node).collect();
+    stays_near(&smooth, nodes, STRAY * error).then_some(smooth)
+}
+
+/// The nodes with more of them between those that lie far apart: between its points a fitted curve goes where it likes.
+fn dense(nodes: &[Node]) -> impl Iterator<Item = Node> + '_ {
+    let between = nodes.windows(2).flat_map(|w| {
+        let (a, b) = (w[0], w[1]);
+        let step = STEP * a.radius.max(b.radius);
+        let count = (a.at.distance(b.at) / step.max(1e-6)).ceil().clamp(1.0, MOST_STEPS) as usize;
+        (0..count).map(move |k| {
+            let part = k as f64 / count as f64;
+            Node { at: a.at.lerp(b.at, part), radius: a.radius + (b.radius - a.radius) * part }
+        })
+    });
+    between.chain(nodes.last().copied())
+}
+
+/// Whether every node of `line` lies within `tolerance` (mm) of the polyline through `nodes`; both run the same way.
+fn stays_near(line: &[Node], nodes: &[Node], tolerance: f64) -> bool {
+    let near = |p: DVec2, w: &[Node]| distance_squared_to_segment(p, w[0].at, w[1].at) <= tolerance * tolerance;
+    let mut pieces = nodes.windows(2).enumerate().cycle();
+    let mut now = pieces.next();
+    line.iter().all(|node| {
+        // Usually the piece of the node before, or the next one.
+        let found = (0..nodes.len()).find(|_| {
+            let fits = now.is_some_and(|(_, piece)| near(node.at, piece));
+            if !fits {
+                now = pieces.next();
+            }
+            fits
+        });
+        found.is_some()
+    })
 }

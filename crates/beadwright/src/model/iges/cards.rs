@@ -1,4 +1,4 @@
-//! The cards of a file: column 73 tells the section, columns 74 to 80 count within it.
+//! The cards of a file: column 73 holds the letter of the section, columns 74 to 80 count within it.
 
 use super::IgesError;
 

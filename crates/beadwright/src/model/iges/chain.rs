@@ -1,6 +1,6 @@
-//! The parts of a composite, one behind the other.
+//! Puts the parts of a composite in sequence.
 //!
-//! The standard wants them in order and direction; some programs (Parasolid among them) write them in another.
+//! The standard requires them in order and direction; some programs (Parasolid among them) write them otherwise.
 
 use crate::curve::Nurbs;
 use glam::DVec3;
@@ -10,13 +10,13 @@ use std::collections::VecDeque;
 pub(super) enum Chain {
     /// As the standard wants them.
     InOrder(Vec<Nurbs>),
-    /// They meet, in another order or direction, and stand here as they meet.
+    /// They meet, but in another order or direction; here they are in the order in which they meet.
     Reordered(Vec<Nurbs>),
-    /// They do not meet; the widest gap as they were listed, in units of the file.
+    /// They do not meet; with the widest gap between the parts as listed, in units of the file.
     Gap(Vec<Nurbs>, f64),
 }
 
-/// Puts parts in order whose ends lie within `tolerance` of each other.
+/// Puts parts in order; ends within `tolerance` of each other meet.
 pub(super) fn join(parts: Vec<Nurbs>, tolerance: f64) -> Chain {
     let ends: Vec<[DVec3; 2]> = parts.iter().map(ends).collect();
     let widest = ends.windows(2).map(|w| w[0][1].distance(w[1][0])).fold(0.0, f64::max);
@@ -37,7 +37,7 @@ fn ends(curve: &Nurbs) -> [DVec3; 2] {
     [curve.point(start), curve.point(end)]
 }
 
-/// Numbers of the parts as they meet, and whether each runs backwards; the first part keeps its direction.
+/// Indices of the parts in the order in which they meet, and whether each runs backwards; the first one does not.
 fn order(ends: &[[DVec3; 2]], tolerance: f64) -> Option<VecDeque<(usize, bool)>> {
     let mut order = VecDeque::from([(0, false)]);
     let [mut head, mut tail] = *ends.first()?;

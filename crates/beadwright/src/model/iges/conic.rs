@@ -6,7 +6,7 @@ use crate::curve::Nurbs;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use std::f64::consts::TAU;
 
-/// Ends of an ellipse nearer than this share of its size are one, and it is whole.
+/// Ends of an ellipse closer than this share of its size coincide: the ellipse is complete.
 const SAME: f64 = 1e-9;
 
 /// Reads a conic arc: six coefficients, z, start and end. An ellipse runs counter-clockwise.

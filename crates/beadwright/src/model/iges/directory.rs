@@ -3,7 +3,7 @@
 use super::cards::Card;
 use super::{Dependence, IgesError};
 
-/// One entity, as the directory tells of it.
+/// One entity, as the directory describes it.
 #[derive(Debug, Clone)]
 pub(super) struct Entry {
     /// Number of its first D card, by which others point to it.
@@ -81,7 +81,7 @@ fn integer(card: &Card, number: usize) -> Result<i64, IgesError> {
     }
 }
 
-/// The eight status digits as one number; blanks are zeros, and what is no number stands for none.
+/// The eight status digits as one number; blanks are zeros, and a field that is not a number counts as 0.
 fn status(card: &Card) -> u32 {
     let digits: String = field(card, 9).replace(' ', "0");
     digits.parse().unwrap_or_default()

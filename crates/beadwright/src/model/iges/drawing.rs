@@ -1,4 +1,4 @@
-//! A drawing from its sections: every entity in place, composites from their members, and what was not read.
+//! A drawing built from its sections: every entity in place, composites from their members, and what was not read.
 
 use super::cards::{self, Card};
 use super::chain::{self, Chain};
@@ -13,10 +13,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Columns of a parameter card that hold data.
 const WIDTH: usize = 64;
 
-/// A matrix may be placed by another, and so on, this often.
+/// Most matrices in a chain, each placed by the next.
 const MAX_CHAIN: usize = 32;
 
-/// Parts of a composite meet when they gape by no more, mm (or ten times the file's own resolution).
+/// Parts of a composite meet when their gap is no wider than this, mm (or ten times the file's own resolution).
 const GAP_MM: f64 = 0.01;
 
 const COMPOSITE: u32 = 102;
@@ -24,7 +24,7 @@ const MATRIX: u32 = 124;
 const PROPERTY: u32 = 406;
 const NAME_FORM: i32 = 15;
 
-/// Reads the curves of an IGES file of fixed format and lists all else.
+/// Reads the curves of an IGES file of fixed format and lists everything else.
 ///
 /// A broken entity is passed over with a warning; a broken file is refused.
 ///
@@ -117,7 +117,7 @@ impl Drawing<'_> {
         format!("{} at directory entry D{}", names::name(self.entries[i].entity), self.entries[i].number)
     }
 
-    /// Index of the entry that a pointer means.
+    /// Index of the entry that a pointer refers to.
     fn entry(&self, pointer: i64) -> Result<usize, String> {
         let index = usize::try_from(pointer.unsigned_abs()).unwrap_or(usize::MAX);
         match index % 2 == 1 && index / 2 < self.entries.len() {
@@ -154,7 +154,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The matrices that place an entity, the last one applied first on the left.
+    /// The product of the matrices that place an entity; each one that follows in the chain is multiplied on the left.
     fn matrix(&self, mut pointer: i64) -> Result<DAffine3, String> {
         let mut place = DAffine3::IDENTITY;
         for _ in 0..MAX_CHAIN {
@@ -172,7 +172,7 @@ impl Drawing<'_> {
         Err("its matrices point to each other in a circle".to_owned())
     }
 
-    /// A curve that is no composite, in place.
+    /// A curve that is not a composite, in place.
     fn single(&mut self, i: usize) -> Result<Placed, String> {
         let parameters = self.parameters(i)?;
         let (curve, last) = entities::curve(self.entries[i].entity, self.entries[i].form, &parameters)?;
@@ -216,7 +216,7 @@ impl Drawing<'_> {
         Ok((parts, self.name_property(&parameters, 1 + count)))
     }
 
-    /// The parts as they meet; says so when that is not as they are listed, or when they do not.
+    /// The parts in the order in which they meet; warns when they are listed in another order, or do not meet.
     fn joined(&mut self, i: usize, parts: Vec<Nurbs>) -> Vec<Nurbs> {
         let unit = self.global.unit_mm;
         let place = self.place(i);
@@ -249,8 +249,8 @@ impl Drawing<'_> {
         flagged.chain(pointed).collect()
     }
 
-    /// The name that a property gives: behind the parameters stand the number of associativities and pointers to
-    /// them, then the same of properties.
+    /// The name that a property gives. After an entity's own parameters come the number of associativities and pointers
+    /// to them, then the same for properties.
     fn name_property(&mut self, parameters: &Parameters, last: usize) -> Option<String> {
         let associativities = parameters.count(last + 1, 1).ok()?;
         let at = last + 2 + associativities;
@@ -293,7 +293,7 @@ impl Drawing<'_> {
         counts.into_iter().map(counted).collect()
     }
 
-    /// Kinds that are not read at all; single failures have their own warnings.
+    /// Warns of kinds that are not read at all; single failures have their own warnings.
     fn warn_of_unread(&mut self, counts: &[EntityCount]) {
         for EntityCount { entity, name, unread, .. } in counts {
             let is_read = entities::is_curve(*entity) || matches!(*entity, COMPOSITE | MATRIX);

@@ -1,5 +1,5 @@
-//! Curves and matrices from their parameters, in the unit and the plane of the entity. Numbers of parameters are
-//! those of the standard: 0 is the entity type.
+//! Curves and matrices from their parameters, in the unit and the plane of the entity. Parameters are numbered as in
+//! the standard: 0 is the entity type.
 
 use super::conic;
 use super::free_format::Parameters;
@@ -7,16 +7,16 @@ use crate::curve::Nurbs;
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use std::f64::consts::TAU;
 
-/// Ends of an arc nearer than this share of its radius are one: the arc is a circle.
+/// Ends of an arc closer than this share of its radius coincide: the arc is a circle.
 const SAME: f64 = 1e-9;
 
 /// Radii of the ends of an arc may differ by this share.
 const ROUND: f64 = 1e-3;
 
-/// Pieces of a parametric spline may gape by this share of its extent.
+/// Gaps between the pieces of a parametric spline may be as wide as this share of its extent.
 const GAP: f64 = 1e-4;
 
-/// A curve, and the number of its last own parameter: pointers to properties follow behind.
+/// A curve, and the number of its last own parameter, after which pointers to properties follow.
 pub(super) type Read = Result<(Nurbs, usize), String>;
 
 /// Whether entities of this type are curves that [`curve`] reads.
@@ -131,7 +131,7 @@ fn parametric_spline(p: &Parameters) -> Read {
 fn spline(p: &Parameters) -> Read {
     let upper = p.count(1, 5)?;
     let degree = usize::try_from(p.integer(2)?).map_err(|_| "its degree is negative".to_owned())?;
-    // Checked here, as a huge one would ask for as many knots.
+    // Checked here, because a huge degree would ask for as many knots.
     if degree > upper {
         return Err(format!("it has {} control points, too few for its degree {degree}", upper + 1));
     }

@@ -1,4 +1,4 @@
-//! Free-format parameters: fields between delimiters, over many cards, with strings that tell their own length.
+//! Free-format parameters: fields between delimiters, over many cards, with strings that state their own length.
 
 use super::cards::Card;
 
@@ -7,14 +7,14 @@ use super::cards::Card;
 pub(super) struct Delimiters {
     /// Between parameters, usually a comma.
     pub(super) parameter: u8,
-    /// Behind the last, usually a semicolon.
+    /// After the last parameter, usually a semicolon.
     pub(super) record: u8,
 }
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]
 enum Field {
-    /// Left out: the default holds.
+    /// Left out: the default applies.
     Empty,
     /// A Hollerith string, `5Hwords`.
     Text(String),
@@ -28,7 +28,7 @@ pub(super) struct Parameters {
     fields: Vec<(Field, usize)>,
 }
 
-/// The columns of many cards as one text; cards shorter than `width` are filled up with blanks.
+/// The columns of many cards as one text; cards shorter than `width` are padded with blanks.
 pub(super) struct Text {
     bytes: Vec<u8>,
     /// Line of the first card and how many columns each has: card k stands on the k-th of the given lines.
@@ -141,7 +141,7 @@ impl Parameters {
     /// Parameter `i` as the number of things that follow, of which each takes `size` parameters.
     ///
     /// # Errors
-    /// As [`Parameters::real`], and when the record is too short for so many.
+    /// As [`Parameters::real`], and when the record is too short for that many.
     pub(super) fn count(&self, i: usize, size: usize) -> Result<usize, String> {
         let value = self.integer(i)?;
         let room = self.len().saturating_sub(i + 1) / size.max(1);

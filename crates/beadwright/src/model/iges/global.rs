@@ -7,19 +7,19 @@ use super::free_format::{Delimiters, Parameters, Text};
 /// Columns of a global card that hold data.
 const WIDTH: usize = 72;
 
-/// What the rest of the file is read by.
+/// What is needed to read the rest of the file.
 #[derive(Debug)]
 pub(super) struct Global {
     pub(super) delimiters: Delimiters,
     /// Millimetres in one unit of the coordinates, the scale of the drawing taken out.
     pub(super) unit_mm: f64,
-    /// Points nearer than this are one, mm.
+    /// Points closer than this coincide, mm.
     pub(super) resolution_mm: f64,
     /// Writing program.
     pub(super) system: String,
 }
 
-/// Reads the global section; `warnings` takes what can be lived with.
+/// Reads the global section; `warnings` receives the faults that can be tolerated.
 ///
 /// # Errors
 /// [`IgesError::Global`] and [`IgesError::Unit`].

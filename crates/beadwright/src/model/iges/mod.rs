@@ -1,4 +1,4 @@
-//! IGES, fixed format: the curves of a drawing, and a list of everything else that stands in it.
+//! IGES, fixed format: the curves of a drawing, and a list of everything else in it.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -61,14 +61,14 @@ pub struct IgesCurve {
     pub name: String,
     /// Level (layer) number; negative when it points to a list of levels.
     pub level: i32,
-    /// The geometry, mm, in place: one curve, or those of a composite one behind the other as they meet. Copious data of forms 1
-    /// to 3 are points in order and become the polyline through them.
+    /// The geometry, mm, in place: one curve, or the curves of a composite in the order in which they meet. Copious
+    /// data of forms 1 to 3 are points in order and become the polyline through them.
     pub parts: Vec<Nurbs>,
     /// Whether another entity owns or refers to this one.
     pub dependence: Dependence,
     /// Whether the entity is shown (not blanked).
     pub is_visible: bool,
-    /// Whether the curve lies in the parameter plane of a surface; then its coordinates are no lengths and keep the
+    /// Whether the curve lies in the parameter plane of a surface; its coordinates are then not lengths and keep the
     /// numbers of the file.
     pub is_parametric: bool,
 }
@@ -100,7 +100,7 @@ pub struct EntityCount {
 }
 
 impl IgesFile {
-    /// The curves that stand for themselves: shown, in space, and no part of another entity.
+    /// The curves that stand for themselves: shown, in space, and not part of another entity.
     pub fn independent_curves(&self) -> impl Iterator<Item = &IgesCurve> {
         let stands = |d| matches!(d, Dependence::Independent | Dependence::Logical);
         self.curves.iter().filter(move |c| c.is_visible && !c.is_parametric && stands(c.dependence))
@@ -113,7 +113,7 @@ pub enum IgesError {
     /// The file is empty.
     #[error("the file is empty (0 bytes). Export the drawing again.")]
     Empty,
-    /// Nothing known.
+    /// Not an IGES file.
     #[error("this is not an IGES file: {reason}. Save the drawing as IGES (fixed format, ASCII) and try again.")]
     NotIges {
         /// What speaks against it, with the line.

@@ -4,7 +4,7 @@ use crate::curve::Nurbs;
 use glam::DVec3;
 use std::fmt::Write;
 
-/// What stands at the head of a written file.
+/// What a written file says in its head.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WriteOptions {
     /// Name of the file, as the file itself tells it. Default: `curves.igs`.
@@ -22,14 +22,14 @@ impl Default for WriteOptions {
 /// Longest label in a directory entry; longer names are cut.
 const LABEL: usize = 8;
 
-/// A curve is plane when its control points leave the plane by less than this share of its extent.
+/// A curve is planar when its control points leave the plane by less than this share of its extent.
 const FLAT: f64 = 1e-9;
 
 /// Columns for data on global and on parameter cards.
 const GLOBAL_WIDTH: usize = 72;
 const PARAMETER_WIDTH: usize = 64;
 
-/// Columns for the count of a string, which is never parted.
+/// Columns for the length of a string, which is never split.
 const COUNT: usize = 8;
 
 /// An IGES file of named curves, mm. Characters beyond ASCII become question marks.
@@ -149,7 +149,7 @@ fn real(value: f64) -> String {
     }
 }
 
-/// Fields with their delimiters on lines of at most `width` columns; a string that is longer runs over.
+/// Fields with their delimiters on lines of at most `width` columns; a longer string continues on the next line.
 fn wrapped(fields: &[String], width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for (i, field) in fields.iter().enumerate() {
