@@ -22,6 +22,9 @@ pub enum WarningKind {
     /// Part of the slice is narrower than the narrowest bead and gets such a bead, which reaches outside; the size is
     /// its area, mm².
     ThinWall,
+    /// The strategy could not fill an island (its passes left it, crossed, or were none), and contours fill it instead; the
+    /// size is its area, mm².
+    Refilled,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,
     /// A layer between the lowest and the highest holds nothing.
@@ -119,6 +122,11 @@ impl WarningSummary {
             WarningKind::IslandTooSmall => format!(
                 "{layers}: {} narrower than a bead left out, {total:.1} mm² in all, the largest {size:.1} mm² \
                  {place}. A narrower bead or a larger part would be needed.",
+                times("island", "islands")
+            ),
+            WarningKind::Refilled => format!(
+                "{layers}: {} that the strategy could not fill without leaving the outline or crossing its own passes, \
+                 filled with contours instead, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::PassTooShort => format!(

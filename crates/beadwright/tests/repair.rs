@@ -237,7 +237,7 @@ fn every_fault_is_told_in_a_sentence() {
     let words = [
         "1 triangle without",
         "2 duplicate",
-        "3 vertices welded",
+        "3 vertices merged",
         "4 open",
         "5 edges",
         "6 triangles wound",

@@ -13,11 +13,14 @@ impl Strategy for Contour {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        thin::around(island, settings, |part, settings| {
-            let (rings, _) = rings(settings.outermost(part), settings, u32::MAX);
-            Fill { stages: settings.ordered(rings), fixed_order: false }
-        })
+        thin::around(island, settings, rings_only)
     }
+}
+
+/// The rings alone, without beads along walls too thin for them: they stay inside and cross nothing by construction.
+pub fn rings_only(island: &Polygon, settings: &FillSettings) -> Fill {
+    let (rings, _) = rings(settings.outermost(island), settings, u32::MAX);
+    Fill { stages: settings.ordered(rings), fixed_order: false }
 }
 
 /// Up to `count` rings from `outermost` inwards, and the region that the innermost ones bound.

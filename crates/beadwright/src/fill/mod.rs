@@ -19,6 +19,7 @@ pub mod contour;
 pub mod hybrid;
 pub mod one_loop;
 pub mod raster;
+pub mod sound;
 pub mod thin;
 pub mod trails;
 pub mod wall;

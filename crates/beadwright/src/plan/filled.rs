@@ -1,6 +1,8 @@
 //! A slice with its passes, and the places in it that a bead cannot reach.
 
 use super::scan_lines::Planned;
+use crate::fill::contour::{Contour, rings_only};
+use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
 use crate::slice::Slice;
@@ -34,6 +36,14 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
             slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
         }
         let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
+        if let Some(place) = unsound(&fill, island, settings, reached) {
+            fill = Contour.fill(island, settings);
+            if unsound(&fill, island, settings, reached).is_some() {
+                fill = rings_only(island, settings);
+            }
+            let (kind, size) = (WarningKind::Refilled, island.area());
+            slice.warnings.push(Warning { kind, layer: slice.index, place, size });
+        }
         if reached > 0.0 && fill.stages.iter().all(Vec::is_empty) {
             // Wide enough for a bead, but with room for neither a ring nor a wall.
             let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
@@ -49,6 +59,22 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         fills.push(fill);
     }
     Filled { slice, fills, planned_area }
+}
+
+/// Where the passes of a strategy cannot be welded: they leave the island or cross. An island with room for two beads side
+/// by side that was left empty counts too.
+fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64) -> Option<DVec2> {
+    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+    if paths.is_empty() {
+        let wide = reached > 0.0 && !settings.outermost(island).is_empty();
+        return wide.then(|| Bounds::of(island.outer.points().iter().copied()).map(|b| b.center())).flatten();
+    }
+    if !paths.iter().any(|path| sound::needs_check(path)) {
+        return None;
+    }
+    sound::fault(&paths, island, settings.machining_allowance).map(|fault| match fault {
+        Fault::Outside { place, .. } | Fault::Crossing { place } => place,
+    })
 }
 
 /// Leaves out passes that are too short to weld, with a warning.

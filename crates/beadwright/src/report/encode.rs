@@ -165,6 +165,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::ContoursUnited => format!("contours united, {size:.1} mm² changed"),
         WarningKind::ThinFeature => format!("{size:.1} mm² narrower than a bead left empty"),
         WarningKind::ThinWall => format!("{size:.1} mm² of wall thinner than the narrowest bead"),
+        WarningKind::Refilled => format!("island of {size:.1} mm² filled with contours instead"),
         WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
         WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),

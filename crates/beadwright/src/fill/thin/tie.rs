@@ -5,8 +5,8 @@
 //! component.
 
 use super::{End, ThinLimits, ThinWall};
-use crate::fill::Path;
 use crate::fill::trails::{Dart, Network, Trail, other_end, trails};
+use crate::fill::{Path, sound};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::polyline;
@@ -33,11 +33,21 @@ pub struct TieSettings {
     pub shortest: f64,
 }
 
-/// Joins passes and walls into the fewest passes.
+/// Joins passes and walls into the fewest passes. Where they would then cross, as in corners hardly wider than a bead, the
+/// walls stay passes of their own.
 pub fn tie(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
     if walls.is_empty() {
         return passes;
     }
+    let together = tied(passes.clone(), walls, settings);
+    let lines: Vec<Vec<DVec2>> = together.iter().map(Path::path).collect();
+    if sound::crossings(&lines).next().is_none() {
+        return together;
+    }
+    passes.into_iter().chain(tied(Vec::new(), walls, settings)).collect()
+}
+
+fn tied(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
     let mut graph = Graph { width: settings.limits.bead_width, ..Graph::default() };
     let lines: Vec<Line> = passes.iter().map(Line::of_pass).collect();
     let mut places: Vec<Vec<Place>> = vec![Vec::new(); passes.len()];

@@ -1,0 +1,121 @@
+//! Whether the passes of an island can be welded at all: they stay inside it and do not cross each other.
+//!
+//! Offsets of the outline and scan lines clipped by it keep both by construction: contours and infill of one width.
+//! Everything else, lines placed by fields or fitted curves, is checked after filling, so that a fault of a strategy never
+//! reaches a robot.
+
+use super::Path;
+use crate::pass::{Along, PassKind};
+use glam::DVec2;
+use planar::Polygon;
+use rstar::primitives::{GeomWithData, Line};
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+/// Centre-lines may leave the outline by this much, mm: coordinates are rounded.
+pub const TOLERANCE_MM: f64 = 0.01;
+
+/// A piece of a path: number of the path, number of the piece in it.
+type Piece = GeomWithData<Line<[f64; 2]>, (usize, usize)>;
+
+/// What is wrong with the passes of an island.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// A centre-line leaves the island.
+    Outside {
+        /// Where, mm.
+        place: DVec2,
+        /// By how much, mm.
+        by: f64,
+    },
+    /// Two passes cross, or one crosses itself.
+    Crossing {
+        /// Where, mm.
+        place: DVec2,
+    },
+}
+
+/// Whether a path is placed otherwise than by an offset or a clipped scan line.
+pub fn needs_check(path: &Path) -> bool {
+    let plain = matches!(path.kind, PassKind::Contour | PassKind::Infill) && matches!(path.width, Along::Same(_));
+    !plain
+}
+
+/// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm.
+pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
+    outside(paths, island, allowance).or_else(|| {
+        let lines: Vec<Vec<DVec2>> = paths.iter().map(|path| path.path()).collect();
+        crossings(&lines).next().map(|(_, _, place)| Fault::Crossing { place })
+    })
+}
+
+/// The place where a path is farthest outside.
+fn outside(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
+    let edges = island.rings().flat_map(|ring| ring.edges()).map(|(a, b)| Line::new(a.to_array(), b.to_array()));
+    let tree = RTree::bulk_load(edges.collect());
+    let by = |p: DVec2| {
+        let outside = p.is_finite() && !island.contains(p);
+        let distance = || tree.nearest_neighbor(&p.to_array()).map_or(0.0, |edge| edge.distance_2(&p.to_array()));
+        if outside { distance().sqrt() } else { 0.0 }
+    };
+    // A path that meets no edge lies inside as its first point does.
+    let meets = |a: DVec2, b: DVec2| {
+        let around = Line::new(a.to_array(), b.to_array()).envelope();
+        tree.locate_in_envelope_intersecting(&around).next().is_some()
+    };
+    let suspects = paths.iter().flat_map(|path| {
+        let path = path.path();
+        let step = path.first().copied().into_iter();
+        let near = path.windows(2).filter(|w| meets(w[0], w[1])).flat_map(|w| {
+            let count = (w[0].distance(w[1]) / SAMPLE_MM).ceil().clamp(1.0, MOST_SAMPLES) as usize;
+            (0..=count).map(|k| w[0].lerp(w[1], k as f64 / count as f64)).collect::<Vec<_>>()
+        });
+        step.chain(near.collect::<Vec<_>>()).collect::<Vec<_>>()
+    });
+    let worst = suspects.map(|p| (p, by(p))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let lost = paths.iter().flat_map(|path| &path.points).find(|p| !p.is_finite());
+    match lost {
+        Some(&place) => Some(Fault::Outside { place, by: f64::INFINITY }),
+        None => (worst.1 > allowance.max(0.0) + TOLERANCE_MM).then_some(Fault::Outside { place: worst.0, by: worst.1 }),
+    }
+}
+
+/// Distance of the places at which a piece near the outline is looked at, mm.
+const SAMPLE_MM: f64 = 0.25;
+/// No piece is looked at in more places.
+const MOST_SAMPLES: f64 = 4000.0;
+
+/// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
+/// Neighbouring pieces, and touching ends, do not count.
+pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DVec2)> {
+    let pieces = lines.iter().enumerate().flat_map(|(i, line)| {
+        let ends =
+            move |(k, w): (usize, &[DVec2])| GeomWithData::new(Line::new(w[0].to_array(), w[1].to_array()), (i, k));
+        line.windows(2).filter(|w| w[0].is_finite() && w[1].is_finite()).enumerate().map(ends)
+    });
+    let tree: RTree<Piece> = RTree::bulk_load(pieces.collect());
+    let mut found: Vec<(usize, usize, DVec2)> = Vec::new();
+    for piece in &tree {
+        let around: AABB<[f64; 2]> = piece.envelope();
+        for other in tree.locate_in_envelope_intersecting(&around) {
+            let ((i, k), (j, l)) = (piece.data, other.data);
+            if (j < i || (j == i && l + 1 < k))
+                && let Some(place) = crossing(piece, other)
+            {
+                found.push((i, j, place));
+            }
+        }
+    }
+    found.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.x.total_cmp(&b.2.x)));
+    found.into_iter()
+}
+
+/// Where two pieces cross, their ends not counted.
+fn crossing(a: &Piece, b: &Piece) -> Option<DVec2> {
+    const INNER: f64 = 1e-6;
+    let [p, q, r, s] = [a.geom().from, a.geom().to, b.geom().from, b.geom().to].map(DVec2::from);
+    let (u, v) = (q - p, s - r);
+    let across = u.perp_dot(v);
+    let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
+    let inside = |x: f64| (INNER..1.0 - INNER).contains(&x);
+    (across != 0.0 && inside(t) && inside(w)).then(|| p + u * t)
+}
