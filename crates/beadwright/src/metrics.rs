@@ -43,6 +43,8 @@ pub struct Metrics {
     pub planned_area_mm2: f64,
     /// Volume of the layers, mm³.
     pub part_volume_mm3: f64,
+    /// Volume of the part's mesh, mm³; none where it is not closed, and for curves.
+    pub mesh_volume_mm3: Option<f64>,
     /// Volume of the beads, mm³.
     pub deposited_volume_mm3: f64,
     #[serde(skip)]
@@ -87,6 +89,7 @@ impl Metrics {
             slice_area_mm2: 0.0,
             planned_area_mm2: 0.0,
             part_volume_mm3: 0.0,
+            mesh_volume_mm3: None,
             deposited_volume_mm3: 0.0,
             rates,
             torch: Torch::of(&profile.weld_settings()),

@@ -48,7 +48,9 @@ fn a_preview_shows_the_layer_of_the_plan() {
             let planned = &plan.layers[index];
             assert_eq!((seen.index, seen.z, seen.height), (planned.index, planned.z, planned.height), "{values:?}");
             assert_eq!(seen.islands, planned.islands);
-            assert_eq!(points(&seen).len(), points(planned).len(), "{values:?}, layer {index}");
+            // A closed pass may begin at a new point of its own.
+            let [count, expected] = [points(&seen).len(), points(planned).len()];
+            assert!(count.abs_diff(expected) <= planned.passes.len(), "{values:?}, layer {index}");
             let apart = points(&seen).iter().zip(&points(planned)).any(|(a, b)| a != b);
             // Where wall trails and closed passes begin may repeat a point; the metal is the same.
             let length = |layer: &Layer| layer.passes.iter().map(|p| p.length()).sum::<f64>();

@@ -14,6 +14,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::planar::triangulate::triangulate;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::profile::Profile;
+use beadwright::slice::LayerFit;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use common::profile_by;
@@ -88,6 +89,32 @@ fn case_1602_no_island_is_lost_by_the_strategy() {
 #[cfg_attr(no_models, ignore = "no shared cases")]
 fn case_1603_the_hybrid_does_not_cross_itself() {
     is_sound(&planned("hybrid_crossing.stl", "hybrid"), "hybrid_crossing");
+}
+
+#[test]
+#[cfg_attr(no_models, ignore = "no shared cases")]
+fn case_1604_what_is_left_of_the_height_is_told() {
+    let mesh = import(&case("box60x60x2.99.stl"), &Task::new()).unwrap().mesh;
+    let plan_by = |fit: LayerFit| {
+        let mut profile = profile_by("cmt-al2319-kuka", "loop");
+        profile.layers.fit = fit;
+        let found = plan::plan("box", &mesh, &profile, &Task::new()).unwrap();
+        assert!(!found.layers.iter().any(|layer| layer.passes.is_empty()));
+        let sound = |finding: &beadwright::Finding| finding.check != "wire-balance";
+        let settings = plan::deposit_settings(&profile);
+        assert!(beadwright::check(&found.layers, &profile, settings, &Task::new()).unwrap().iter().all(sound));
+        found
+    };
+    let told = |plan: &Plan| plan.summary.notes.iter().find(|note| note.contains("mm high")).cloned();
+    let fixed = plan_by(LayerFit::Fixed);
+    assert!(fixed.layers.len() == 1 && told(&fixed).unwrap().contains("0.99 mm (33.1 %) are not built"), "{fixed:?}");
+    let last = plan_by(LayerFit::Last);
+    assert!(last.layers.len() == 2 && told(&last).unwrap().contains("1.01 mm (33.8 %) above it"));
+    let even = plan_by(LayerFit::Even);
+    assert!((even.layers.last().unwrap().z - 2.99).abs() < 1e-6 && told(&even).is_none());
+    let metal = |plan: &Plan| plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.mesh_volume_mm3.unwrap();
+    assert!((metal(&even) / (metal(&fixed) * 2.99 / 2.0) - 1.0).abs() < 0.02, "the metal follows the layers' height");
+    assert_eq!(even.layers.len(), 2);
 }
 
 /// A plan of islands without a mesh: two layers, as they are filled.

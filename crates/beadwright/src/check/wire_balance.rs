@@ -19,8 +19,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let nominal = profile.mass_balance().warning().map(|text| Finding::of_plan(&CHECK, text));
     let (bead, law, process) = (profile.bead(), &profile.bead.law, &profile.process);
     let fitting = |width: f64| process.deposition_speed * law.pace(&bead, width);
-    let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
     let along = subject.passes().filter_map(|(layer, i, pass)| {
+        let fitting = |width: f64| fitting(width) * profile.pace_in(layer.height);
+        let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
         let s = pass.segments().find(off)?;
         let (width, fitting) = (s.width, fitting(s.width));
         let text = match process.follow {

@@ -27,11 +27,11 @@ use crate::fill::{self, Path, Strategy};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
-use crate::model::{Mesh, PartRef};
+use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
 use crate::order;
 use crate::pass::Pass;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, Slab, Slice, Slicer};
+use crate::slice::{self, BATCH, LayerFit, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, Warnings};
 use crate::weld;
@@ -241,6 +241,7 @@ pub fn plan_with<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let slabs = slabs_of(mesh, profile, task)?;
+    let left = left_over(mesh, &slabs, profile);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
@@ -251,7 +252,7 @@ pub fn plan_with<S: Sink + Send>(
         };
         planned.into_par_iter().map(fill).collect()
     };
-    let summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
+    let mut summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         let largest = mesh.size();
         return Err(PlanError::Empty(format!(
@@ -260,7 +261,34 @@ pub fn plan_with<S: Sink + Send>(
             profile.bead.width, largest.x, largest.y, largest.z
         )));
     }
+    let closed = mesh.neighbours.iter().flatten().all(|&across| across != NO_NEIGHBOUR);
+    summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| closed && *volume > 0.0);
+    summary.notes.splice(0..0, left);
     Ok(summary)
+}
+
+/// How far the last layer ends below or above the part, as a sentence where it matters.
+fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Option<String> {
+    /// Fraction of the height.
+    const WORTH_TELLING: f64 = 0.005;
+    let (top, last) = (mesh.bounds().1.z, slabs.last()?.z);
+    let (left, percent) = ((top - last).abs(), 100.0 * (top - last).abs() / top);
+    if left <= WORTH_TELLING * top {
+        return None;
+    }
+    let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
+    let ends = format!("The part is {top:.2} mm high, {layers} at {last:.2} mm");
+    Some(if last < top {
+        let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
+        let each = even.first().map_or(0.0, |slab| slab.height);
+        format!(
+            "{ends}: the upper {left:.2} mm ({percent:.1} %) are not built. layers.fit = \"last\" adds a layer, \"even\" \
+             makes {} layers of {each:.3} mm.",
+            even.len()
+        )
+    } else {
+        format!("{ends}: {left:.2} mm ({percent:.1} %) above it.")
+    })
 }
 
 /// The middle of a part, seen from above.
@@ -280,7 +308,7 @@ fn slabs_of<E>(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>,
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
-        None => slice::even_slabs(mesh, profile.layers.height),
+        None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }
 
@@ -395,7 +423,7 @@ impl<S: Sink> Emitter<'_, S> {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
         let (nominal, law) = (self.profile.bead(), &self.profile.bead.law);
-        let pace = self.profile.process.deposition_speed;
+        let pace = self.profile.process.deposition_speed * self.profile.pace_in(height);
         let lift = |path: Path| Pass {
             kind: path.kind,
             closed: path.closed,

@@ -1,6 +1,7 @@
 //! The section `[layers]`.
 
 use crate::limit::{Limit, limits};
+use crate::slice::LayerFit;
 use serde::{Deserialize, Serialize};
 
 /// The layers.
@@ -10,6 +11,11 @@ use serde::{Deserialize, Serialize};
 pub struct LayersSection {
     /// Thickness of a layer, mm; for walls it is used only where their layer heights are not predicted (`foretell`).
     pub height: f64,
+    /// How the layers fit the height of a solid: `fixed` (layers of this thickness, as many as come nearest to the
+    /// height), `last` (one more layer where the part would end above the last), or `even` (the nearest number of equal
+    /// layers, each laid at the pace that fills it); default fixed. What is left over is told.
+    #[serde(default)]
+    pub fit: LayerFit,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
     /// thickness apart: `auto` (for the strategy `wall` only), `always` or `never`; default auto.
     #[serde(default)]

@@ -38,7 +38,7 @@ use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::process::{Process, StartStop, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer};
-use crate::slice::SliceOptions;
+use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -164,6 +164,13 @@ impl Profile {
             Foretell::Never => false,
         };
         foretold.then(|| WallBead::new(self.bead.width, self.bead.height)).transpose()
+    }
+
+    /// Pace in a layer of that thickness (mm), as a multiple of the pace in a nominal layer: layers fitted evenly to a part
+    /// get the metal that fills them.
+    pub fn pace_in(&self, height: f64) -> f64 {
+        let fitted = self.layers.fit == LayerFit::Even && self.wall_bead().is_ok_and(|wall| wall.is_none());
+        if fitted && height > 0.0 { self.layers.height / height } else { 1.0 }
     }
 
     /// Distance between neighbouring centre-lines, mm.

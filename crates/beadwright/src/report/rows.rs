@@ -6,6 +6,7 @@ use crate::number::hours;
 
 /// The totals as people read them.
 pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
+    let part = m.mesh_volume_mm3.unwrap_or(m.part_volume_mm3);
     let mut rows = vec![
         ("layers", format!("{}", m.layers)),
         ("passes (arc starts)", format!("{}", m.passes)),
@@ -14,7 +15,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("arc time", hours(m.arc_time_s)),
         ("total time", hours(m.total_time_s)),
         ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
-        ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, m.part_volume_mm3 / 1e3)),
+        ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, part / 1e3)),
         ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
     if m.dwell_time_s > 0.0 {

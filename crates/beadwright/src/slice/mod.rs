@@ -20,6 +20,7 @@ use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::{FillRule, Polygon, Region, Ring};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Mutex;
 use trace::{Cut, Scratch, Trace};
@@ -69,6 +70,40 @@ pub struct Slab {
     pub height: f64,
 }
 
+/// How layers fit the height of a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum LayerFit {
+    /// Layers of the given thickness, as many as come nearest to the height.
+    #[default]
+    Fixed,
+    /// Layers of the given thickness, with one more where the part would end above the last.
+    Last,
+    /// The same number of equal layers that end with the part.
+    Even,
+}
+
+/// Layers of about one height (mm) for a mesh that stands on z = 0, fitted to its height.
+pub fn fitted_slabs(mesh: &Mesh, height: f64, fit: LayerFit) -> Vec<Slab> {
+    let top = mesh.bounds().1.z.max(0.0);
+    let slabs = |count: usize, height: f64| (0..count).map(|k| Slab { z: (k + 1) as f64 * height, height }).collect();
+    // No layer is more than a quarter thicker than it should be.
+    let nearest = (top / height - 0.5).max(top / (THICKEST * height)).ceil().max(1.0);
+    match fit {
+        LayerFit::Fixed => even_slabs(mesh, height),
+        LayerFit::Last => slabs((top / height - ROUNDING).ceil().max(1.0) as usize, height),
+        LayerFit::Even if top > 0.0 => slabs(nearest as usize, top / nearest),
+        LayerFit::Even => even_slabs(mesh, height),
+    }
+}
+
+/// Equal layers are at most this many times as thick as they should be.
+const THICKEST: f64 = 1.25;
+
+/// A last layer thinner than this fraction of a layer is rounding.
+const ROUNDING: f64 = 1e-3;
+
 /// Layers of one height (mm) for a mesh that stands on z = 0. A last layer that would be less than half full is left
 /// out: its middle lies above the part.
 pub fn even_slabs(mesh: &Mesh, height: f64) -> Vec<Slab> {
@@ -109,7 +144,13 @@ impl<'a> Slicer<'a> {
     pub fn of_slabs(mesh: &'a Mesh, slabs: Vec<Slab>, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
         task.step(Stage::Slice, 0.0)?;
         let (h, count) = (options.layer_height, slabs.len());
-        let planes: Vec<f64> = slabs.iter().map(|slab| slab.z - slab.height / 2.0).collect();
+        let top = mesh.bounds().1.z;
+        // A layer whose middle lies above the part is cut in the middle of what it holds of the part.
+        let plane = |slab: &Slab| {
+            let (low, middle) = (slab.z - slab.height, slab.z - slab.height / 2.0);
+            if middle >= top && low < top { low.midpoint(top) } else { middle }
+        };
+        let planes: Vec<f64> = slabs.iter().map(plane).collect();
         let levels: Vec<u32> = mesh.vertices.par_iter().map(|v| level(&planes, h, v.z)).collect();
         task.check()?;
         let batches = |t: &[u32; 3]| {
