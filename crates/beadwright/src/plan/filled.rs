@@ -35,15 +35,11 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         if thin {
             slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
         }
-        let mut fill = if thin || reached > 0.0 { strategy.fill(island, settings) } else { Fill::default() };
-        if let Some(place) = unsound(&fill, island, settings, reached) {
-            fill = Contour.fill(island, settings);
-            if unsound(&fill, island, settings, reached).is_some() {
-                fill = rings_only(island, settings);
-            }
-            let (kind, size) = (WarningKind::Refilled, island.area());
-            slice.warnings.push(Warning { kind, layer: slice.index, place, size });
-        }
+        let mut fill = if thin || reached > 0.0 {
+            sound_fill(island, strategy, settings, reached, &mut slice.warnings)
+        } else {
+            Fill::default()
+        };
         if reached > 0.0 && fill.stages.iter().all(Vec::is_empty) {
             // Wide enough for a bead, but with room for neither a ring nor a wall.
             let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
@@ -59,6 +55,21 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         fills.push(fill);
     }
     Filled { slice, fills, planned_area }
+}
+
+/// The fill of an island by a strategy, or, where that cannot be welded, by contours, with a warning.
+fn sound_fill(
+    island: &Polygon,
+    strategy: &dyn Strategy,
+    settings: &FillSettings,
+    reached: f64,
+    warnings: &mut Vec<Warning>,
+) -> Fill {
+    let fill = strategy.fill(island, settings);
+    let Some(place) = unsound(&fill, island, settings, reached) else { return fill };
+    let sound = |fill: &Fill| unsound(fill, island, settings, reached).is_none();
+    warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });
+    Some(Contour.fill(island, settings)).filter(sound).unwrap_or_else(|| rings_only(island, settings))
 }
 
 /// Where the passes of a strategy cannot be welded: they leave the island or cross. An island with room for two beads side
