@@ -126,6 +126,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         arguments.from_layer,
         summary.metrics.layers
     );
+    if let Some(missing) = arguments.picture.iter().find(|number| **number == 0 || **number > summary.metrics.layers) {
+        anyhow::bail!("--picture {missing}: the part has the layers 1 to {}", summary.metrics.layers);
+    }
     summary.notes.splice(0..0, note);
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let names = files.finish(&summary, &model.repair())?;

@@ -123,6 +123,17 @@ fn a_refused_model_leaves_nothing_behind() {
 }
 
 #[test]
+fn what_cannot_be_written_is_refused_before_anything_is() {
+    let folder = folder_with("cross");
+    let out = folder.path().join("out");
+    let said = refused(folder.path(), &["plan", "cross.stl", "-o", "out", "--post", "krl", "--post", "krl"], 1);
+    assert!(said.contains("both write CROSS"), "{said}");
+    let said = refused(folder.path(), &["plan", "cross.stl", "-o", "out", "--no-deposit", "--picture", "99"], 1);
+    assert!(said.contains("the part has the layers 1 to 10"), "{said}");
+    assert!(!out.exists());
+}
+
+#[test]
 fn small_parts_are_asked_about_their_unit() {
     let folder = folder_with("cross");
     let said = refused(folder.path(), &["plan", "cross.stl", "--scale", "0.05"], 1);

@@ -102,7 +102,7 @@ impl WarningSummary {
             }
             WarningKind::OpenContourDropped => format!(
                 "{layers}: {} dropped, the longest {size:.1} mm long {place}. The surface has a hole or a slit \
-                 there: mend the model, or bridge wider gaps with --set slice.close_gap=MM.",
+                 there: mend the model, or bridge wider gaps (slice.close_gap, mm).",
                 times("open contour", "open contours")
             ),
             WarningKind::ContoursUnited => format!(

@@ -11,7 +11,7 @@ mod folder;
 pub use folder::{Folder, FolderError, write_file};
 
 use crate::deposit::{DepositSettings, Figures, Judgement};
-use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
+use crate::dialect::{self, Chunk, DialectError, Job, Writer, writer};
 use crate::layer::Layer;
 use crate::model::RepairReport;
 use crate::plan::{Header, Summary};
@@ -19,7 +19,7 @@ use crate::plan_file;
 use crate::profile::Profile;
 use crate::program::Programmer;
 use crate::report::Report;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Name of the plan's file.
 pub const PLAN: &str = "plan.json";
@@ -40,7 +40,18 @@ impl Programs {
     /// # Errors
     /// [`DialectError`] of the first dialect that cannot be written.
     pub fn new<S: AsRef<str>>(dialects: &[S], job: &Job<'_>) -> Result<Self, DialectError> {
-        let writers = dialects.iter().map(|name| writer(name.as_ref(), job)).collect::<Result<_, _>>()?;
+        let (mut writers, mut taken) = (Vec::new(), BTreeMap::new());
+        for name in dialects.iter().map(S::as_ref) {
+            let second = dialect::find(name).map_or("", |dialect| dialect.name);
+            // Asked of a writer of its own: the one that writes begins when the number of layers is known.
+            let files: BTreeSet<String> = writer(name, job)?.begin(1).into_iter().map(|chunk| chunk.file).collect();
+            for file in files {
+                if let Some(first) = taken.insert(file.clone(), second) {
+                    return Err(DialectError::SameFile { file, first, second });
+                }
+            }
+            writers.push(writer(name, job)?);
+        }
         Ok(Self { writers, programmer: job.programmer() })
     }
 

@@ -117,6 +117,18 @@ pub enum DialectError {
         /// What to do.
         remedy: &'static str,
     },
+    /// Two programs would lie in one file.
+    #[error(
+        "the posts \"{first}\" and \"{second}\" would both write {file}. Ask for one of them, or give them different extensions."
+    )]
+    SameFile {
+        /// The file.
+        file: String,
+        /// The dialect that comes first.
+        first: &'static str,
+        /// The other one, or the same again.
+        second: &'static str,
+    },
     /// The profile has a turn table that the dialect does not write.
     #[error(
         "the post \"{0}\" does not write the turn table of program.table_angle; {others} do. Take the key out, and turn the table by hand.",
