@@ -3,7 +3,7 @@
 use crate::{model, profile, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::files::{Folder, PlanFiles, Programs};
+use beadwright::files::{Folder, PlanFiles, Programs, Written};
 use beadwright::layer::Layer;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
@@ -131,13 +131,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     summary.notes.splice(0..0, note);
     let figures = files.judge.as_ref().map(|judge| *judge.total());
-    let names = files.finish(&summary, &model.repair())?;
+    let written = files.finish(&summary, &model.repair())?;
 
     let mut out = std::io::stdout().lock();
     if arguments.json {
         writeln!(out, "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
     } else {
-        print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &names)?;
+        print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &written)?;
     }
     Ok(())
 }
@@ -158,7 +158,7 @@ struct Files<'a> {
 
 impl Files<'_> {
     /// Writes what comes last, and moves everything into place.
-    fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Vec<String>> {
+    fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Written> {
         if let Some(files) = self.files {
             self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total)))?;
         }
@@ -205,7 +205,7 @@ fn print_summary(
     model: &Part,
     summary: &Summary,
     figures: Option<&Figures>,
-    files: &[String],
+    written: &Written,
 ) -> std::io::Result<()> {
     let (part, (low, high), m) = (arguments.model.part(), model.bounds(), &summary.metrics);
     let (size, repair) = (high - low, model.repair());
@@ -223,6 +223,10 @@ fn print_summary(
     let events = summary.warnings.summaries().map(|w| w.sentence());
     for line in model.warnings().into_iter().chain(events).chain(summary.notes.iter().cloned()) {
         writeln!(out, "warning: {line}")?;
+    }
+    let Written { files, removed } = written;
+    if !removed.is_empty() {
+        writeln!(out, "{} files of an earlier plan removed: {}", removed.len(), shorten(removed))?;
     }
     writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))
 }

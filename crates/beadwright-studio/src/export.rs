@@ -48,7 +48,7 @@ impl Export {
         let chunks = self.chunks(state)?;
         let written = Folder::new(folder).and_then(|mut folder| {
             folder.extend(chunks)?;
-            folder.commit()
+            Ok(folder.commit()?.files)
         });
         written.map_err(|error| format!("{error}."))
     }

@@ -1,11 +1,16 @@
-//! Files that are complete or absent: written into a temporary folder beside their final place, moved at the end.
+//! Files that are complete or absent as a set: written beside their folder, which is exchanged for theirs in one step.
+//!
+//! A run that is killed, stopped or out of disk space leaves the folder as it was, and no controller ever finds layers of
+//! two plans in it. Files that Beadwright has not written stay. Where the file system cannot exchange folders, or the
+//! folder is the current one of this process (which a shell would go on seeing under its old name), the older set is moved
+//! out file by file and then the new one in.
 
+use super::stage::{self, Stage};
 use crate::dialect::Chunk;
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+use std::path::{Component, Path, PathBuf};
 
 /// A file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -17,26 +22,49 @@ pub struct FolderError {
     pub source: io::Error,
 }
 
+/// The list of the files that Beadwright has written into a folder, so that the next run knows which are its own.
+const LIST: &str = ".beadwright";
+
+/// Folders with more entries of others are not exchanged.
+const MOST_ENTRIES: usize = 10_000;
+
 /// The files of one run. Dropped without [`commit`](Self::commit) it leaves nothing behind.
 pub struct Folder {
+    /// As the caller names it.
+    named: PathBuf,
+    /// Without links, so that the folder itself is exchanged.
     folder: PathBuf,
-    temporary: TempDir,
+    stage: Stage,
     names: BTreeSet<String>,
     /// The file written last, kept open: text mostly goes to one file several times in a row.
     open: Option<(String, BufWriter<File>)>,
+}
+
+/// What a run has put into its folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// Its files, in order.
+    pub files: Vec<String>,
+    /// Files of an earlier run that gave way and have no successor of that name.
+    pub removed: Vec<String>,
 }
 
 impl Folder {
     /// Files for `folder`, which is made at the end if it is missing.
     ///
     /// # Errors
-    /// [`FolderError`] where nothing can be written beside it.
+    /// [`FolderError`] where nothing can be written beside it or into it.
     pub fn new(folder: &Path) -> Result<Self, FolderError> {
-        let exists = |p: &&Path| !p.as_os_str().is_empty() && p.exists();
-        let beside = folder.ancestors().find(exists).unwrap_or(Path::new("."));
-        let temporary = tempfile::Builder::new().prefix(".beadwright-").tempdir_in(beside);
-        let temporary = temporary.map_err(named(beside))?;
-        Ok(Self { folder: folder.to_owned(), temporary, names: BTreeSet::new(), open: None })
+        let error = named(folder);
+        let (named, folder) = (folder.to_owned(), real(folder).map_err(&error)?);
+        if folder.exists() && !folder.is_dir() {
+            return Err(error(io::Error::new(io::ErrorKind::NotADirectory, "it is a file, not a folder")));
+        }
+        stage::clear(&folder);
+        let beside = folder.ancestors().skip(1).find(|p| p.exists()).unwrap_or(&folder);
+        let stage =
+            Stage::new(beside).or_else(|refused| if folder.exists() { Stage::new(&folder) } else { Err(refused) });
+        Ok(Self { stage: stage.map_err(error)?, named, folder, names: BTreeSet::new(), open: None })
     }
 
     /// Appends text to a file of this run.
@@ -44,7 +72,7 @@ impl Folder {
     /// # Errors
     /// [`FolderError`].
     pub fn append(&mut self, name: &str, text: &str) -> Result<(), FolderError> {
-        self.write(name, text).map_err(named(&self.folder.join(name)))
+        self.write(name, text).map_err(named(&self.named.join(name)))
     }
 
     /// Appends texts, each to its file.
@@ -58,7 +86,7 @@ impl Folder {
     fn write(&mut self, name: &str, text: &str) -> io::Result<()> {
         if self.open.as_ref().is_none_or(|(open, _)| open != name) {
             self.close()?;
-            let file = File::options().create(true).append(true).open(self.temporary.path().join(name))?;
+            let file = File::options().create(true).append(true).open(self.stage.new_files().join(name))?;
             self.names.insert(name.to_owned());
             self.open = Some((name.to_owned(), BufWriter::with_capacity(1 << 16, file)));
         }
@@ -72,29 +100,148 @@ impl Folder {
         self.open.take().map_or(Ok(()), |(_, mut writer)| writer.flush())
     }
 
-    /// Moves all files to their final place and returns their names in order.
+    /// Puts the files in place of those of an earlier run: a plan takes the place of the whole earlier plan, anything else
+    /// that of the files of the same names.
     ///
     /// # Errors
-    /// [`FolderError`].
-    pub fn commit(mut self) -> Result<Vec<String>, FolderError> {
-        self.close().map_err(named(&self.folder))?;
-        fs::create_dir_all(&self.folder).map_err(named(&self.folder))?;
-        for name in &self.names {
-            let place = self.folder.join(name);
-            fs::rename(self.temporary.path().join(name), &place).map_err(named(&place))?;
+    /// [`FolderError`]; then nothing has changed.
+    pub fn commit(mut self) -> Result<Written, FolderError> {
+        let error = named(&self.named);
+        self.close().map_err(&error)?;
+        let earlier = earlier(&self.folder);
+        let whole = self.names.contains(super::PLAN);
+        let (old, kept): (BTreeSet<_>, BTreeSet<_>) =
+            earlier.into_iter().partition(|name| whole || self.names.contains(name));
+        let removed = old.difference(&self.names).cloned().collect();
+        let listed: Vec<&str> = kept.union(&self.names).map(String::as_str).collect();
+        fs::write(self.stage.new_files().join(LIST), listed.join("\n") + "\n").map_err(&error)?;
+        self.put(&old).map_err(error)?;
+        Ok(Written { files: self.names.into_iter().collect(), removed })
+    }
+
+    fn put(&self, old: &BTreeSet<String>) -> io::Result<()> {
+        let (new, folder) = (self.stage.new_files(), &self.folder);
+        if !folder.exists() {
+            folder.parent().map_or(Ok(()), fs::create_dir_all)?;
+            return fs::rename(&new, folder);
         }
-        Ok(self.names.into_iter().collect())
+        if let Some(name) = self.names.iter().find(|name| folder.join(name).is_dir()) {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, format!("{name} is a folder there")));
+        }
+        let current = std::env::current_dir().and_then(fs::canonicalize).is_ok_and(|at| at.starts_with(folder));
+        if current || self.exchange(old).is_err() {
+            self.move_each(old)?;
+        }
+        Ok(())
+    }
+
+    /// Exchanges the folder for that of the new files, to which the files of others have been linked.
+    fn exchange(&self, old: &BTreeSet<String>) -> io::Result<()> {
+        let (new, mut linked) = (self.stage.new_files(), 0);
+        let others = |name: &str| !old.contains(name) && !self.names.contains(name) && name != LIST;
+        link_all(&self.folder, &new, &others, &mut linked)?;
+        fs::set_permissions(&new, fs::metadata(&self.folder)?.permissions())?;
+        swap(&new, &self.folder)?;
+        // What somebody has put there meanwhile stays, too.
+        for entry in fs::read_dir(&new)?.filter_map(Result::ok) {
+            let place = self.folder.join(entry.file_name());
+            if others(&entry.file_name().to_string_lossy()) && fs::symlink_metadata(&place).is_err() {
+                fs::rename(entry.path(), place)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the files one by one, by way of a stage in the folder itself.
+    fn move_each(&self, old: &BTreeSet<String>) -> io::Result<()> {
+        let (from, stage) = (self.stage.new_files(), Stage::new(&self.folder)?);
+        let mut new: Vec<&str> = self.names.iter().map(String::as_str).chain([LIST]).collect();
+        // The program that calls the others has the shortest name and comes last: without it, none of them is started.
+        new.sort_by_key(|name| std::cmp::Reverse(name.len()));
+        for name in &new {
+            fs::rename(from.join(name), stage.new_files().join(name))
+                .or_else(|_| fs::copy(from.join(name), stage.new_files().join(name)).map(|_| ()))?;
+        }
+        let there = |name: &&str| fs::symlink_metadata(self.folder.join(name)).is_ok();
+        let old: BTreeSet<&str> = old.iter().map(String::as_str).chain(new.iter().copied()).filter(there).collect();
+        stage.move_into(&self.folder, &old.into_iter().collect::<Vec<_>>(), &new)
     }
 }
 
-/// Writes one file completely or not at all.
+/// The folder without links and dots; it need not exist.
+fn real(folder: &Path) -> io::Result<PathBuf> {
+    let full = std::path::absolute(folder)?;
+    let Some(there) = full.ancestors().find(|p| p.exists()) else { return Ok(full) };
+    let rest = full.strip_prefix(there).map(Path::to_owned).unwrap_or_default();
+    let there = fs::canonicalize(there)?;
+    Ok(if rest.as_os_str().is_empty() { there } else { there.join(rest) })
+}
+
+/// The files of earlier runs in a folder.
+fn earlier(folder: &Path) -> BTreeSet<String> {
+    let list = fs::read_to_string(folder.join(LIST)).unwrap_or_default();
+    // A list that somebody has edited names no place elsewhere.
+    let plain = |name: &&str| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
+    list.lines().filter(plain).filter(|name| folder.join(name).is_file()).map(str::to_owned).collect()
+}
+
+/// Links the files of a folder and its folders into another.
+fn link_all(from: &Path, to: &Path, wanted: &dyn Fn(&str) -> bool, linked: &mut usize) -> io::Result<()> {
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let place = to.join(entry.file_name());
+        if !wanted(&entry.file_name().to_string_lossy()) {
+            continue;
+        }
+        *linked += 1;
+        if *linked > MOST_ENTRIES {
+            return Err(io::ErrorKind::QuotaExceeded.into());
+        }
+        if entry.file_type()?.is_dir() {
+            fs::create_dir(&place)?;
+            link_all(&entry.path(), &place, &|_| true, linked)?;
+            fs::set_permissions(&place, entry.metadata()?.permissions())?;
+        } else {
+            fs::hard_link(entry.path(), place)?;
+        }
+    }
+    Ok(())
+}
+
+/// Exchanges two folders in one step.
+#[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
+fn swap(a: &Path, b: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    Ok(renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE)?)
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "android", target_vendor = "apple")))]
+fn swap(_: &Path, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+/// Writes one file completely or not at all. What is not a plain file, such as `/dev/stdout`, is written to; links to files
+/// are refused, since what they lead to may not be meant.
 ///
 /// # Errors
 /// [`FolderError`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> io::Result<()> {
-        let mut file = tempfile::Builder::new().prefix(".beadwright-").tempfile_in(folder)?;
+        let (itself, behind) = (fs::symlink_metadata(path), fs::metadata(path));
+        if behind.as_ref().is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+            return File::options().write(true).open(path)?.write_all(bytes);
+        }
+        if itself.is_ok_and(|there| there.is_symlink()) {
+            let to = fs::read_link(path)?;
+            return Err(io::Error::other(format!("it is a link to {}; name that file itself", to.display())));
+        }
+        let mut builder = tempfile::Builder::new();
+        let permissions = behind.map(|there| there.permissions()).ok().or_else(usual);
+        if let Some(permissions) = permissions {
+            builder.permissions(permissions);
+        }
+        let mut file = builder.prefix(".beadwright-").tempfile_in(folder)?;
         file.write_all(bytes)?;
         file.persist(path)?;
         Ok(())
@@ -102,9 +249,26 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     write().map_err(named(path))
 }
 
+/// Permissions of a new file, from which the user's mask is taken.
+#[cfg(unix)]
+fn usual() -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn usual() -> Option<Permissions> {
+    None
+}
+
 fn named(path: &Path) -> impl Fn(io::Error) -> FolderError + use<> {
     let path = path.to_owned();
-    // Errors of temporary files name a place that nobody knows: their kind is enough.
-    let plain = |error: io::Error| if error.raw_os_error().is_some() { error } else { error.kind().into() };
+    // Errors of temporary files name a place that nobody knows: their kind is enough. Sentences of our own stay.
+    let plain = |error: io::Error| match error.get_ref() {
+        Some(inner) if inner.downcast_ref::<io::Error>().is_some() || inner.to_string().contains(".beadwright-") => {
+            error.kind().into()
+        }
+        _ => error,
+    };
     move |error| FolderError { path: path.clone(), source: plain(error) }
 }

@@ -1,14 +1,16 @@
 //! The files of a plan: programs, `plan.json`, `metrics.json` and `report.html`.
 //!
 //! [`PlanFiles`] makes their text layer by layer, so the command and the desktop program write the same bytes.
-//! [`Folder`] puts files into a folder, all of them or none; it is the only part of the library that touches the disk,
+//! [`Folder`] exchanges the files of a folder, all of them or none; it is the only part of the library that touches the disk,
 //! and only with the feature `files`.
 
 #[cfg(feature = "files")]
 mod folder;
+#[cfg(feature = "files")]
+mod stage;
 
 #[cfg(feature = "files")]
-pub use folder::{Folder, FolderError, write_file};
+pub use folder::{Folder, FolderError, Written, write_file};
 
 use crate::deposit::{DepositSettings, Figures, Judgement};
 use crate::dialect::{self, Chunk, DialectError, Job, Writer, writer};

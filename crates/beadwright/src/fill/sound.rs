@@ -51,25 +51,19 @@ pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault>
 /// The place where a path is farthest outside.
 fn outside(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
     let edges = island.rings().flat_map(|ring| ring.edges()).map(|(a, b)| Line::new(a.to_array(), b.to_array()));
-    let tree = RTree::bulk_load(edges.collect());
+    let tree: RTree<Line<[f64; 2]>> = RTree::bulk_load(edges.collect());
     let by = |p: DVec2| {
         let outside = p.is_finite() && !island.contains(p);
         let distance = || tree.nearest_neighbor(&p.to_array()).map_or(0.0, |edge| edge.distance_2(&p.to_array()));
         if outside { distance().sqrt() } else { 0.0 }
     };
-    // A path that meets no edge lies inside as its first point does.
-    let meets = |a: DVec2, b: DVec2| {
-        let around = Line::new(a.to_array(), b.to_array()).envelope();
-        tree.locate_in_envelope_intersecting(&around).next().is_some()
-    };
     let suspects = paths.iter().flat_map(|path| {
         let path = path.path();
-        let step = path.first().copied().into_iter();
-        let near = path.windows(2).filter(|w| meets(w[0], w[1])).flat_map(|w| {
-            let count = (w[0].distance(w[1]) / SAMPLE_MM).ceil().clamp(1.0, MOST_SAMPLES) as usize;
-            (0..=count).map(|k| w[0].lerp(w[1], k as f64 / count as f64)).collect::<Vec<_>>()
-        });
-        step.chain(near.collect::<Vec<_>>()).collect::<Vec<_>>()
+        let cuts: Vec<Vec<f64>> = path.windows(2).map(|w| cuts(&tree, w[0], w[1])).collect();
+        // A path that crosses no edge lies inside as its first point does.
+        let pieces = if cuts.iter().all(Vec::is_empty) { 0 } else { cuts.len() };
+        let near = path.windows(2).zip(&cuts).take(pieces).flat_map(|(w, cuts)| places(w[0], w[1], cuts));
+        path.first().copied().into_iter().chain(near).collect::<Vec<_>>()
     });
     let worst = suspects.map(|p| (p, by(p))).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let lost = paths.iter().flat_map(|path| &path.points).find(|p| !p.is_finite());
@@ -79,9 +73,38 @@ fn outside(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
     }
 }
 
+/// Where on a piece, from 0 to 1, it crosses the edges.
+fn cuts(edges: &RTree<Line<[f64; 2]>>, from: DVec2, to: DVec2) -> Vec<f64> {
+    let piece = Line::new(from.to_array(), to.to_array());
+    edges.locate_in_envelope_intersecting(&piece.envelope()).filter_map(|edge| cut(&piece, edge)).collect()
+}
+
+/// Places at which a piece may lie farthest outside: between two cuts it lies either inside or outside.
+fn places(from: DVec2, to: DVec2, cuts: &[f64]) -> Vec<DVec2> {
+    let mut ends: Vec<f64> = cuts.iter().copied().chain([0.0, 1.0]).collect();
+    ends.sort_by(f64::total_cmp);
+    let least = if cuts.is_empty() { 1.0 } else { LEAST_SAMPLES };
+    let between = |w: &[f64]| {
+        let count = ((w[1] - w[0]) * from.distance(to) / SAMPLE_MM).ceil().clamp(least, MOST_SAMPLES);
+        (0..=count as usize).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / count).collect::<Vec<_>>()
+    };
+    ends.windows(2).flat_map(between).map(|t| from.lerp(to, t)).collect()
+}
+
+/// Where on a piece it crosses an edge.
+fn cut(piece: &Line<[f64; 2]>, edge: &Line<[f64; 2]>) -> Option<f64> {
+    let [p, q, r, s] = [piece.from, piece.to, edge.from, edge.to].map(DVec2::from);
+    let (u, v) = (q - p, s - r);
+    let across = u.perp_dot(v);
+    let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
+    let on = |x: f64| (0.0..=1.0).contains(&x);
+    (across != 0.0 && on(t) && on(w)).then_some(t)
+}
+
 /// Distance of the places at which a piece near the outline is looked at, mm.
 const SAMPLE_MM: f64 = 0.25;
-/// No piece is looked at in more places.
+/// A piece between two edges that it crosses is looked at in this many places at least, and at most.
+const LEAST_SAMPLES: f64 = 8.0;
 const MOST_SAMPLES: f64 = 4000.0;
 
 /// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
