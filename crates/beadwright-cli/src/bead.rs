@@ -241,7 +241,7 @@ fn warn(out: &mut impl Write, library: &BeadLibrary) -> std::io::Result<()> {
 }
 
 fn read(path: &Path) -> anyhow::Result<String> {
-    let bytes = std::fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    let bytes = crate::file::read(path)?;
     String::from_utf8(bytes)
         .ok()
         .with_context(|| format!("{} is not UTF-8 text: save it as CSV in UTF-8", path.display()))

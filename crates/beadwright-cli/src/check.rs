@@ -13,12 +13,8 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// plan.json; without it, the checks are listed.
     plan: Option<PathBuf>,
-    /// Profile that the plan was made with: a built-in name or a TOML file.
-    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
-    profile: String,
-    /// Change a value of the profile, such as check.max_void=1; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    wanted: profile::Wanted,
     /// Also check whether the robot of this cell can weld the plan: a built-in name or a TOML file.
     #[arg(long, value_name = "NAME|FILE")]
     cell: Option<String>,
@@ -45,15 +41,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         return Ok(());
     };
-    let profile = profile::load(&arguments.profile, &arguments.set)?;
-    let (task, bar) = progress::task()?;
-    let loaded = program::Reading::default().load(plan, &profile, None, &task)?;
+    let source = program::Source::open(plan)?;
     anyhow::ensure!(
-        loaded.language == "plan",
+        source.plan().is_some(),
         "{}: plans are checked; give the plan.json of the program",
         plan.display()
     );
-    let mut findings = check::check(&loaded.layers, &profile, loaded.settings, &task)?;
+    let profile = source.profile(&arguments.wanted)?;
+    let (task, bar) = progress::task()?;
+    let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
+    let settings = loaded.deposit_settings(None)?;
+    let mut findings = check::check(&loaded.layers, &profile, settings, &task)?;
     if let Some(cell) = &arguments.cell {
         findings.extend(reach(&reach::load_cell(cell)?, &loaded.layers, &profile));
     }
@@ -67,8 +65,15 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     } else {
         print(&mut out, &findings)?
     }
-    anyhow::ensure!(findings.is_empty(), "{} findings in {}", findings.len(), plan.display());
-    Ok(())
+    if findings.is_empty() { Ok(()) } else { Err(Findings { count: findings.len(), plan: plan.clone() }.into()) }
+}
+
+/// A plan with findings.
+#[derive(Debug, thiserror::Error)]
+#[error("{count} findings in {}", plan.display())]
+pub(crate) struct Findings {
+    count: usize,
+    plan: PathBuf,
 }
 
 /// What the robot cannot do, as findings.

@@ -6,6 +6,7 @@ use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
 use beadwright::files::write_file;
 use beadwright::fill;
+use beadwright::plan::MAX_LAYERS;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -42,13 +43,16 @@ pub(crate) struct Arguments {
 }
 
 fn parse_layers(text: &str) -> Result<Chosen, String> {
-    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|n| *n > 0);
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|n| (1..=MAX_LAYERS).contains(n));
     let range = |part: &str| {
         let (from, to) = part.split_once('-').unwrap_or((part, part));
-        number(from).zip(number(to)).map(|(from, to)| from - 1..to)
+        let (from, to) = number(from).zip(number(to))?;
+        (from <= to).then_some(from - 1..to)
     };
     let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
-    let ranges = ranges.ok_or_else(|| "layers are counted from 1, such as 1,5,10-20".to_owned())?;
+    let ranges = ranges.ok_or_else(|| {
+        format!("layers are counted from 1 to at most {MAX_LAYERS}, the lower first, such as 1,5,10-20")
+    })?;
     Ok(Some(ranges.into_iter().flatten().collect()))
 }
 
@@ -58,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
-    let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds());
+    let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();
     for name in &names {
@@ -66,8 +70,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         entries.push(entry.with_context(|| format!("{}", arguments.model.model.display()))?);
     }
     let mut notes = Vec::new();
+    let given = profile::Wanted { profile: Some(arguments.profile.clone()), set: Vec::new() };
     for path in &arguments.program {
-        let loaded = arguments.reading.load(path, &profile, Some(&import), &task)?;
+        let loaded = program::Source::open(path)?.load(&arguments.reading, &given, &profile, Some(&import), &task)?;
         entries.push(compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &chosen, &task)?);
         notes.extend(loaded.notes.into_iter().map(|note| format!("{}: {note}", loaded.name)));
     }

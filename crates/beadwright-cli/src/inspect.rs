@@ -1,20 +1,21 @@
 //! `beadwright inspect`.
 
-use crate::{model, profile, program, progress};
+use crate::{file, model, profile, program, progress};
 use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::model::iges::{IgesCurve, IgesFile};
+use beadwright::model::import_damaged;
+use beadwright::text;
 use glam::DVec3;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// A model (binary or ASCII STL, IGES), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
-    /// Profile with the lines that switch the arc in a program: a built-in name or a TOML file.
-    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
-    profile: String,
+    #[command(flatten)]
+    wanted: profile::Wanted,
     #[command(flatten)]
     reading: program::Reading,
     /// Print machine-readable JSON.
@@ -23,14 +24,15 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    if let Some(file) = model::read_iges(&arguments.file)? {
+    let bytes = file::read(&arguments.file)?;
+    if let Some(file) = model::read_iges(&arguments.file, &bytes)? {
         return Ok(curves(&file, arguments)?);
     }
-    if is_program(&arguments.file)? {
+    if is_program(&bytes) {
         return read_program(arguments);
     }
     let (task, bar) = progress::task()?;
-    let import = model::read(&arguments.file, &task)?;
+    let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
@@ -59,18 +61,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// Whether the file holds a plan or a program. Models are also recognised by their content, and are not programs.
-fn is_program(path: &Path) -> anyhow::Result<bool> {
-    let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
-    let Ok(text) = std::str::from_utf8(&bytes) else { return Ok(false) };
+fn is_program(bytes: &[u8]) -> bool {
+    let Ok(text) = text::of(bytes) else { return false };
     let solid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("solid"));
-    Ok(!solid && (text.trim_start().starts_with('{') || reading::recognise(text).is_some()))
+    !text.contains('\0') && !solid && (text.trim_start().starts_with('{') || reading::recognise(&text).is_some())
 }
 
 /// What a plan or a program holds.
 fn read_program(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
-    let profile = profile::load(&arguments.profile, &[])?;
-    let loaded = arguments.reading.load(&arguments.file, &profile, None, &task)?;
+    let source = program::Source::open(&arguments.file)?;
+    let profile = source.profile(&arguments.wanted)?;
+    let loaded = source.load(&arguments.reading, &arguments.wanted, &profile, None, &task)?;
     bar.finish_and_clear();
     let (t, passes) = (&loaded.totals, || loaded.layers.iter().flat_map(|l| &l.passes));
     let points = || passes().flat_map(|p| &p.points);

@@ -1,12 +1,14 @@
 //! The command `beadwright`: arguments, files and progress. All planning is in the library.
 //!
-//! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage.
+//! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage, 3 the plan has faults that somebody should look at.
 
 mod bead;
 mod check;
 mod compare;
 mod example;
+mod file;
 mod inspect;
+mod memory;
 mod model;
 mod plan;
 mod profile;
@@ -27,6 +29,9 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Most memory that may be used, GB; three quarters of the machine's if left out.
+    #[arg(long, global = true, value_name = "GB", value_parser = parse_memory)]
+    max_memory: Option<f64>,
 }
 
 #[derive(Subcommand)]
@@ -58,7 +63,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let arguments = Arguments::parse();
+    memory::watch(arguments.max_memory);
+    let result = match arguments.command {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
@@ -79,11 +86,21 @@ fn main() -> ExitCode {
         // Whatever reads our output may stop reading: that is not our failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
+            let error = memory::exceeded().map_or(error, anyhow::Error::msg);
             let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));
             eprintln!("error: {error:#}{remedy}");
-            ExitCode::FAILURE
+            let doubtful = error.is::<plan::Refused>() || error.is::<check::Findings>();
+            if doubtful { ExitCode::from(FINDINGS) } else { ExitCode::FAILURE }
         }
     }
+}
+
+/// Exit status of a plan with faults.
+const FINDINGS: u8 = 3;
+
+fn parse_memory(text: &str) -> Result<f64, String> {
+    let most: f64 = text.parse().map_err(|_| "a number of GB is expected, such as 8".to_owned())?;
+    if (0.1..=1e5).contains(&most) { Ok(most) } else { Err("it must lie between 0.1 and 100000 GB".to_owned()) }
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

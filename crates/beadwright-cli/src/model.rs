@@ -1,13 +1,11 @@
-//! Model files: mapped into memory, imported and placed.
+//! Model files, imported and placed.
 
+use crate::file;
 use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
 use beadwright::model::{self, Import, Part, Placement, Units};
 use beadwright::task::Task;
 use glam::DVec3;
-use memmap2::Mmap;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Which model, and how it is placed.
@@ -27,6 +25,9 @@ pub(crate) struct Model {
     /// Move the middle of the part to x = y = 0.
     #[arg(long)]
     pub(crate) centre: bool,
+    /// Take what triangles there are of an STL file that ends too early or holds more than it says.
+    #[arg(long)]
+    pub(crate) accept_damaged: bool,
 }
 
 pub(crate) fn parse_units(text: &str) -> Result<Units, String> {
@@ -47,52 +48,20 @@ fn parse_turn(text: &str) -> Result<DVec3, String> {
     }
 }
 
-fn open(path: &Path) -> anyhow::Result<File> {
-    let context = || format!("{}", path.display());
-    let file = File::open(path).with_context(context)?;
-    if file.metadata().with_context(context)?.is_dir() {
-        anyhow::bail!("{}: this is a folder, not a model file", path.display());
-    }
-    Ok(file)
-}
-
 /// An IGES file; `None` for any other.
-pub(crate) fn read_iges(path: &Path) -> anyhow::Result<Option<IgesFile>> {
-    const CARD: u64 = 80;
-    let context = || format!("{}", path.display());
-    let (mut file, mut bytes) = (open(path)?, Vec::new());
-    file.by_ref().take(CARD).read_to_end(&mut bytes).with_context(context)?;
-    if !model::is_iges(&bytes) {
+pub(crate) fn read_iges(path: &Path, bytes: &[u8]) -> anyhow::Result<Option<IgesFile>> {
+    if !model::is_iges(bytes) {
         return Ok(None);
     }
-    file.read_to_end(&mut bytes).with_context(context)?;
-    iges::read(&bytes).map(Some).with_context(context)
-}
-
-/// A solid read from a file.
-pub(crate) fn read(path: &Path, task: &Task) -> anyhow::Result<Import> {
-    with_bytes(path, |bytes| model::import(bytes, task))?.with_context(|| format!("{}", path.display()))
-}
-
-/// Hands the bytes of a file to a reader; large files are not copied.
-fn with_bytes<R>(path: &Path, read: impl FnOnce(&[u8]) -> R) -> anyhow::Result<R> {
-    let context = || format!("{}", path.display());
-    let file = open(path)?;
-    if file.metadata().with_context(context)?.len() == 0 {
-        return Ok(read(&[]));
-    }
-    // SAFETY: the mapping is read only and does not outlive this function; if another program truncates the file
-    // meanwhile, this process ends, as any reader of mapped files would.
-    #[allow(unsafe_code)]
-    let bytes = unsafe { Mmap::map(&file) }.with_context(context)?;
-    Ok(read(&bytes))
+    iges::read(bytes).map(Some).with_context(|| format!("{}", path.display()))
 }
 
 impl Model {
     /// The solid or the curves, placed. Curves that all lie at one height need a height to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());
-        let model = with_bytes(&self.model, |bytes| model::Model::read(bytes, task))?.with_context(context)?;
+        let read = if self.accept_damaged { model::Model::read_damaged } else { model::Model::read };
+        let model = read(&file::read(&self.model)?, task).with_context(context)?;
         model.place(&self.placement(), height, bead_width).with_context(context)
     }
 
@@ -107,7 +76,9 @@ impl Model {
 
     /// The model, scaled to mm, turned, and placed on z = 0.
     pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
-        let import = read(&self.model, task)?;
+        let context = || format!("{}", self.model.display());
+        let import = if self.accept_damaged { model::import_damaged } else { model::import };
+        let import = import(&file::read(&self.model)?, task).with_context(context)?;
         self.placement().solid(import, bead_width).with_context(|| format!("{}", self.model.display()))
     }
 }

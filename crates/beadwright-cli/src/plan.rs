@@ -1,6 +1,6 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
-use crate::{model, profile, progress};
+use crate::{model, profile, program, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Written};
@@ -8,6 +8,7 @@ use beadwright::layer::Layer;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
+use beadwright::planar::Bounds;
 use beadwright::profile::Profile;
 use beadwright::report::{self, rows};
 use beadwright::{dialect, fill};
@@ -55,12 +56,15 @@ pub(crate) struct Arguments {
     /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
     grid: Option<f64>,
+    /// Write the files even where the program would leave the part, be laid on nothing, or drag the torch over beads.
+    #[arg(long)]
+    allow_findings: bool,
     /// Print the metrics as JSON instead of the summary.
     #[arg(long)]
     json: bool,
     /// Number of threads; all of the machine's if left out. The result does not depend on it.
-    #[arg(long)]
-    threads: Option<usize>,
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
 }
 
 fn strategy_help() -> String {
@@ -87,7 +91,7 @@ pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(threads) = arguments.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
     let mut settings = arguments.set.clone();
     settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
@@ -101,14 +105,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
-    let settings = deposit_settings(arguments.grid, &profile, model.bounds());
+    let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let from_layer = arguments.from_layer as usize - 1;
     let mut files = Files {
         folder: Folder::new(&arguments.output)?,
         programs: Some(programs),
         files: None,
         pictures: &arguments.picture,
-        settings,
         profile: &profile,
         judge: (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS)),
         from_layer,
@@ -129,6 +132,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(missing) = arguments.picture.iter().find(|number| **number == 0 || **number > summary.metrics.layers) {
         anyhow::bail!("--picture {missing}: the part has the layers 1 to {}", summary.metrics.layers);
     }
+    if !summary.forbidden.is_empty() && !arguments.allow_findings {
+        return Err(Refused(summary.forbidden).into());
+    }
     summary.notes.splice(0..0, note);
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let written = files.finish(&summary, &model.repair())?;
@@ -142,6 +148,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Programs that nobody should start.
+#[derive(Debug, thiserror::Error)]
+#[error("nothing was written, since the program should not be started:\n{}\n--allow-findings writes it all the same.", .0.join("\n"))]
+pub(crate) struct Refused(Vec<String>);
+
 /// Where the layers go.
 struct Files<'a> {
     folder: Folder,
@@ -149,7 +160,6 @@ struct Files<'a> {
     programs: Option<Programs>,
     files: Option<PlanFiles>,
     pictures: &'a [usize],
-    settings: DepositSettings,
     profile: &'a Profile,
     judge: Option<Judge>,
     /// Index of the first layer of the programs.
@@ -171,7 +181,7 @@ impl Sink for Files<'_> {
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
-        let (files, chunks) = PlanFiles::begin(header, self.profile, &self.settings, programs, self.from_layer);
+        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.from_layer);
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }
@@ -191,11 +201,13 @@ impl Sink for Files<'_> {
 }
 
 /// How the layers of a part are judged: the grid as asked for, or one that fits the part.
-pub(crate) fn deposit_settings(grid: Option<f64>, profile: &Profile, bounds: (DVec3, DVec3)) -> DepositSettings {
-    match grid {
-        Some(step) => DepositSettings { step, ..plan::deposit_settings(profile) },
-        None => plan::deposit_settings_over(profile, bounds),
-    }
+pub(crate) fn deposit_settings(
+    grid: Option<f64>,
+    profile: &Profile,
+    (low, high): (DVec3, DVec3),
+) -> anyhow::Result<DepositSettings> {
+    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
+    program::fitted(grid, plan::deposit_settings(profile), &bounds, (high.z / profile.layers.height) as usize)
 }
 
 fn print_summary(
@@ -215,15 +227,16 @@ fn print_summary(
     };
     writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
+    let events = summary.warnings.summaries().map(|w| w.sentence());
+    let forbidden = profile.forbidden().into_iter();
+    for line in forbidden.chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned()) {
+        writeln!(out, "warning: {line}")?;
+    }
     writeln!(out)?;
     for (name, value) in rows::totals(m).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;
     }
     writeln!(out)?;
-    let events = summary.warnings.summaries().map(|w| w.sentence());
-    for line in model.warnings().into_iter().chain(events).chain(summary.notes.iter().cloned()) {
-        writeln!(out, "warning: {line}")?;
-    }
     let Written { files, removed } = written;
     if !removed.is_empty() {
         writeln!(out, "{} files of an earlier plan removed: {}", removed.len(), shorten(removed))?;

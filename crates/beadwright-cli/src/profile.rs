@@ -36,6 +36,12 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
         Command::Show { name } => write!(out, "{}", Profile::built_in_text(name)?)?,
         Command::Check { profile } => {
             let checked = load(profile, &[])?;
+            // What `plan` would refuse for any part.
+            checked.wall_bead()?;
+            programs(&checked.posts, &checked.job("part"))?;
+            if let Some(reason) = checked.forbidden().into_iter().next() {
+                anyhow::bail!("{profile}: {reason}");
+            }
             writeln!(out, "{}: every value is possible.", checked.name)?;
             for note in checked.notes() {
                 writeln!(out, "note: {note}")?;
@@ -46,20 +52,32 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Which profile a plan or a program is read with.
+#[derive(clap::Args, Default)]
+pub(crate) struct Wanted {
+    /// Profile: a built-in name or a TOML file; if left out, that of the plan, the one that the program names, or
+    /// cmt-al2319-kuka.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub(crate) profile: Option<String>,
+    /// Change a value of the profile, such as bead.width=5; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+/// The profile of programs that name none.
+pub(crate) const USUAL: &str = "cmt-al2319-kuka";
+
 /// The profile with a built-in name or from a file, with `key=value` settings applied to it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
     let path = Path::new(profile);
     let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
-    let text = if is_file {
-        std::fs::read_to_string(path)
-            .map_err(|e| ProfileError::File { path: path.to_owned(), reason: e.to_string() })?
-    } else {
-        Profile::built_in_text(profile)?.to_owned()
-    };
+    let text = if is_file { crate::file::text(path)? } else { Profile::built_in_text(profile)?.to_owned() };
     let parsed = Profile::parse(&text).with_context(|| profile.to_owned())?;
-    if settings.is_empty() {
-        return Ok(parsed);
-    }
+    if settings.is_empty() { Ok(parsed) } else { with_settings(text, settings) }
+}
+
+/// The profile of a text with `key=value` settings applied to it.
+pub(crate) fn with_settings(text: String, settings: &[String]) -> anyhow::Result<Profile> {
     let mut edited = text;
     for setting in settings {
         let lay = || -> anyhow::Result<String> {

@@ -1,19 +1,22 @@
 //! Programs and plans read back: files, their modules, and the part they were made for.
 
-use crate::model;
+use crate::profile::{self, Wanted};
+use crate::{file, model};
 use anyhow::Context;
 use beadwright::compare::Totals;
-use beadwright::deposit::DepositSettings;
+use beadwright::deposit::{self, DepositSettings};
 use beadwright::dialect::inform::InformSpeed;
-use beadwright::dialect::reading::{self, ArcCodes};
+use beadwright::dialect::reading::{self, ArcCodes, Metal};
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
 use beadwright::plan;
-use beadwright::plan_file;
-use beadwright::profile::Profile;
+use beadwright::plan_file::{self, PlanFile};
+use beadwright::planar::Bounds;
+use beadwright::profile::{BUILT_IN, Profile};
 use beadwright::simulate;
 use beadwright::task::Task;
+use beadwright::text;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +34,18 @@ pub(crate) struct Reading {
     bead_width: Option<f64>,
 }
 
+/// A program or a plan that has been opened.
+pub(crate) struct Source {
+    path: PathBuf,
+    name: String,
+    content: Content,
+}
+
+enum Content {
+    Plan(PlanFile),
+    Program(String),
+}
+
 /// A program or plan as layers.
 pub(crate) struct Loaded {
     pub(crate) name: String,
@@ -41,30 +56,115 @@ pub(crate) struct Loaded {
     pub(crate) notes: Vec<String>,
 }
 
-impl Reading {
-    /// Reads a program or a plan.json. With a part, its slices become the islands of the layers.
+impl Loaded {
+    /// How the layers are judged: with the grid asked for, or one that fits them.
+    pub(crate) fn deposit_settings(&self, grid: Option<f64>) -> anyhow::Result<DepositSettings> {
+        let points = self.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+        let outlines = self.layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
+        match Bounds::of(points.chain(outlines)) {
+            Some(bounds) => fitted(grid, self.settings, &bounds, self.layers.len()),
+            None => Ok(self.settings),
+        }
+    }
+}
+
+/// Settings with the grid asked for, or with one that fits.
+pub(crate) fn fitted(
+    grid: Option<f64>,
+    settings: DepositSettings,
+    bounds: &Bounds,
+    layers: usize,
+) -> anyhow::Result<DepositSettings> {
+    let Some(step) = grid else { return Ok(settings.fitted_to(bounds, layers)) };
+    let (settings, size) = (DepositSettings { step, ..settings }, bounds.size());
+    let points = size.x * size.y / (step * step);
+    anyhow::ensure!(
+        points <= deposit::MANY_POINTS,
+        "--grid {step}: over {:.0} × {:.0} mm that are {points:.0e} points; at most {:.0e} are computed, that is --grid \
+         {:.3}.",
+        size.x,
+        size.y,
+        deposit::MANY_POINTS,
+        (size.x * size.y / deposit::MANY_POINTS).sqrt()
+    );
+    Ok(settings)
+}
+
+impl Source {
+    pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
+        let context = || format!("{}", path.display());
+        let text = text::of(&file::read(path)?).with_context(context)?;
+        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let content = if text.trim_start().starts_with('{') {
+            Content::Plan(plan_file::read(&text).with_context(context)?)
+        } else {
+            Content::Program(text)
+        };
+        Ok(Self { path: path.to_owned(), name, content })
+    }
+
+    /// The plan, if it is one.
+    pub(crate) fn plan(&self) -> Option<&PlanFile> {
+        match &self.content {
+            Content::Plan(plan) => Some(plan),
+            Content::Program(_) => None,
+        }
+    }
+
+    /// The profile that is asked for; if none is, that of the plan or the one that the program names.
+    pub(crate) fn profile(&self, wanted: &Wanted) -> anyhow::Result<Profile> {
+        if let Some(name) = &wanted.profile {
+            return profile::load(name, &wanted.set);
+        }
+        match &self.content {
+            Content::Plan(PlanFile { profile: Some(profile), .. }) if wanted.set.is_empty() => Ok(profile.clone()),
+            Content::Plan(PlanFile { profile: Some(profile), .. }) => {
+                profile::with_settings(profile.toml_text()?, &wanted.set)
+            }
+            Content::Plan(PlanFile { header, .. }) => anyhow::bail!(
+                "{}: this plan.json is of version 1 and does not carry its profile{}. Give it with --profile, or make the \
+                 plan again.",
+                self.path.display(),
+                if header.profile.is_empty() { String::new() } else { format!(" (\"{}\")", header.profile) }
+            ),
+            Content::Program(text) => profile::load(told_profile(text).unwrap_or(profile::USUAL), &wanted.set),
+        }
+    }
+
+    /// The layers. With a part, its slices become the islands of a program's layers.
     pub(crate) fn load(
-        &self,
-        path: &Path,
+        self,
+        reading: &Reading,
+        wanted: &Wanted,
         profile: &Profile,
         part: Option<&Import>,
         task: &Task,
     ) -> anyhow::Result<Loaded> {
-        let bytes = fs::read(path).with_context(|| format!("{}", path.display()))?;
-        let text = String::from_utf8_lossy(&bytes);
-        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        if text.trim_start().starts_with('{') {
-            return load_plan(&name, &text, profile).with_context(|| format!("{}", path.display()));
-        }
+        let Self { path, name, content } = self;
+        let text = match content {
+            Content::Plan(plan) => return Ok(layers_of(name, plan, profile)),
+            Content::Program(text) => text,
+        };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
         let mut module = |name: &str| find_module(&folder, name);
         let inform_cm_per_min =
             profile.dialects.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
-        let options = reading::Options { arc: self.codes(profile), filament_diameter: None, inform_cm_per_min };
+        let options = reading::Options { arc: reading.codes(profile), filament_diameter: None, inform_cm_per_min };
         let program = reading::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
+        let (told, printer) = (told_profile(&text), program.moves.iter().any(|m| matches!(m.metal, Metal::Volume(_))));
+        anyhow::ensure!(
+            !printer || told.is_some() || wanted.profile.is_some(),
+            "{}: this is a printer's program, and it does not say for which bead: give a profile with --profile, such as \
+             fdm-abs-0.4, or your own.",
+            path.display()
+        );
         let settings = plan::deposit_settings(profile);
-        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, self.bead_width);
+        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, reading.bead_width);
         let mut notes = program.notes.clone();
+        if wanted.profile.is_none() {
+            let source = if told.is_some() { "the program names it" } else { "--profile tells another" };
+            notes.insert(0, format!("Read with the profile {} ({source}).", profile.name));
+        }
         if let Some(part) = part {
             if let Some(by) = simulate::shift(&layers, &part.mesh, &settings) {
                 simulate::translate(&mut layers, by);
@@ -82,7 +182,19 @@ impl Reading {
         }
         Ok(Loaded { name, language, layers, totals, settings, notes })
     }
+}
 
+/// The built-in profile that a program of ours names in its first comments, after the part: `; cross, fdm-abs-0.4`.
+fn told_profile(text: &str) -> Option<&'static str> {
+    const HEAD: usize = 40;
+    let told = |line: &str| {
+        let line = line.trim_end_matches(|c: char| !c.is_ascii_alphanumeric());
+        BUILT_IN.iter().map(|(name, _)| *name).find(|name| line.strip_suffix(name).is_some_and(|l| l.ends_with(", ")))
+    };
+    text.lines().take(HEAD).find_map(told)
+}
+
+impl Reading {
     /// What switches the arc: the words given, and the lines of the profile's templates without placeholders.
     fn codes(&self, profile: &Profile) -> ArcCodes {
         let templates = profile.dialects.arc_codes();
@@ -93,13 +205,12 @@ impl Reading {
     }
 }
 
-fn load_plan(name: &str, text: &str, profile: &Profile) -> anyhow::Result<Loaded> {
-    let file = plan_file::read(text)?;
-    let settings = file.settings.unwrap_or_else(|| plan::deposit_settings(profile));
+fn layers_of(name: String, plan: PlanFile, profile: &Profile) -> Loaded {
+    let settings = plan.settings.unwrap_or_else(|| plan::deposit_settings(profile));
     let mut metrics = Metrics::new(profile);
-    file.layers.iter().for_each(|layer| metrics.add(layer));
+    plan.layers.iter().for_each(|layer| metrics.add(layer));
     let (totals, notes) = (Totals::of_plan(&metrics), Vec::new());
-    Ok(Loaded { name: name.to_owned(), language: "plan", layers: file.layers, totals, settings, notes })
+    Loaded { name, language: "plan", layers: plan.layers, totals, settings, notes }
 }
 
 /// A module beside the program, whatever its case and extension.
@@ -113,7 +224,7 @@ fn find_module(folder: &Path, name: &str) -> Option<String> {
     let mut files: Vec<PathBuf> =
         fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.path())).filter(fits).collect();
     files.sort();
-    fs::read(files.first()?).ok().map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+    text::of(&file::read(files.first()?).ok()?).ok()
 }
 
 /// The profile of a plan or program, and the part it was made for.
@@ -124,7 +235,14 @@ pub(crate) fn part(
     task: &Task,
 ) -> anyhow::Result<Option<Import>> {
     let place = |path: &Path| {
-        let model = model::Model { model: path.to_owned(), units, scale: 1.0, turn: glam::DVec3::ZERO, centre: false };
+        let model = model::Model {
+            model: path.to_owned(),
+            units,
+            scale: 1.0,
+            turn: glam::DVec3::ZERO,
+            centre: false,
+            accept_damaged: false,
+        };
         model.placed(profile.bead.width, task)
     };
     path.map(place).transpose()

@@ -1,8 +1,11 @@
-//! The progress bar and Ctrl-C, both through the library's task handle.
+//! The progress bar and Ctrl-C (or SIGTERM), both through the library's task handle.
 
 use beadwright::task::Task;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::OnceLock;
+
+static RUNNING: OnceLock<Task> = OnceLock::new();
 
 /// A task that draws a bar when standard error is a terminal, and that Ctrl-C cancels.
 pub(crate) fn task() -> anyhow::Result<(Task, ProgressBar)> {
@@ -13,7 +16,12 @@ pub(crate) fn task() -> anyhow::Result<(Task, ProgressBar)> {
         shown.set_message(stage.name());
         shown.set_position((fraction * 1000.0) as u64);
     });
-    let handle = task.clone();
-    ctrlc::set_handler(move || handle.cancel())?;
+    _ = RUNNING.set(task.clone());
+    ctrlc::set_handler(cancel)?;
     Ok((task, bar))
+}
+
+/// Stops the task, if one runs.
+pub(crate) fn cancel() {
+    RUNNING.get().into_iter().for_each(Task::cancel);
 }

@@ -1,10 +1,8 @@
 //! `beadwright reach`: whether a robot can weld a plan, and with what margins.
 
-use crate::profile;
+use crate::{file, profile, program};
 use anyhow::{Context, bail};
 use beadwright::files::write_file;
-use beadwright::plan_file::{self, PlanFile};
-use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, cell};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,9 +19,8 @@ pub(crate) struct Arguments {
     /// Place of the part's origin, instead of the one in the cell: x,y,z in mm and the turn about the vertical in °.
     #[arg(long, value_name = "X,Y,Z[,TURN]", value_parser = parse_place, allow_hyphen_values = true)]
     at: Option<PartPlace>,
-    /// Profile with the travel speed and clearance, if the plan's profile is not a built-in one.
-    #[arg(long, short, value_name = "NAME|FILE")]
-    profile: Option<String>,
+    #[command(flatten)]
+    wanted: profile::Wanted,
     /// Search for a place of the part that gives more margin.
     #[arg(long)]
     suggest: bool,
@@ -53,9 +50,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let (Some(path), Some(name)) = (&arguments.plan, &arguments.cell) else { bail!("a plan and --cell are needed") };
     let cell = load_cell(name)?;
-    let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
-    let plan = plan_file::read(&text).with_context(|| format!("{}", path.display()))?;
-    let profile = plan_profile(arguments, &plan)?;
+    let source = program::Source::open(path)?;
+    let Some(plan) = source.plan() else { bail!("{}: give the plan.json of the program", path.display()) };
+    let profile = source.profile(&arguments.wanted)?;
     let track = Track::of(&plan.layers, &profile);
     if track.stops.is_empty() {
         bail!("{}: the plan has no passes.", path.display());
@@ -201,22 +198,8 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     if !is_file {
         return Ok(Cell::built_in(name)?);
     }
-    let text = std::fs::read_to_string(path).with_context(|| name.to_owned())?;
+    let text = file::text(path)?;
     Cell::parse(&text).with_context(|| name.to_owned())
-}
-
-/// The requested profile, or the plan's own.
-fn plan_profile(arguments: &Arguments, plan: &PlanFile) -> anyhow::Result<Profile> {
-    match &arguments.profile {
-        Some(name) => profile::load(name, &[]),
-        None => Profile::built_in(&plan.header.profile).with_context(|| {
-            format!(
-                "the plan was made with the profile \"{}\", whose travel speed and clearance are needed: give its file with \
-                 --profile",
-                plan.header.profile
-            )
-        }),
-    }
 }
 
 fn parse_place(text: &str) -> Result<PartPlace, String> {

@@ -15,6 +15,7 @@ fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
         PartError::NoHeight => "--height tells it, in mm.",
         PartError::HeightOfSolid => "Leave --height out.",
         PartError::Import(ImportError::TooFar { .. }) => "--units tells the unit.",
+        PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged takes what there is of it.",
         _ => return None,
     })
 }

@@ -3,7 +3,6 @@
 use crate::plan::parse_grid;
 use crate::{model, profile, program, progress};
 use beadwright::compare::{self, Entry};
-use beadwright::deposit::DepositSettings;
 use beadwright::files::write_file;
 use beadwright::model::Units;
 use beadwright::report::rows;
@@ -23,12 +22,8 @@ pub(crate) struct Arguments {
     /// Unit of the part's coordinates.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", requires = "model")]
     units: Option<Units>,
-    /// Profile with the bead laid by the program: a built-in name or a TOML file.
-    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
-    profile: String,
-    /// Change a value of the profile, such as bead.width=5; may be given several times.
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    wanted: profile::Wanted,
     #[command(flatten)]
     reading: program::Reading,
     /// Grid spacing, mm; a twentieth of the bead width if left out.
@@ -43,11 +38,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let source = program::Source::open(&arguments.file)?;
+    let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
     let part = program::part(arguments.model.as_deref(), arguments.units, &profile, &task)?;
-    let loaded = arguments.reading.load(&arguments.file, &profile, part.as_ref(), &task)?;
-    let settings = DepositSettings { step: arguments.grid.unwrap_or(loaded.settings.step), ..loaded.settings };
+    let loaded = source.load(&arguments.reading, &arguments.wanted, &profile, part.as_ref(), &task)?;
+    let settings = loaded.deposit_settings(arguments.grid)?;
     let entry = compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &None, &task)?;
     bar.finish_and_clear();
     let lead = format!(

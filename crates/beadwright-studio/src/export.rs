@@ -3,7 +3,6 @@
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
 use beadwright::files::{Folder, PLAN, PlanFiles, Programs};
-use beadwright::plan::deposit_settings_over;
 use std::path::Path;
 
 /// What can be written into a folder.
@@ -76,8 +75,7 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
         return Err(NOT_YET.to_owned());
     };
     let programs = Programs::new(dialects, &profile.job(&header.part)).map_err(|error| error.to_string())?;
-    let settings = deposit_settings_over(profile, part.bounds());
-    let (mut files, mut chunks) = PlanFiles::begin(header, profile, &settings, programs, 0);
+    let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, 0);
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }

@@ -161,7 +161,7 @@ fn files_of_a_program_are_all_written_or_none() {
     let write = |names: &[&str]| {
         let mut folder = Folder::new(&out)?;
         names.iter().try_for_each(|name| folder.append(name, "text"))?;
-        folder.commit()
+        folder.commit().map(|written| written.files)
     };
     let error = write(&["a.src", "no/such/b.src"]).unwrap_err().to_string();
     assert!(error.contains("b.src"), "{error}");

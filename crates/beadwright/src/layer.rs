@@ -2,7 +2,8 @@
 
 use crate::pass::Pass;
 use crate::warning::Warning;
-use planar::Polygon;
+use glam::DVec2;
+use planar::{Join, Polygon, Region};
 
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,8 +20,24 @@ pub struct Layer {
     pub passes: Vec<Pass>,
     /// Area of the slice, mm².
     pub slice_area: f64,
-    /// Area within reach of a bead, mm².
+    /// Area that beads cover, mm².
     pub planned_area: f64,
     /// What was lost or mended here.
     pub warnings: Vec<Warning>,
+}
+
+/// Where islands hang farther than `reach` (mm) beyond those below: area (mm²) and a place; smaller areas than half a bead's
+/// `width` squared do not count.
+pub fn overhang(below: &[Polygon], above: &[Polygon], reach: f64, width: f64) -> Option<(f64, DVec2)> {
+    /// Smaller areas do not count, in squared bead widths.
+    const SMALLEST: f64 = 0.5;
+    if below == above {
+        return None;
+    }
+    let [below, above] = [below, above].map(|islands| Region::from_normalised(islands.to_vec()));
+    let free = above.difference(&below.offset(reach, Join::ROUND));
+    let large = free.polygons().iter().filter(|p| p.area() > SMALLEST * width * width);
+    let area: f64 = large.clone().map(Polygon::area).sum();
+    let place = *large.clone().next()?.outer.points().first()?;
+    Some((area, place))
 }

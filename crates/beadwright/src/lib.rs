@@ -63,6 +63,7 @@ pub mod reproduce;
 pub mod task;
 #[doc(hidden)]
 pub mod template;
+pub mod text;
 #[doc(hidden)]
 pub mod warning;
 #[doc(hidden)]

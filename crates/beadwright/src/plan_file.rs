@@ -1,32 +1,31 @@
-//! plan.json, version 1: the plan as text, written layer by layer, and read back.
+//! plan.json, version 2: the plan as text, written layer by layer, and read back. It carries the whole profile that it was
+//! made with. Lengths are in mm, paces in mm/s.
+//!
+//! Version 1, which is still read, holds only the name of the profile and its bead, and calls the pace `speed`.
 
 use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
+use crate::model::MAX_REACH_MM;
 use crate::number::push_fixed;
 use crate::pass::{Along, Pass, PassKind};
-use crate::plan::Header;
+use crate::plan::{self, Header};
+use crate::profile::{Profile, ProfileError};
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;
 use serde_json::json;
 
 /// Version of the format.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Decimals of coordinates: the 0.1 µm grid of the plane.
 const DECIMALS: usize = 4;
 
 /// The text before the first layer.
-pub fn head(header: &Header, settings: &DepositSettings) -> String {
-    let Header { part, profile, strategy, .. } = header;
-    let Nominal { bead, pace, rise } = settings.nominal;
-    let fields = json!({
-        "part": part, "profile": profile, "strategy": strategy,
-        "bead": { "width": bead.width, "height": bead.height, "speed": pace, "rise": rise, "section": bead.section },
-        "machining_allowance": settings.machining_allowance,
-    });
-    let fields = fields.to_string();
+pub fn head(header: &Header, profile: &Profile) -> String {
+    let Header { part, strategy, .. } = header;
+    let fields = json!({ "part": part, "strategy": strategy, "profile": profile }).to_string();
     format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
@@ -63,7 +62,7 @@ fn pass(text: &mut String, pass: &Pass) {
     list(text, &pass.points, |text, p| numbers(text, &p.to_array()));
     text.push_str(",\"width\":");
     along(text, &pass.width);
-    text.push_str(",\"speed\":");
+    text.push_str(",\"pace\":");
     along(text, &pass.pace);
     text.push('}');
 }
@@ -99,7 +98,9 @@ fn list<T>(text: &mut String, items: &[T], mut write: impl FnMut(&mut String, &T
 pub struct PlanFile {
     /// Part, profile and strategy.
     pub header: Header,
-    /// The settings and bead it was made for; `None` in files that do not say.
+    /// The profile it was made with; `None` in version 1.
+    pub profile: Option<Profile>,
+    /// The settings and bead it was made for; `None` in files of version 1 that do not say.
     pub settings: Option<DepositSettings>,
     /// Its layers; planned areas and warnings are not in the file.
     pub layers: Vec<Layer>,
@@ -112,13 +113,32 @@ pub enum PlanFileError {
     #[error("this is not a plan.json of Beadwright: {0}. Make the plan again with `beadwright plan`.")]
     Malformed(#[from] serde_json::Error),
     /// Another version.
-    #[error("this plan.json has version {0}; version {VERSION} is read. Make the plan again with `beadwright plan`.")]
+    #[error(
+        "this plan.json has version {0}; versions 1 and {VERSION} are read. Make the plan again with `beadwright plan`."
+    )]
     Version(u32),
+    /// Not in millimetres.
+    #[error("this plan.json is in \"{0}\"; plans are in \"mm\". Make the plan again with `beadwright plan`.")]
+    Units(String),
+    /// Its profile is not one.
+    #[error("the profile in this plan.json: {0}. Make the plan again with `beadwright plan`.")]
+    Profile(#[from] ProfileError),
+    /// Nothing to weld.
+    #[error("this plan.json holds no layers. Make the plan again with `beadwright plan`.")]
+    Empty,
     /// An impossible bead.
     #[error(
-        "width, height, speed and rise of the bead must be greater than 0. Make the plan again with `beadwright plan`."
+        "width, height, speed and rise of the bead must be greater than 0 and below {MAX_REACH_MM}, the machining allowance 0 to 50 mm. Make the plan again with `beadwright plan`."
     )]
     Bead,
+    /// An impossible layer.
+    #[error("layer {layer}: {reason}. Make the plan again with `beadwright plan`.")]
+    Layer {
+        /// Number of the layer, from 1.
+        layer: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
     /// Values that do not belong together.
     #[error("layer {layer}, pass {pass}: {reason}. Make the plan again with `beadwright plan`.")]
     Pass {
@@ -137,34 +157,59 @@ pub enum PlanFileError {
 /// [`PlanFileError`] with the line, or the layer and pass.
 pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     let file: File = serde_json::from_str(text)?;
-    if file.version != VERSION {
+    if !(1..=VERSION).contains(&file.version) {
         return Err(PlanFileError::Version(file.version));
     }
-    if file.bead.as_ref().is_some_and(|b| [b.width, b.height, b.speed, b.rise].iter().any(|&v| v <= 0.0)) {
-        return Err(PlanFileError::Bead);
+    if file.units != "mm" {
+        return Err(PlanFileError::Units(file.units));
     }
-    let settings = file.bead.map(|b| {
-        let bead = Bead { width: b.width, height: b.height, section: b.section };
-        DepositSettings::new(Nominal { bead, pace: b.speed, rise: b.rise }, file.machining_allowance)
-    });
-    let layers = file.layers.into_iter().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
-    let header = Header { part: file.part, profile: file.profile, strategy: file.strategy, layers: layers.len() };
-    Ok(PlanFile { header, settings, layers })
+    let (name, profile, settings) = match file.profile {
+        FileProfile::Whole(profile) => {
+            let profile = Profile::from_json(&profile)?;
+            (profile.name.clone(), Some(profile.clone()), Some(plan::deposit_settings(&profile)))
+        }
+        FileProfile::Name(name) => (name, None, file.bead.map(|b| b.settings(file.machining_allowance)).transpose()?),
+    };
+    let layers = file.layers.into_iter().enumerate().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
+    if layers.is_empty() {
+        return Err(PlanFileError::Empty);
+    }
+    let header = Header { part: file.part, profile: name, strategy: file.strategy, layers: layers.len() };
+    Ok(PlanFile { header, profile, settings, layers })
 }
 
 #[derive(Deserialize)]
 struct File {
     version: u32,
+    #[serde(default = "millimetres")]
+    units: String,
     #[serde(default)]
     part: String,
     #[serde(default)]
-    profile: String,
+    profile: FileProfile,
     #[serde(default)]
     strategy: String,
     bead: Option<FileBead>,
     #[serde(default)]
     machining_allowance: f64,
     layers: Vec<FileLayer>,
+}
+
+fn millimetres() -> String {
+    "mm".to_owned()
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum FileProfile {
+    Name(String),
+    Whole(serde_json::Value),
+}
+
+impl Default for FileProfile {
+    fn default() -> Self {
+        Self::Name(String::new())
+    }
 }
 
 #[derive(Deserialize)]
@@ -198,7 +243,8 @@ struct FilePass {
     closed: bool,
     points: Vec<DVec3>,
     width: FileAlong,
-    speed: FileAlong,
+    #[serde(alias = "speed")]
+    pace: FileAlong,
 }
 
 #[derive(Deserialize)]
@@ -208,9 +254,36 @@ enum FileAlong {
     Each(Vec<f64>),
 }
 
+impl FileBead {
+    fn settings(self, machining_allowance: f64) -> Result<DepositSettings, PlanFileError> {
+        let Self { width, height, speed, rise, section } = self;
+        if ![width, height, speed, rise].iter().all(|&v| possible(v)) || !(0.0..=50.0).contains(&machining_allowance) {
+            return Err(PlanFileError::Bead);
+        }
+        let nominal = Nominal { bead: Bead { width, height, section }, pace: speed, rise };
+        Ok(DepositSettings::new(nominal, machining_allowance))
+    }
+}
+
+/// Whether a width, a height (mm) or a pace (mm/s) is one that a machine could lay.
+fn possible(value: f64) -> bool {
+    value > 0.0 && value <= MAX_MEASURE
+}
+
+/// Greatest width, height or pace.
+const MAX_MEASURE: f64 = 2000.0;
+
 impl FileLayer {
-    fn layer(self) -> Result<Layer, PlanFileError> {
-        let Self { index, z, height, islands, passes } = self;
+    fn layer((number, layer): (usize, Self)) -> Result<Layer, PlanFileError> {
+        let Self { index, z, height, islands, passes } = layer;
+        let wrong = |reason| Err(PlanFileError::Layer { layer: number + 1, reason });
+        if index != number {
+            return wrong("its index is not its place in the list, counted from 0");
+        }
+        let outlines = || islands.iter().flat_map(|i| i.holes.iter().chain([&i.outline]).flatten());
+        if !possible(height) || !near(z) || !outlines().all(|p| near(p.x) && near(p.y)) {
+            return wrong("its height or a coordinate is out of all bounds (20 m)");
+        }
         let islands: Vec<Polygon> = islands.into_iter().map(FileIsland::polygon).collect();
         let read = |(i, pass): (usize, FilePass)| {
             pass.pass().map_err(|reason| PlanFileError::Pass { layer: index + 1, pass: i + 1, reason })
@@ -219,6 +292,11 @@ impl FileLayer {
         let slice_area = islands.iter().map(Polygon::area).sum();
         Ok(Layer { index, z, height, islands, passes, slice_area, ..Layer::default() })
     }
+}
+
+/// Whether a coordinate is in reach, mm.
+fn near(coordinate: f64) -> bool {
+    coordinate.abs() <= MAX_REACH_MM
 }
 
 impl FileIsland {
@@ -233,13 +311,16 @@ impl FilePass {
         if count < 2 {
             return Err("a pass needs two points");
         }
+        if !self.points.iter().all(|p| near(p.x) && near(p.y) && near(p.z)) {
+            return Err("a coordinate is out of all bounds (20 m)");
+        }
         let along = |along: FileAlong| match along {
-            FileAlong::Same(value) if value > 0.0 => Ok(Along::Same(value)),
-            FileAlong::Each(values) if values.len() != count => Err("width and speed need one value, or one per point"),
-            FileAlong::Each(values) if values.iter().all(|&v| v > 0.0) => Ok(Along::Each(values)),
-            _ => Err("widths and speeds must be greater than 0"),
+            FileAlong::Same(value) if possible(value) => Ok(Along::Same(value)),
+            FileAlong::Each(values) if values.len() != count => Err("width and pace need one value, or one per point"),
+            FileAlong::Each(values) if values.iter().all(|&v| possible(v)) => Ok(Along::Each(values)),
+            _ => Err("widths and paces must be greater than 0 and at most 2000"),
         };
-        let (width, pace) = (along(self.width)?, along(self.speed)?);
+        let (width, pace) = (along(self.width)?, along(self.pace)?);
         Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace })
     }
 }

@@ -25,10 +25,34 @@ pub enum WarningKind {
     /// The strategy could not fill an island (its passes left it, crossed, or were none), and contours fill it instead; the
     /// size is its area, mm².
     Refilled,
+    /// Beads leave part of an island bare; the size is that area, mm².
+    Bare,
+    /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
+    Unsound,
+    /// Nothing lies below the first bead, or below a whole layer; the size is the gap, mm.
+    NothingBelow,
+    /// Part of a layer reaches farther than check.max_overhang beyond the one below; the size is its area, mm².
+    Overhang,
+    /// A pass is over before its arc is steady; the size is its length, mm.
+    ShortArc,
+    /// A layer has more points than check.max_points; the size is their number.
+    ManyPoints,
+    /// A hole or an island too thin to be anything was left out; the size is its area, mm².
+    Sliver,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,
     /// A layer between the lowest and the highest holds nothing.
     EmptyLayer,
+}
+
+/// Holes and islands thinner than this are left out, mm.
+pub const SLIVER_MM: f64 = 0.05;
+
+impl WarningKind {
+    /// Whether a program with such a fault is not written unless somebody insists.
+    pub fn forbids(self) -> bool {
+        matches!(self, Self::Unsound | Self::NothingBelow)
+    }
 }
 
 /// One event on one layer.
@@ -135,7 +159,40 @@ impl WarningSummary {
                  {size:.1} mm {place}.",
                 times("pass", "passes")
             ),
-            WarningKind::EmptyLayer => format!("{layers}: nothing to deposit. The part has a gap there."),
+            WarningKind::Bare => format!(
+                "{layers}: {} of which the beads leave more than 1 % bare, {total:.1} mm² in all, the most {size:.1} mm² \
+                 {place}.",
+                times("island", "islands")
+            ),
+            WarningKind::Unsound => format!(
+                "{layers}: {} in which passes leave the part or cross each other {place}.",
+                times("island", "islands")
+            ),
+            WarningKind::NothingBelow => format!(
+                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead (layer {}). \
+                 Cut the model off below, or take a narrower bead that fills what lies there.",
+                largest.layer + 1
+            ),
+            WarningKind::Overhang => format!(
+                "{layers}: places that reach farther beyond the layer below than check.max_overhang, {total:.1} mm² in all, \
+                 the largest {size:.1} mm² {place}. There is nothing to weld on."
+            ),
+            WarningKind::ShortArc => format!(
+                "{layers}: {} over before the arc is steady (process.arc_start_delay), the longest {size:.1} mm {place}.",
+                times("pass is", "passes are")
+            ),
+            WarningKind::ManyPoints => format!(
+                "{layers}: more points than check.max_points, at most {size:.0}. The controller may not load the program; \
+                 raise slice.simplify or let arcs be fitted."
+            ),
+            WarningKind::Sliver => format!(
+                "{layers}: {} thinner than {SLIVER_MM} mm left out, {total:.2} mm² in all, the largest {size:.2} mm² {place}: \
+                 gaps between shells that touch, or remains of the model's rounding.",
+                times("hole or island", "holes or islands")
+            ),
+            WarningKind::EmptyLayer => {
+                format!("{layers}: nothing to deposit: the part has a gap there, or all of its contours were dropped.")
+            }
         }
     }
 

@@ -235,11 +235,11 @@ fn plan_json_holds_the_plan() {
     let profile = profile("cmt-al2319-kuka", "compound", 0.0);
     let plan = plan_of(&example::find("gear").unwrap().mesh(), &profile);
     let settings = plan::deposit_settings(&profile);
-    let mut text = plan_file::head(&plan.header, &settings);
+    let mut text = plan_file::head(&plan.header, &profile);
     plan.layers.iter().for_each(|l| text.push_str(&plan_file::layer(l)));
     text.push_str(plan_file::tail());
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!((json["version"].as_u64(), json["units"].as_str()), (Some(1), Some("mm")));
+    assert_eq!((json["version"].as_u64(), json["units"].as_str()), (Some(2), Some("mm")));
     let layers = json["layers"].as_array().unwrap();
     assert_eq!(layers.len(), plan.layers.len());
     for (read, layer) in layers.iter().zip(&plan.layers) {
@@ -251,19 +251,25 @@ fn plan_json_holds_the_plan() {
             let points: Vec<[f64; 3]> = serde_json::from_value(read["points"].clone()).unwrap();
             assert_eq!(points.len(), pass.points.len());
             assert!(points.iter().zip(&pass.points).all(|(a, b)| distance(*a, b.to_array()) < 1e-4));
-            assert_eq!(read["speed"].as_f64(), Some(10.5));
+            assert_eq!(read["pace"].as_f64(), Some(10.5));
         }
     }
     let read = plan_file::read(&text).unwrap();
     assert_eq!((read.header, read.settings.unwrap()), (plan.header.clone(), settings));
+    assert_eq!(read.profile, Some(profile));
     for (read, layer) in read.layers.iter().zip(&plan.layers) {
         assert!((read.slice_area / layer.slice_area - 1.0).abs() < 1e-6);
         assert_eq!(read.passes.len(), layer.passes.len());
         assert!(read.passes.iter().zip(&layer.passes).all(|(a, b)| (a.length() - b.length()).abs() < 0.01));
     }
     for (from, to, word) in [
-        ("\"version\":1", "\"version\":9", "version 9"),
-        ("\"speed\":10.5", "\"speed\":-1", "greater than 0"),
+        ("\"version\":2", "\"version\":9", "version 9"),
+        ("\"units\":\"mm\"", "\"units\":\"in\"", "is in \"in\""),
+        ("\"width\":7.54,\"pace\"", "\"width\":1e5,\"pace\"", "at most 2000"),
+        ("[[", "[[1e9,0,0],[", "out of all bounds"),
+        ("\"deposition_speed\":10.5", "\"deposition_speed\":-1.0", "process.deposition_speed"),
+        ("\"index\":0", "\"index\":7", "its place in the list"),
+        ("\"pace\":10.5", "\"pace\":-1", "greater than 0"),
         ("\"kind\":\"contour\"", "\"kind\":\"loop\"", "unknown variant"),
         ("\"layers\":[", "\"layers\":{", "line 1"),
     ] {

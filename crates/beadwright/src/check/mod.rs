@@ -5,6 +5,7 @@
 
 mod air;
 mod bead_width;
+mod clearance;
 mod crossing;
 mod dense_points;
 mod heat_input;
@@ -33,11 +34,12 @@ use serde::Serialize;
 use std::borrow::Borrow;
 
 /// The checks.
-pub const CHECKS: [Check; 18] = [
+pub const CHECKS: [Check; 19] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
     crossing::CHECK,
+    clearance::CHECK,
     short_pass::CHECK,
     short_arc::CHECK,
     speed_window::CHECK,

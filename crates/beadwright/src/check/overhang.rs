@@ -1,8 +1,7 @@
 //! Layers that hang over.
 
 use super::{Check, Finding, Subject};
-use crate::layer::Layer;
-use planar::{Join, Region};
+use crate::layer::{Layer, overhang};
 
 pub(super) const CHECK: Check = Check {
     name: "overhang",
@@ -13,20 +12,13 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
-/// Smaller areas do not count, in squared bead widths.
-const SMALLEST: f64 = 0.5;
-
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
     let hanging = |pair: &[&Layer]| {
-        let [below, above] = [0, 1].map(|i| Region::from_normalised(pair[i].islands.clone()));
-        let free = above.difference(&below.offset(reach, Join::ROUND));
-        let large = free.polygons().iter().filter(|p| p.area() > SMALLEST * width * width);
-        let area: f64 = large.clone().map(planar::Polygon::area).sum();
-        let place = large.clone().next()?.outer.points().first()?.extend(pair[1].z);
+        let (area, place) = overhang(&pair[0].islands, &pair[1].islands, reach, width)?;
         let text = format!("{area:.1} mm² reach more than {reach:.1} mm beyond the layer below.");
-        Some(Finding { place: Some(place), ..Finding::of_layer(&CHECK, pair[1], text) })
+        Some(Finding { place: Some(place.extend(pair[1].z)), ..Finding::of_layer(&CHECK, pair[1], text) })
     };
     subject.layers.windows(2).filter_map(hanging).collect()
 }

@@ -12,7 +12,7 @@ mod stage;
 #[cfg(feature = "files")]
 pub use folder::{Folder, FolderError, Written, write_file};
 
-use crate::deposit::{DepositSettings, Figures, Judgement};
+use crate::deposit::{Figures, Judgement};
 use crate::dialect::{self, Chunk, DialectError, Job, Writer, writer};
 use crate::layer::Layer;
 use crate::model::RepairReport;
@@ -87,14 +87,8 @@ pub struct PlanFiles {
 
 impl PlanFiles {
     /// Begins the files of a plan and returns their first text; the programs begin with layer index `from_layer`.
-    pub fn begin(
-        header: &Header,
-        profile: &Profile,
-        settings: &DepositSettings,
-        mut programs: Programs,
-        from_layer: usize,
-    ) -> (Self, Vec<Chunk>) {
-        let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, settings))];
+    pub fn begin(header: &Header, profile: &Profile, mut programs: Programs, from_layer: usize) -> (Self, Vec<Chunk>) {
+        let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, profile))];
         chunks.extend(programs.begin(header.layers));
         let report = Report::new(header, profile);
         let mut files = Self { programs, report, from_layer, names: BTreeSet::new() };

@@ -16,6 +16,7 @@
 pub mod angle;
 pub mod compound;
 pub mod contour;
+pub mod coverage;
 pub mod hybrid;
 pub mod one_loop;
 pub mod raster;

@@ -1,11 +1,8 @@
 //! Whether the passes of an island can be welded at all: they stay inside it and do not cross each other.
 //!
-//! Offsets of the outline and scan lines clipped by it keep both by construction: contours and infill of one width.
-//! Everything else, lines placed by fields or fitted curves, is checked after filling, so that a fault of a strategy never
-//! reaches a robot.
+//! Every fill is checked, whatever strategy it is of, so that a fault of a strategy never reaches a robot.
 
 use super::Path;
-use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::Polygon;
 use rstar::primitives::{GeomWithData, Line};
@@ -32,12 +29,6 @@ pub enum Fault {
         /// Where, mm.
         place: DVec2,
     },
-}
-
-/// Whether a path is placed otherwise than by an offset or a clipped scan line.
-pub fn needs_check(path: &Path) -> bool {
-    let plain = matches!(path.kind, PassKind::Contour | PassKind::Infill) && matches!(path.width, Along::Same(_));
-    !plain
 }
 
 /// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm.

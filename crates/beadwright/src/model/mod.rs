@@ -25,7 +25,9 @@ pub use repair::RepairReport;
 pub use units::Units;
 
 use crate::task::{Cancelled, Task};
+use crate::text::{self, TextError};
 use glam::{DMat3, DVec3};
+use std::borrow::Cow;
 
 /// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
 pub const MAX_REACH_MM: f64 = 20_000.0;
@@ -80,12 +82,15 @@ pub enum ImportError {
         /// What speaks against it, with the byte or line.
         reason: String,
     },
-    /// The file ends too early.
-    #[error("the STL file is cut short: {reason}. Copy or export it again.")]
-    Truncated {
+    /// The file ends too early, or holds more than it says.
+    #[error("the STL file is damaged: {reason}. Copy or export it again.")]
+    Damaged {
         /// Where it ends and where it should.
         reason: String,
     },
+    /// The text cannot be decoded.
+    #[error(transparent)]
+    Text(#[from] TextError),
     /// A line of an ASCII STL that cannot be read.
     #[error("line {line} of the ASCII STL file cannot be read: {reason}.")]
     Line {
@@ -119,11 +124,25 @@ pub enum ImportError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Reads a model from the bytes of a file; the content decides the format, not the file's name.
+/// Reads a model from the bytes of a file; the content decides the format, not the file's name. A file that ends too early
+/// or holds more than it says is refused.
 ///
 /// # Errors
 /// [`ImportError`], with the byte or line and the reason.
 pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let import = import_damaged(bytes, task)?;
+    match import.repair.damage {
+        Some(reason) => Err(ImportError::Damaged { reason }),
+        None => Ok(import),
+    }
+}
+
+/// Like [`import`], but takes whatever triangles a damaged file holds; [`RepairReport::damage`] tells what is wrong.
+///
+/// # Errors
+/// [`ImportError`], with the byte or line and the reason.
+pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let bytes = &*decoded(bytes)?;
     if bytes.is_empty() {
         return Err(ImportError::Empty);
     }
@@ -136,6 +155,12 @@ pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         return Err(ImportError::OtherFormat { found });
     }
     stl::read(bytes, task)
+}
+
+/// Text as UTF-8 with usual line ends; anything else as it is.
+fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TextError> {
+    let is_text = stl::announced_size(bytes) != Some(bytes.len()) && text::needs_decoding(bytes);
+    Ok(if is_text { text::of(bytes)?.into_bytes().into() } else { bytes.into() })
 }
 
 /// Whether the bytes are those of an IGES file: the first card of the start section has S and its number in columns 73

@@ -3,7 +3,7 @@
 use super::iges::{self, IgesError, IgesFile};
 use super::units::{self, UnitsUnclear};
 use super::wall_curves::{WallCurves, WallCurvesError};
-use super::{Import, ImportError, Mesh, RepairReport, Units, import, is_iges};
+use super::{Import, ImportError, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
 use crate::task::Task;
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use planar::Bounds;
@@ -109,6 +109,23 @@ impl Model {
     /// # Errors
     /// [`PartError`].
     pub fn read(bytes: &[u8], task: &Task) -> Result<Self, PartError> {
+        Self::read_by(import, bytes, task)
+    }
+
+    /// Like [`Self::read`], but takes a damaged solid as it is, with a warning; see [`import_damaged`].
+    ///
+    /// # Errors
+    /// [`PartError`].
+    pub fn read_damaged(bytes: &[u8], task: &Task) -> Result<Self, PartError> {
+        Self::read_by(import_damaged, bytes, task)
+    }
+
+    fn read_by(
+        import: fn(&[u8], &Task) -> Result<Import, ImportError>,
+        bytes: &[u8],
+        task: &Task,
+    ) -> Result<Self, PartError> {
+        let bytes = &*decoded(bytes).map_err(ImportError::from)?;
         Ok(if is_iges(bytes) { Self::Curves(iges::read(bytes)?) } else { Self::Mesh(import(bytes, task)?) })
     }
 

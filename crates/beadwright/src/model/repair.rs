@@ -18,6 +18,8 @@ const CRACK: f64 = 1e-5;
 /// What was found in a mesh and what was done about it.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct RepairReport {
+    /// Why the file does not hold what it says, where a damaged file was accepted.
+    pub damage: Option<String>,
     /// Triangles in the file.
     pub triangles_read: usize,
     /// Triangles that remain.
@@ -48,13 +50,16 @@ impl RepairReport {
     /// Whether the mesh is closed and nothing had to be mended.
     pub fn is_clean(&self) -> bool {
         let mended = self.degenerate + self.duplicate + self.vertices_merged + self.flipped;
-        mended + self.open_edges + self.non_manifold_edges + self.normals_against_winding == 0 && !self.inside_out
+        mended + self.open_edges + self.non_manifold_edges + self.normals_against_winding == 0
+            && !self.inside_out
+            && self.damage.is_none()
     }
 
     /// The faults as sentences; empty when the mesh is clean.
     pub fn sentences(&self) -> Vec<String> {
         let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
-        let mut lines = Vec::new();
+        let mut lines: Vec<String> =
+            self.damage.iter().map(|what| format!("The file is damaged and was taken as it is: {what}.")).collect();
         let mut say = |n: usize, one: &str, many: &str, tail: &str| {
             if n > 0 {
                 lines.push(format!("{}{tail}.", plural(n, one, many)));

@@ -16,25 +16,37 @@ const RECORD: usize = 50;
 /// [`ImportError`] with the byte or line.
 pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     if announced_size(bytes) == Some(bytes.len()) {
-        return read_binary(bytes, task);
+        return read_binary(bytes, None, task);
     }
     if looks_ascii(bytes) {
         return read_ascii(bytes, task);
     }
+    let length = bytes.len();
     match announced_size(bytes) {
         None => Err(ImportError::NotStl {
             reason: format!("it has {} bytes, and a binary STL has at least {HEADER}", bytes.len()),
         }),
-        Some(size) if size > bytes.len() && plausible(bytes) => Err(ImportError::Truncated {
-            reason: format!(
-                "it announces {} triangles, which take {size} bytes, but ends at byte {}, in triangle {}",
-                (size - HEADER) / RECORD,
-                bytes.len(),
-                (bytes.len() - HEADER) / RECORD + 1
-            ),
-        }),
-        // Some programs append their own data; the announced triangles are all there.
-        Some(size) if size < bytes.len() && size > HEADER && plausible(bytes) => read_binary(&bytes[..size], task),
+        Some(size) if size > length && plausible(&bytes[HEADER..]) => {
+            let (announced, whole) = ((size - HEADER) / RECORD, (length - HEADER) / RECORD);
+            let damage = format!(
+                "it is cut short: it announces {announced} triangles, which take {size} bytes, but ends at byte {length}, in \
+                 triangle {}",
+                whole + 1
+            );
+            read_binary(&bytes[..HEADER + whole * RECORD], Some(damage), task)
+        }
+        Some(size) if size < length && size > HEADER && plausible(&bytes[HEADER..]) => {
+            let (announced, more) = ((size - HEADER) / RECORD, (length - size) / RECORD);
+            // Either the count is wrong and further triangles follow, or a program has appended data of its own.
+            let triangles = (length - size) % RECORD == 0 && bytes[size..].chunks(RECORD).all(plausible);
+            let (what, end) = if triangles {
+                (format!("{more} more follow"), length)
+            } else {
+                (format!("{} bytes follow that are none", length - size), size)
+            };
+            let damage = format!("bytes 80–83 announce {announced} triangles, but {what}");
+            read_binary(&bytes[..end], Some(damage), task)
+        }
         Some(size) => Err(ImportError::NotStl {
             reason: format!(
                 "bytes 80–83 announce {} triangles, but the file has {} bytes and no \"facet\" lines either",
@@ -52,10 +64,10 @@ pub(super) fn announced_size(bytes: &[u8]) -> Option<usize> {
     Some(HEADER + RECORD * count as usize)
 }
 
-/// Whether the first facet holds numbers of a usual size, as random bytes hardly ever do.
-fn plausible(bytes: &[u8]) -> bool {
-    let Some(first) = bytes.get(HEADER..HEADER + 48) else { return false };
-    let mut numbers = first.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
+/// Whether a record holds numbers of a usual size, as random bytes hardly ever do.
+fn plausible(record: &[u8]) -> bool {
+    let Some(facet) = record.get(..48) else { return false };
+    let mut numbers = facet.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
     numbers.all(|v| v == 0.0 || (1e-12..1e9).contains(&v.abs()))
 }
 
@@ -66,7 +78,7 @@ fn looks_ascii(bytes: &[u8]) -> bool {
     word(b"solid") && !head.contains(&0)
 }
 
-fn read_binary(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+fn read_binary(bytes: &[u8], damage: Option<String>, task: &Task) -> Result<Import, ImportError> {
     let records = bytes[HEADER..].as_chunks::<RECORD>().0;
     let facets = records.iter().map(|raw| {
         let number = |i: usize| f32::from_le_bytes([raw[4 * i], raw[4 * i + 1], raw[4 * i + 2], raw[4 * i + 3]]);
@@ -74,25 +86,26 @@ fn read_binary(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         (triple(0), [triple(3), triple(6), triple(9)])
     });
     let place = |i: usize| format!("byte {}", HEADER + RECORD * i);
-    build(facets, records.len(), "binary STL", place, task)
+    build(facets, (records.len(), damage), "binary STL", place, task)
 }
 
 fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
-    let (facets, lines) = parse_ascii(bytes, task)?;
+    let (facets, lines, damage) = parse_ascii(bytes, task)?;
     if facets.is_empty() {
         return Err(ImportError::NotStl { reason: "it begins with \"solid\" but holds no \"facet\"".to_owned() });
     }
     let count = facets.len();
-    build(facets.into_iter(), count, "ASCII STL", |i| format!("line {}", lines[i]), task)
+    build(facets.into_iter(), (count, damage), "ASCII STL", |i| format!("line {}", lines[i]), task)
 }
 
 type Facet = ([f32; 3], [[f32; 3]; 3]);
 
-/// Facets and the line on which each begins. Names of solids may be any bytes; several solids may follow.
-fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>), ImportError> {
+/// Facets, the line on which each begins, and what is missing at the end. Names of solids may be any bytes; several solids
+/// may follow.
+fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>, Option<String>), ImportError> {
     let (mut facets, mut lines): (Vec<Facet>, Vec<u32>) = (Vec::new(), Vec::new());
     let mut open: Option<([f32; 3], Vec<[f32; 3]>)> = None;
-    let mut line_number = 0;
+    let (mut line_number, mut in_solid) = (0, false);
     for line in bytes.split(|&b| b == b'\n') {
         line_number += 1;
         if line_number % 100_000 == 0 {
@@ -111,6 +124,7 @@ fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>), Impo
             // The normal is not needed: a missing or broken one is no reason to refuse the part.
             let normal = triple(words.skip(1)).unwrap_or_default();
             open = Some((normal, Vec::with_capacity(3)));
+            in_solid = true;
             lines.push(line_number as u32);
         } else if first.eq_ignore_ascii_case(b"endfacet") {
             let Some((normal, corners)) = open.take() else {
@@ -119,14 +133,17 @@ fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>), Impo
             let corners = <[[f32; 3]; 3]>::try_from(corners)
                 .map_err(|c| error(format!("the facet that ends here has {} vertices, not 3", c.len())))?;
             facets.push((normal, corners));
+        } else if first.eq_ignore_ascii_case(b"endsolid") {
+            in_solid = false;
         }
     }
-    if open.is_some() {
-        return Err(ImportError::Truncated {
-            reason: format!("it ends at line {line_number} in triangle {}", facets.len() + 1),
-        });
-    }
-    Ok((facets, lines))
+    let damage = if open.is_some() {
+        Some(format!("it is cut short: it ends at line {line_number} in triangle {}", facets.len() + 1))
+    } else {
+        in_solid
+            .then(|| format!("it ends at line {line_number} after {} triangles, without \"endsolid\"", facets.len()))
+    };
+    Ok((facets, lines, damage))
 }
 
 fn triple<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; 3], String> {
@@ -140,7 +157,7 @@ fn triple<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; 3], Str
 
 fn build(
     facets: impl Iterator<Item = Facet>,
-    count: usize,
+    (count, damage): (usize, Option<String>),
     format: &'static str,
     place: impl Fn(usize) -> String,
     task: &Task,
@@ -175,6 +192,7 @@ fn build(
         return Err(ImportError::NoTriangles { triangles: count });
     }
     repair.normals_against_winding = against;
+    repair.damage = damage;
     task.step(Stage::Import, 1.0)?;
     Ok(Import { mesh, repair, format })
 }

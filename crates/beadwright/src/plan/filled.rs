@@ -2,6 +2,7 @@
 
 use super::scan_lines::Planned;
 use crate::fill::contour::{Contour, rings_only};
+use crate::fill::coverage;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
@@ -49,12 +50,37 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         for stage in &mut fill.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
-        if fill.stages.iter().any(|stage| !stage.is_empty()) {
-            planned_area += reached;
-        }
+        planned_area += covered(&fill, island, profile, reached, slice.index, &mut slice.warnings);
         fills.push(fill);
     }
     Filled { slice, fills, planned_area }
+}
+
+/// An island is warned of when its beads leave bare more than this part of it.
+const WORTH_TELLING: f64 = 0.01;
+
+/// Area of an island that its beads cover, mm²; warns of what they leave bare.
+fn covered(
+    fill: &Fill,
+    island: &Polygon,
+    profile: &Profile,
+    reached: f64,
+    layer: usize,
+    warnings: &mut Vec<Warning>,
+) -> f64 {
+    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+    if paths.is_empty() {
+        return 0.0;
+    }
+    if profile.fill.infill_density < 1.0 {
+        // Bare on purpose.
+        return reached;
+    }
+    let (bare, area) = (coverage::bare(&paths, island, profile.bead.width), island.area());
+    if bare.area > WORTH_TELLING * area {
+        warnings.push(Warning { kind: WarningKind::Bare, layer, place: bare.place, size: bare.area });
+    }
+    (area - bare.area).max(0.0)
 }
 
 /// The fill of an island by a strategy, or, where that cannot be welded, by contours, with a warning.
@@ -69,7 +95,12 @@ fn sound_fill(
     let Some(place) = unsound(&fill, island, settings, reached) else { return fill };
     let sound = |fill: &Fill| unsound(fill, island, settings, reached).is_none();
     warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });
-    Some(Contour.fill(island, settings)).filter(sound).unwrap_or_else(|| rings_only(island, settings))
+    let fill = Some(Contour.fill(island, settings)).filter(sound).unwrap_or_else(|| rings_only(island, settings));
+    if let Some(place) = unsound(&fill, island, settings, 0.0) {
+        // No known part comes here.
+        warnings.push(Warning { kind: WarningKind::Unsound, layer: settings.layer, place, size: island.area() });
+    }
+    fill
 }
 
 /// Where the passes of a strategy cannot be welded: they leave the island or cross. An island with room for two beads side
@@ -79,9 +110,6 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     if paths.is_empty() {
         let wide = reached > 0.0 && !settings.outermost(island).is_empty();
         return wide.then(|| Bounds::of(island.outer.points().iter().copied()).map(|b| b.center())).flatten();
-    }
-    if !paths.iter().any(|path| sound::needs_check(path)) {
-        return None;
     }
     sound::fault(&paths, island, settings.machining_allowance).map(|fault| match fault {
         Fault::Outside { place, .. } | Fault::Crossing { place } => place,

@@ -24,7 +24,7 @@ use crate::bead::wall::{WallBead, WallError};
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Path, Strategy};
-use crate::layer::Layer;
+use crate::layer::{Layer, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
@@ -33,7 +33,7 @@ use crate::pass::Pass;
 use crate::profile::Profile;
 use crate::slice::{self, BATCH, LayerFit, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
-use crate::warning::{Warning, WarningKind, Warnings};
+use crate::warning::{Warning, WarningKind, WarningSummary, Warnings};
 use crate::weld;
 use filled::{Filled, drop_short, fill_planned};
 use glam::{DVec2, DVec3};
@@ -102,6 +102,8 @@ pub struct Summary {
     pub warnings: Warnings,
     /// What does not fit in the profile, as sentences.
     pub notes: Vec<String>,
+    /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
+    pub forbidden: Vec<String>,
 }
 
 impl Summary {
@@ -112,6 +114,7 @@ impl Summary {
         value["coverage"] = self.metrics.coverage().into();
         value["warnings"] = serde_json::json!(warnings);
         value["notes"] = serde_json::json!(self.notes);
+        value["forbidden"] = serde_json::json!(self.forbidden);
         value["deposit"] = serde_json::json!(figures.map(Figures::summary));
         value
     }
@@ -254,17 +257,63 @@ pub fn plan_with<S: Sink + Send>(
     };
     let mut summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
-        let largest = mesh.size();
-        return Err(PlanError::Empty(format!(
-            "no part of the slices is wide enough for a bead of {} mm (the part is {:.1} × {:.1} × {:.1} mm). \
-             Take a narrower bead or a larger part, or check the unit of the file.",
-            profile.bead.width, largest.x, largest.y, largest.z
-        )));
+        return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
     let closed = mesh.neighbours.iter().flatten().all(|&across| across != NO_NEIGHBOUR);
     summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| closed && *volume > 0.0);
-    summary.notes.splice(0..0, left);
+    let volumes = other_volume(&summary, left.is_some());
+    summary.notes.splice(0..0, left.into_iter().chain(volumes));
     Ok(summary)
+}
+
+/// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
+/// elsewhere than the part.
+fn other_volume(summary: &Summary, left: bool) -> Option<String> {
+    /// Fraction of the mesh's volume.
+    const WORTH_TELLING: f64 = 0.01;
+    let (slices, mesh) = (summary.metrics.part_volume_mm3, summary.metrics.mesh_volume_mm3?);
+    let more = slices / mesh - 1.0;
+    if more.abs() <= WORTH_TELLING {
+        return None;
+    }
+    let had = |kind| summary.warnings.summaries().any(|w| w.kind == kind);
+    let why = if had(WarningKind::ContoursUnited) {
+        "shells overlap, and the mesh counts twice what the slices count once"
+    } else if had(WarningKind::OpenContourDropped) {
+        "contours that are not closed were dropped"
+    } else if left {
+        "the layers do not end where the part does"
+    } else {
+        "each layer is as the part is at its middle; thinner layers follow the part more closely"
+    };
+    let percent = 100.0 * more;
+    Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
+}
+
+/// Why a solid gives no passes: what was dropped on the way, or its width.
+fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
+    let told = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
+    let size = mesh.size();
+    let part = format!("the part is {:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z);
+    if summary.metrics.slice_area_mm2 == 0.0 {
+        return match told(WarningKind::OpenContourDropped) {
+            Some(open) => format!("the surface of the model is not closed. {open}"),
+            None => told(WarningKind::Sliver).or(told(WarningKind::ContoursUnited)).map_or_else(
+                || format!("the slices are empty ({part}). Surfaces of opposite sense cancel: check that the model is a solid."),
+                |lost| format!("the slices are empty. {lost}"),
+            ),
+        };
+    }
+    let width = profile.bead.width;
+    let remedy = "Take a narrower bead or a larger part, or check the unit of the file.";
+    match told(WarningKind::PassTooShort) {
+        Some(short) => {
+            format!(
+                "what is wide enough for a bead of {width} mm gives passes too short to weld ({part}). {short} {remedy}"
+            )
+        }
+        None => format!("no part of the slices is wide enough for a bead of {width} mm ({part}). {remedy}"),
+    }
 }
 
 /// How far the last layer ends below or above the part, as a sentence where it matters.
@@ -349,8 +398,15 @@ fn run<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let header = Header { part: part.to_owned(), profile: profile.name.clone(), strategy: strategy.to_owned(), layers };
     sink.begin(&header).map_err(PlanError::Sink)?;
-    let mut emitter =
-        Emitter { profile, sink, torch: None, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    let mut emitter = Emitter {
+        profile,
+        sink,
+        torch: None,
+        below: Vec::new(),
+        built: 0.0,
+        metrics: Metrics::new(profile),
+        warnings: Warnings::default(),
+    };
     let batches = layers.div_ceil(BATCH);
     // While one batch is handed over, the next is filled.
     let mut ready = fill_batch(0)?;
@@ -364,7 +420,9 @@ fn run<S: Sink + Send>(
         ready = filled?;
     }
     let Emitter { metrics, warnings, .. } = emitter;
-    Ok(Summary { metrics, warnings, notes: profile.notes() })
+    let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
+    let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
+    Ok(Summary { metrics, warnings, notes: profile.notes(), forbidden })
 }
 
 /// The centre-lines of a layer as passes; the area they cover stands in for the slice.
@@ -410,6 +468,10 @@ struct Emitter<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
     torch: Option<DVec2>,
+    /// Outlines of the layer below.
+    below: Vec<Polygon>,
+    /// Top of the highest layer with beads, mm.
+    built: f64,
     metrics: Metrics,
     warnings: Warnings,
 }
@@ -434,9 +496,41 @@ impl<S: Sink> Emitter<'_, S> {
         };
         let passes =
             order::order(fills, &self.profile.order_settings(index), &mut self.torch).into_iter().map(lift).collect();
-        warnings.iter().for_each(|w| self.warnings.add(*w));
-        let layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
+        let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
+        self.doubts(&mut layer);
+        layer.warnings.iter().for_each(|w| self.warnings.add(*w));
         self.metrics.add(&layer);
         self.sink.layer(layer)
     }
+
+    /// Warns of what a layer cannot be welded on, and of what a controller may refuse.
+    fn doubts(&mut self, layer: &mut Layer) {
+        let (profile, index) = (self.profile, layer.index);
+        let limits = &profile.check;
+        let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
+        if let Some(first) = layer.passes.first() {
+            let gap = layer.z - layer.height - self.built;
+            if gap > LARGE_GAP * layer.height {
+                doubt(WarningKind::NothingBelow, first.start().unwrap_or_default().truncate(), gap);
+            } else if !self.below.is_empty() {
+                let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
+                if let Some((area, place)) = overhang(&self.below, &layer.islands, reach, width) {
+                    doubt(WarningKind::Overhang, place, area);
+                }
+            }
+            self.built = layer.z;
+        }
+        let points: usize = layer.passes.iter().map(|pass| pass.points.len()).sum();
+        if points > limits.max_points as usize {
+            doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
+        }
+        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < profile.process.arc_start_delay;
+        for pass in layer.passes.iter().filter(unsteady) {
+            doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
+        }
+        self.below.clone_from(&layer.islands);
+    }
 }
+
+/// A gap below a layer counts from this part of its thickness on.
+const LARGE_GAP: f64 = 0.25;

@@ -32,7 +32,9 @@ pub fn preview(
     };
     let mut last = Last(None);
     let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
-    let mut emitter = Emitter { profile, sink: &mut last, torch: None, metrics, warnings };
+    // The layers below are taken for granted.
+    let built = f64::INFINITY;
+    let mut emitter = Emitter { profile, sink: &mut last, torch: None, below: Vec::new(), built, metrics, warnings };
     filled.map(|filled| emitter.emit(filled)).transpose().map_err(PlanError::Sink)?;
     Ok(last.0)
 }

@@ -119,6 +119,22 @@ impl Profile {
         read::parse(text)
     }
 
+    /// Reads and checks a profile as [`serde_json`] writes it: a part of `plan.json`.
+    ///
+    /// # Errors
+    /// [`ProfileError`]; its lines are those of [`Self::toml_text`].
+    pub fn from_json(value: &serde_json::Value) -> Result<Self, ProfileError> {
+        read::from_json(value)
+    }
+
+    /// The profile as TOML text, with every key that has a value.
+    ///
+    /// # Errors
+    /// [`ProfileError::Text`] for numbers that TOML cannot hold.
+    pub fn toml_text(&self) -> Result<String, ProfileError> {
+        read::toml_text(&serde_json::json!(self))
+    }
+
     /// A built-in profile.
     ///
     /// # Errors
@@ -266,6 +282,14 @@ impl Profile {
             program: &self.program,
             dry_run: self.dry_run,
         }
+    }
+
+    /// Why no program should be written with this profile, as sentences.
+    pub fn forbidden(&self) -> Vec<String> {
+        // A printer's nozzle stands on the layer and may glide over it; a torch may not.
+        let drags = self.process.ctwd > 0.0 && self.travel.clearance <= 0.0;
+        let sentence = || "travel.clearance = 0: the wire would be dragged over fresh beads.".to_owned();
+        drags.then(sentence).into_iter().collect()
     }
 
     /// Values that are possible but do not fit together, as sentences.

@@ -68,6 +68,28 @@ pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
     }
 }
 
+/// Reads a profile from the JSON that it was written as.
+pub(super) fn from_json(value: &serde_json::Value) -> Result<Profile, ProfileError> {
+    parse(&toml_text(value)?)
+}
+
+/// The TOML text of a value of JSON; keys without a value are left out.
+pub(super) fn toml_text(value: &serde_json::Value) -> Result<String, ProfileError> {
+    let unfit = |reason: String| ProfileError::Text { line: 1, reason };
+    let table = toml::Table::try_from(without_nulls(value)).map_err(|e| unfit(e.to_string()))?;
+    toml::to_string(&table).map_err(|e| unfit(e.to_string()))
+}
+
+fn without_nulls(value: &serde_json::Value) -> serde_json::Value {
+    match value {
+        serde_json::Value::Object(map) => {
+            let kept = map.iter().filter(|(_, value)| !value.is_null());
+            kept.map(|(key, value)| (key.clone(), without_nulls(value))).collect()
+        }
+        other => other.clone(),
+    }
+}
+
 /// The sections of dialects are taken out and read separately, so that a profile need not know each of them.
 fn deserialize(text: &str) -> Result<Profile, toml::de::Error> {
     let mut general = DeTable::parse(text)?;

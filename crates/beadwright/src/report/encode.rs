@@ -168,6 +168,13 @@ fn short(warning: &Warning) -> String {
         WarningKind::Refilled => format!("island of {size:.1} mm² filled with contours instead"),
         WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
         WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
+        WarningKind::Bare => format!("{size:.1} mm² of an island left bare"),
+        WarningKind::Unsound => "passes leave the part or cross".to_owned(),
+        WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
+        WarningKind::Overhang => format!("{size:.1} mm² hang over the layer below"),
+        WarningKind::ShortArc => format!("pass of {size:.1} mm over before its arc is steady"),
+        WarningKind::ManyPoints => format!("{size:.0} points, more than check.max_points"),
+        WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),
     }
 }

@@ -16,7 +16,7 @@ mod trace;
 
 use crate::model::Mesh;
 use crate::task::{Cancelled, Stage, Task};
-use crate::warning::{Warning, WarningKind};
+use crate::warning::{SLIVER_MM, Warning, WarningKind};
 use glam::DVec2;
 use planar::{FillRule, Polygon, Region, Ring};
 use rayon::prelude::*;
@@ -246,8 +246,27 @@ impl<'a> Slicer<'a> {
         let region = Region::from_rings(&rings, FillRule::NonZero);
         layer.warnings.extend(area_balance(index, &rings, &region));
         layer.islands = region.into_polygons();
+        drop_slivers(&mut layer);
         layer
     }
+}
+
+/// Leaves out holes and islands that are too thin to be anything, with a warning.
+fn drop_slivers(layer: &mut Slice) {
+    let Slice { index, islands, warnings, .. } = layer;
+    let mut keep = |ring: &Ring| {
+        let size = ring.area().abs();
+        // A thin ring is as wide as its area over half its length.
+        let thin = 2.0 * size < SLIVER_MM * ring.length();
+        if thin {
+            warnings.push(Warning { kind: WarningKind::Sliver, layer: *index, place: center(ring), size });
+        }
+        !thin
+    };
+    islands.retain_mut(|island| {
+        island.holes.retain(&mut keep);
+        keep(&island.outer)
+    });
 }
 
 /// How many planes lie at height `z` or below.

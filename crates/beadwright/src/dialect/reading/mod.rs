@@ -18,6 +18,7 @@ pub use layers::{ReadLayer, ReadPass, ReadTotals};
 pub use trace::CHORD_MM;
 
 use super::{ALL, Dialect};
+use crate::model::MAX_REACH_MM;
 use glam::DVec3;
 use std::fmt;
 
@@ -147,6 +148,21 @@ pub enum ReadError {
         place: Place,
         /// What is called.
         name: String,
+    },
+    /// A coordinate that no machine reaches.
+    #[error("{place}: a coordinate lies farther out than {} m, or is not a number. Check the program there.", MAX_REACH_MM / 1000.0)]
+    TooFar {
+        /// Where.
+        place: Place,
+    },
+    /// More moves than can be read.
+    #[error(
+        "{place}: up to here the program has {most} million moves (arcs in chords, calls each time), and no more are read. Give a part of it.",
+        most = trace::MAX_MOVES / 1_000_000
+    )]
+    TooLong {
+        /// Where.
+        place: Place,
     },
     /// The file declares data and holds nothing to run.
     #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]

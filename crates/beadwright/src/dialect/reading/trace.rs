@@ -1,6 +1,7 @@
 //! The moves of a program as a reader finds them: positions that may be unknown, arcs, notes.
 
 use super::{Metal, Move, Place, ReadError, ReadProgram};
+use crate::model::MAX_REACH_MM;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -11,7 +12,10 @@ pub const CHORD_MM: f64 = 0.01;
 pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 
 /// Most calls in a program.
-const MAX_CALLS: usize = 1_000_000;
+const MAX_CALLS: usize = 100_000;
+
+/// Most moves, arcs in chords.
+pub(super) const MAX_MOVES: usize = 20_000_000;
 
 /// Most chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
@@ -90,6 +94,8 @@ pub(in crate::dialect) struct Trace {
     notes: Vec<Note>,
     seen: Vec<String>,
     calls: usize,
+    /// Why nothing more is taken in.
+    fault: Option<ReadError>,
 }
 
 impl Trace {
@@ -104,6 +110,7 @@ impl Trace {
             notes: Vec::new(),
             seen: Vec::new(),
             calls: 0,
+            fault: None,
         }
     }
 
@@ -208,7 +215,7 @@ impl Trace {
 
     /// An arc from the current position in chords; the last one ends at `end`. The volume is spread evenly.
     pub(in crate::dialect) fn curve(&mut self, curve: &Curve, end: DVec3, mut step: Step) {
-        let chords = curve.chords();
+        let chords = if self.fault.is_some() { 1 } else { curve.chords() };
         if let Metal::Volume(volume) = step.metal {
             step.metal = Metal::Volume(volume / chords as f64);
         }
@@ -221,12 +228,25 @@ impl Trace {
 
     fn push(&mut self, to: DVec3, step: Step) {
         let Step { speed, metal, width, line } = step;
+        if self.fault.is_some() {
+            return;
+        }
+        // NaN is not near either.
+        let near = to.abs().max_element() <= MAX_REACH_MM && to.is_finite();
+        if !near || self.moves.len() >= MAX_MOVES {
+            let place = self.place(line);
+            self.fault = Some(if near { ReadError::TooLong { place } } else { ReadError::TooFar { place } });
+            return;
+        }
         self.moves.push(Move { to, speed, metal, width: width.filter(|_| metal.is_laid()), line });
     }
 
     /// Counts a call; `depth` is that of the caller.
     pub(in crate::dialect) fn call(&mut self, name: &str, depth: usize, line: usize) -> Result<(), ReadError> {
         self.calls += 1;
+        if let Some(fault) = &self.fault {
+            return Err(fault.clone());
+        }
         if depth >= MAX_DEPTH || self.calls > MAX_CALLS {
             return Err(ReadError::TooDeep { place: self.place(line), name: name.to_owned() });
         }
@@ -235,6 +255,9 @@ impl Trace {
 
     /// The program, if it lays anything.
     pub(in crate::dialect) fn finish(self, language: &'static str) -> Result<ReadProgram, ReadError> {
+        if let Some(fault) = self.fault {
+            return Err(fault);
+        }
         if !self.moves.iter().any(|m| m.metal.is_laid()) {
             let hint = if self.seen.is_empty() {
                 String::new()

@@ -1,0 +1,67 @@
+//! How much memory may be used: what would need more is stopped with a sentence before the machine begins to swap.
+
+use crate::progress;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, RefreshKind, System};
+
+static LIMIT: OnceLock<u64> = OnceLock::new();
+static EXCEEDED: AtomicBool = AtomicBool::new(false);
+
+/// Part of the machine's memory that is used at most if nothing else is said.
+const PART: f64 = 0.75;
+/// Beyond this multiple of the limit, or this time after it was reached, the run is ended without waiting for it.
+const PATIENCE: (f64, Duration) = (1.15, Duration::from_secs(3));
+/// Time between two looks.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Most bytes that may be used.
+pub(crate) fn limit() -> u64 {
+    *LIMIT.get_or_init(|| {
+        let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+        let system = System::new_with_specifics(memory);
+        let total = system.cgroup_limits().map_or(system.total_memory(), |limits| limits.total_memory);
+        (total as f64 * PART) as u64
+    })
+}
+
+/// Watches this process from now on; `most` is what it may use, GB.
+pub(crate) fn watch(most: Option<f64>) {
+    if let Some(most) = most {
+        _ = LIMIT.set((most * 1e9) as u64);
+    }
+    let limit = limit();
+    std::thread::spawn(move || {
+        let Ok(own) = sysinfo::get_current_pid() else { return };
+        let (mut system, mut waited) = (System::new(), Duration::ZERO);
+        loop {
+            std::thread::sleep(PAUSE);
+            let wanted = ProcessRefreshKind::nothing().with_memory();
+            system.refresh_processes_specifics(ProcessesToUpdate::Some(&[own]), false, wanted);
+            let used = system.process(own).map_or(0, sysinfo::Process::memory);
+            if used > limit || waited > Duration::ZERO {
+                EXCEEDED.store(true, Ordering::Relaxed);
+                progress::cancel();
+                waited += PAUSE;
+            }
+            if used as f64 > PATIENCE.0 * limit as f64 || waited > PATIENCE.1 {
+                eprintln!("error: {}", sentence());
+                std::process::exit(1);
+            }
+        }
+    });
+}
+
+/// The sentence of a run that was stopped because of its memory.
+pub(crate) fn exceeded() -> Option<String> {
+    EXCEEDED.load(Ordering::Relaxed).then(sentence)
+}
+
+fn sentence() -> String {
+    format!(
+        "more than {:.1} GB of memory would be needed, and nothing was written. Take a coarser model or --grid, or allow \
+         more with --max-memory GB.",
+        limit() as f64 / 1e9
+    )
+}

@@ -1,0 +1,133 @@
+//! What the beads of an island leave bare, by their footprints: each piece of a path covers half a width to both sides and
+//! around its ends. Measured on rows across the island, exact along each row.
+
+use super::Path;
+use glam::DVec2;
+use planar::{Bounds, Polygon, Region};
+
+/// Rows in a bead's width.
+const ROWS: f64 = 16.0;
+/// Beads count as wider by this fraction: neighbours that just touch leave nothing.
+const TOUCHING: f64 = 0.01;
+
+/// The part of an island that no bead covers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bare {
+    /// mm²
+    pub area: f64,
+    /// Middle of its widest place, mm.
+    pub place: DVec2,
+}
+
+/// What passes leave bare of an island; `width` is the nominal bead's, mm.
+pub fn bare(paths: &[&Path], island: &Polygon, width: f64) -> Bare {
+    let Some(bounds) = Bounds::of(island.outer.points().iter().copied()) else { return Bare::default() };
+    let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
+    let step = bounds.size().y / count as f64;
+    let first = bounds.min.y + step / 2.0;
+    let mut covered: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
+    for path in paths {
+        let line = path.path();
+        for (i, ends) in line.windows(2).enumerate() {
+            let radius = path.width.after(i) * (0.5 + TOUCHING / 2.0);
+            let (low, high) = (ends[0].y.min(ends[1].y) - radius, ends[0].y.max(ends[1].y) + radius);
+            let row = |y: f64| ((y - first) / step).clamp(0.0, count as f64);
+            for k in row(low).ceil() as usize..(row(high).floor() as usize + 1).min(count) {
+                covered[k].extend(across(ends[0], ends[1], radius, first + k as f64 * step));
+            }
+        }
+    }
+    let inside = Region::from_normalised(vec![island.clone()]).rows(first, step, count);
+    let (mut found, mut widest) = (Bare::default(), 0.0);
+    for (k, (inside, covered)) in inside.iter().zip(&mut covered).enumerate() {
+        covered.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for span in inside.chunks_exact(2) {
+            let mut from = span[0];
+            for (low, high) in covered.iter().copied().chain([(span[1], f64::INFINITY)]) {
+                let gap = low.min(span[1]) - from;
+                if gap > 0.0 {
+                    found.area += gap * step;
+                    if gap > widest {
+                        (widest, found.place) = (gap, DVec2::new(from + gap / 2.0, first + k as f64 * step));
+                    }
+                }
+                from = from.max(high);
+                if from >= span[1] {
+                    break;
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Where a row crosses the strip with round ends around a piece.
+fn across(a: DVec2, b: DVec2, radius: f64, y: f64) -> Option<(f64, f64)> {
+    let mut span: Option<(f64, f64)> = None;
+    let mut add = |x: f64| span = Some(span.map_or((x, x), |(low, high)| (low.min(x), high.max(x))));
+    for end in [a, b] {
+        let half = radius * radius - (y - end.y) * (y - end.y);
+        if half >= 0.0 {
+            add(end.x - half.sqrt());
+            add(end.x + half.sqrt());
+        }
+    }
+    // The long sides of the strip.
+    let side = (b - a).perp().normalize_or_zero() * radius;
+    for (from, to) in [(a + side, b + side), (a - side, b - side)] {
+        let (rise, part) = (to.y - from.y, (y - from.y) / (to.y - from.y));
+        if rise != 0.0 && (0.0..=1.0).contains(&part) {
+            add(from.x + part * (to.x - from.x));
+        }
+    }
+    span
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{across, bare};
+    use crate::fill::Path;
+    use crate::pass::{Along, PassKind};
+    use glam::DVec2;
+    use planar::{Polygon, Ring};
+
+    fn square(side: f64) -> Polygon {
+        let points = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(DVec2::from);
+        Polygon { outer: Ring::new(points.to_vec()), holes: Vec::new() }
+    }
+
+    fn line(from: (f64, f64), to: (f64, f64), width: f64) -> Path {
+        let points = vec![DVec2::from(from), DVec2::from(to)];
+        Path { kind: PassKind::Infill, closed: false, points, width: Along::Same(width), reversible: true }
+    }
+
+    #[test]
+    fn a_line_through_a_square_covers_its_strip_and_half_discs() {
+        let pass = line((3.0, 10.0), (17.0, 10.0), 4.0);
+        let found = bare(&[&pass], &square(20.0), 4.0);
+        let r = 2.0 * 1.01;
+        let exact = 400.0 - 14.0 * 2.0 * r - std::f64::consts::PI * r * r;
+        assert!((found.area / exact - 1.0).abs() < 2e-3, "{} for {exact}", found.area);
+        let nothing = bare(&[], &square(20.0), 4.0);
+        assert!((nothing.area - 400.0).abs() < 1e-6 && (nothing.place.x - 10.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn turning_all_changes_nothing_but_the_rows() {
+        let turn = DVec2::from_angle(0.7);
+        let turned = |points: &[DVec2]| points.iter().map(|p| turn.rotate(*p)).collect::<Vec<_>>();
+        let (island, pass) = (square(20.0), line((2.0, 4.0), (15.0, 13.0), 5.0));
+        let moved = Polygon { outer: Ring::new(turned(island.outer.points())), holes: Vec::new() };
+        let along = Path { points: turned(&pass.points), ..pass.clone() };
+        let (a, b) = (bare(&[&pass], &island, 5.0).area, bare(&[&along], &moved, 5.0).area);
+        assert!((a / b - 1.0).abs() < 2e-3, "{a} {b}");
+    }
+
+    #[test]
+    fn a_row_crosses_a_slanted_strip_between_its_sides() {
+        let (low, high) = across(DVec2::new(0.0, 0.0), DVec2::new(10.0, 10.0), 1.0, 5.0).unwrap_or_default();
+        let half = 2.0_f64.sqrt();
+        assert!((low - (5.0 - half)).abs() < 1e-12 && (high - (5.0 + half)).abs() < 1e-12);
+        assert_eq!(across(DVec2::ZERO, DVec2::X, 1.0, 2.0), None);
+    }
+}
