@@ -20,12 +20,11 @@ fn put(folder: &Path, files: &[(&str, &str)]) -> beadwright::files::Written {
     run.commit().unwrap()
 }
 
-/// The files of a folder and their text, without the list of them.
+/// The files of a folder and their text.
 fn content(folder: &Path) -> BTreeMap<String, String> {
     let entries = fs::read_dir(folder).unwrap().map(Result::unwrap);
     let text = |path: &Path| if path.is_dir() { "folder".to_owned() } else { fs::read_to_string(path).unwrap() };
-    let all = entries.map(|e| (e.file_name().into_string().unwrap(), text(&e.path())));
-    all.filter(|(name, _)| name != ".beadwright").collect()
+    entries.map(|e| (e.file_name().into_string().unwrap(), text(&e.path()))).collect()
 }
 
 fn is(folder: &Path, files: &[(&str, &str)]) {
@@ -37,24 +36,30 @@ fn is(folder: &Path, files: &[(&str, &str)]) {
 fn case_1610_a_set_replaces_the_earlier_one_and_nothing_else() {
     let place = tempfile::tempdir().unwrap();
     let out = place.path().join("deep/out");
-    put(&out, &[("plan.json", "1"), ("A.src", "a"), ("A_L001.src", "a1"), ("A_L002.src", "a2")]);
+    let first = r#"{"files": ["plan.json", "metrics.json", "A.src", "A_L001.src", "A_L002.src", "../x", "gone"]}"#;
+    put(
+        &out,
+        &[("plan.json", "1"), ("metrics.json", first), ("A.src", "a"), ("A_L001.src", "a1"), ("A_L002.src", "a2")],
+    );
     fs::create_dir_all(out.join("notes/deep")).unwrap();
     fs::write(out.join("notes/deep/mine.txt"), "mine").unwrap();
     fs::write(out.join("B.src"), "of others").unwrap();
     symlink("nowhere", out.join("link")).unwrap();
     fs::set_permissions(&out, fs::Permissions::from_mode(0o750)).unwrap();
-    let written = put(&out, &[("plan.json", "2"), ("A.src", "b"), ("A_L001.src", "b1")]);
+    fs::write(out.parent().unwrap().join("x"), "of others").unwrap();
+    let second = r#"{"files": ["plan.json", "metrics.json", "A.src", "A_L001.src"]}"#;
+    let new = [("plan.json", "2"), ("metrics.json", second), ("A.src", "b"), ("A_L001.src", "b1")];
+    let written = put(&out, &new);
     assert_eq!(written.removed, ["A_L002.src"]);
     assert_eq!(fs::read_link(out.join("link")).unwrap(), Path::new("nowhere"));
     fs::remove_file(out.join("link")).unwrap();
-    let files = [("plan.json", "2"), ("A.src", "b"), ("A_L001.src", "b1"), ("B.src", "of others"), ("notes", "folder")];
-    is(&out, &files);
+    is(&out, &[&new[..], &[("B.src", "of others"), ("notes", "folder")]].concat());
     assert_eq!(fs::read_to_string(out.join("notes/deep/mine.txt")).unwrap(), "mine");
     assert_eq!(fs::metadata(&out).unwrap().permissions().mode() & 0o777, 0o750);
     // A program alone leaves the plan.
     put(&out, &[("A.src", "c")]);
     assert_eq!(content(&out)["plan.json"], "2");
-    is(out.parent().unwrap(), &[("out", "folder")]);
+    is(out.parent().unwrap(), &[("out", "folder"), ("x", "of others")]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::planar::DVec2;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use beadwright::warning::WarningKind;
 use beadwright::{example, plan_file};
 use readers::{Motion, distance};
 use std::collections::BTreeMap;
@@ -149,7 +150,8 @@ fn totals_are_the_sums_of_the_layers() {
         assert!((m.deposited_volume_mm3 - metal).abs() < 1e-9 * metal, "{case}");
         let wire = m.arc_time_s * profile.process.wire_feed_speed / 60.0;
         assert!((m.wire_length_m - wire).abs() < 1e-9 * wire, "{case}");
-        assert!((0.5..=1.0).contains(&m.coverage()), "{case}: {}", m.coverage());
+        // Scan lines across a wall two beads wide leave most of it bare.
+        assert!((0.3..=1.0).contains(&m.coverage()), "{case}: {}", m.coverage());
     });
 }
 
@@ -265,15 +267,16 @@ fn plan_json_holds_the_plan() {
     for (from, to, word) in [
         ("\"version\":2", "\"version\":9", "version 9"),
         ("\"units\":\"mm\"", "\"units\":\"in\"", "is in \"in\""),
-        ("\"width\":7.54,\"pace\"", "\"width\":1e5,\"pace\"", "at most 2000"),
+        ("\"width\":7.5400,\"pace\"", "\"width\":1e5,\"pace\"", "at most 2000"),
         ("[[", "[[1e9,0,0],[", "out of all bounds"),
         ("\"deposition_speed\":10.5", "\"deposition_speed\":-1.0", "process.deposition_speed"),
         ("\"index\":0", "\"index\":7", "its place in the list"),
-        ("\"pace\":10.5", "\"pace\":-1", "greater than 0"),
+        ("\"pace\":10.5000", "\"pace\":-1", "greater than 0"),
         ("\"kind\":\"contour\"", "\"kind\":\"loop\"", "unknown variant"),
         ("\"layers\":[", "\"layers\":{", "line 1"),
     ] {
-        let error = plan_file::read(&text.replacen(from, to, 1)).unwrap_err().to_string();
+        let Err(error) = plan_file::read(&text.replacen(from, to, 1)) else { panic!("{from} is read as {to}") };
+        let error = error.to_string();
         assert!(error.contains(word), "{from}: {error}");
     }
 }
@@ -299,8 +302,7 @@ fn what_is_thinner_than_a_bead_is_reported() {
     let mesh = extruded(&outline, 8.0);
     let plan = plan_of(&mesh, &profile("cmt-al2319-kuka", "compound", 0.0));
     let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
-    let thin =
-        plan.summary.warnings.summaries().find(|w| w.kind == beadwright::warning::WarningKind::ThinFeature).unwrap();
+    let thin = plan.summary.warnings.summaries().find(|w| w.kind == WarningKind::ThinFeature).unwrap();
     assert_eq!((thin.count, &thin.layers[..]), (4, &[(0, 3)][..]), "{text:?}");
     // Less where the opening of the block rounds into the root of the fin.
     assert!((85.0..91.0).contains(&thin.largest.size), "{text:?}");
@@ -308,7 +310,8 @@ fn what_is_thinner_than_a_bead_is_reported() {
     // Corners are lost too: (1 − π/4) r² at each of the block's four.
     let corners = 4.0 * (1.0 - std::f64::consts::FRAC_PI_4) * (0.35 * 7.54_f64).powi(2);
     let expected = 1.0 - (thin.largest.size + corners) / 1690.0;
-    assert!((m.coverage() - expected).abs() < 2e-3, "{} for {expected}", m.coverage());
+    // Beads cover no more than that, and hardly less.
+    assert!((expected - 0.02..expected + 1e-3).contains(&m.coverage()), "{} for {expected}", m.coverage());
 }
 
 #[test]
@@ -328,9 +331,13 @@ fn a_gap_between_two_blocks_gives_empty_layers() {
     let triangles = low.triangles.into_iter().chain(high.triangles.into_iter().map(|t| t.map(|v| v + offset)));
     let (mesh, _) = Mesh::from_triangles(vertices, triangles.collect());
     let plan = plan_of(&mesh, &profile("cmt-al2319-kuka", "zigzag", 0.0));
-    let empty = plan.summary.warnings.summaries().next().unwrap();
-    assert_eq!(empty.layers, [(3, 5)]);
+    let told = |kind| plan.summary.warnings.summaries().find(|w| w.kind == kind).unwrap();
+    assert_eq!(told(WarningKind::EmptyLayer).layers, [(3, 5)]);
     assert_eq!(plan.summary.metrics.layers, 6);
+    // The upper block would be welded into the air.
+    let hanging = told(WarningKind::NothingBelow);
+    assert_eq!((hanging.layers.clone(), hanging.largest.size), (vec![(6, 6)], 6.0));
+    assert_eq!(plan.summary.forbidden, [hanging.sentence()]);
 }
 
 /// A prism over a counter-clockwise outline.

@@ -22,9 +22,6 @@ pub struct FolderError {
     pub source: io::Error,
 }
 
-/// The list of the files that Beadwright has written into a folder, so that the next run knows which are its own.
-const LIST: &str = ".beadwright";
-
 /// Folders with more entries of others are not exchanged.
 const MOST_ENTRIES: usize = 10_000;
 
@@ -109,12 +106,9 @@ impl Folder {
         let error = named(&self.named);
         self.close().map_err(&error)?;
         let earlier = earlier(&self.folder);
-        let whole = self.names.contains(super::PLAN);
-        let (old, kept): (BTreeSet<_>, BTreeSet<_>) =
-            earlier.into_iter().partition(|name| whole || self.names.contains(name));
+        let whole = [super::PLAN, super::METRICS].iter().all(|name| self.names.contains(*name));
+        let old: BTreeSet<String> = earlier.into_iter().filter(|name| whole || self.names.contains(name)).collect();
         let removed = old.difference(&self.names).cloned().collect();
-        let listed: Vec<&str> = kept.union(&self.names).map(String::as_str).collect();
-        fs::write(self.stage.new_files().join(LIST), listed.join("\n") + "\n").map_err(&error)?;
         self.put(&old).map_err(error)?;
         Ok(Written { files: self.names.into_iter().collect(), removed })
     }
@@ -138,7 +132,7 @@ impl Folder {
     /// Exchanges the folder for that of the new files, to which the files of others have been linked.
     fn exchange(&self, old: &BTreeSet<String>) -> io::Result<()> {
         let (new, mut linked) = (self.stage.new_files(), 0);
-        let others = |name: &str| !old.contains(name) && !self.names.contains(name) && name != LIST;
+        let others = |name: &str| !old.contains(name) && !self.names.contains(name);
         link_all(&self.folder, &new, &others, &mut linked)?;
         fs::set_permissions(&new, fs::metadata(&self.folder)?.permissions())?;
         swap(&new, &self.folder)?;
@@ -155,7 +149,7 @@ impl Folder {
     /// Moves the files one by one, by way of a stage in the folder itself.
     fn move_each(&self, old: &BTreeSet<String>) -> io::Result<()> {
         let (from, stage) = (self.stage.new_files(), Stage::new(&self.folder)?);
-        let mut new: Vec<&str> = self.names.iter().map(String::as_str).chain([LIST]).collect();
+        let mut new: Vec<&str> = self.names.iter().map(String::as_str).collect();
         // The program that calls the others has the shortest name and comes last: without it, none of them is started.
         new.sort_by_key(|name| std::cmp::Reverse(name.len()));
         for name in &new {
@@ -177,12 +171,17 @@ fn real(folder: &Path) -> io::Result<PathBuf> {
     Ok(if rest.as_os_str().is_empty() { there } else { there.join(rest) })
 }
 
-/// The files of earlier runs in a folder.
+/// The files of the earlier plan in a folder, as its metrics.json lists them.
 fn earlier(folder: &Path) -> BTreeSet<String> {
-    let list = fs::read_to_string(folder.join(LIST)).unwrap_or_default();
+    #[derive(serde::Deserialize)]
+    struct Listing {
+        files: Vec<String>,
+    }
+    let listing = fs::read(folder.join(super::METRICS)).ok().and_then(|text| serde_json::from_slice(&text).ok());
+    let files = listing.map_or(Vec::new(), |listing: Listing| listing.files);
     // A list that somebody has edited names no place elsewhere.
-    let plain = |name: &&str| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
-    list.lines().filter(plain).filter(|name| folder.join(name).is_file()).map(str::to_owned).collect()
+    let plain = |name: &str| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
+    files.into_iter().filter(|name| plain(name) && folder.join(name).is_file()).collect()
 }
 
 /// Links the files of a folder and its folders into another.

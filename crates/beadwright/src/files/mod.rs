@@ -111,9 +111,12 @@ impl PlanFiles {
     pub fn end(mut self, summary: &Summary, repair: &RepairReport, total: Option<&Figures>) -> Vec<Chunk> {
         let mut chunks = self.programs.end();
         chunks.push(Chunk::new(PLAN, plan_file::tail()));
-        chunks.push(Chunk::new(METRICS, format!("{:#}\n", summary.json(total))));
         self.note(&chunks);
-        let names: Vec<String> = self.names.into_iter().chain([REPORT.to_owned()]).collect();
+        let names: Vec<String> = self.names.into_iter().chain([METRICS, REPORT].map(str::to_owned)).collect();
+        let mut metrics = summary.json(total);
+        // So that the next plan in this folder knows which files are those of this one.
+        metrics["files"] = serde_json::json!(names);
+        chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names)));
         chunks
     }

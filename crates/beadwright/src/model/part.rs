@@ -3,7 +3,7 @@
 use super::iges::{self, IgesError, IgesFile};
 use super::units::{self, UnitsUnclear};
 use super::wall_curves::{WallCurves, WallCurvesError};
-use super::{Import, ImportError, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
+use super::{Import, ImportError, MAX_REACH_MM, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
 use crate::task::Task;
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use planar::Bounds;
@@ -168,6 +168,7 @@ impl Placement {
         let turn = self.turn * std::f64::consts::PI / 180.0;
         let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
         let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
+        check_reach(file, unit * self.scale)?;
         let mut curves = WallCurves::of_iges(file, &place)?;
         let height = height.or(Some(curves.height()).filter(|height| *height > 0.0)).ok_or(PartError::NoHeight)?;
         if self.centre {
@@ -229,6 +230,14 @@ impl Part {
             Self::Curves { warnings, .. } => warnings.clone(),
         }
     }
+}
+
+/// Refuses curves that are longer or lie farther out than parts may.
+fn check_reach(file: &IgesFile, scale: f64) -> Result<(), ImportError> {
+    let corners = file.curves.iter().flat_map(|curve| &curve.parts).map(|part| part.bounds());
+    let reach = scale * corners.map(|(low, high)| low.abs().max(high.abs()).max_element()).fold(0.0, f64::max);
+    // NaN is not within reach either.
+    if reach <= MAX_REACH_MM { Ok(()) } else { Err(ImportError::TooFar { reach_m: reach / 1000.0 }) }
 }
 
 fn curve_bounds(curves: &WallCurves, height: f64) -> Bounds {

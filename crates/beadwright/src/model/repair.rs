@@ -20,6 +20,8 @@ const CRACK: f64 = 1e-5;
 pub struct RepairReport {
     /// Why the file does not hold what it says, where a damaged file was accepted.
     pub damage: Option<String>,
+    /// Bytes after the last triangle, which some programs append; passed over.
+    pub appended_bytes: usize,
     /// Triangles in the file.
     pub triangles_read: usize,
     /// Triangles that remain.
@@ -65,6 +67,7 @@ impl RepairReport {
                 lines.push(format!("{}{tail}.", plural(n, one, many)));
             }
         };
+        say(self.appended_bytes, "byte", "bytes", " after the last triangle passed over");
         say(self.degenerate, "triangle", "triangles", " without an area removed");
         say(self.duplicate, "duplicate triangle", "duplicate triangles", " removed");
         say(self.vertices_merged, "vertex", "vertices", " merged to close cracks");

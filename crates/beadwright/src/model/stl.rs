@@ -38,14 +38,15 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         Some(size) if size < length && size > HEADER && plausible(&bytes[HEADER..]) => {
             let (announced, more) = ((size - HEADER) / RECORD, (length - size) / RECORD);
             // Either the count is wrong and further triangles follow, or a program has appended data of its own.
-            let triangles = (length - size) % RECORD == 0 && bytes[size..].chunks(RECORD).all(plausible);
-            let (what, end) = if triangles {
-                (format!("{more} more follow"), length)
+            let counted_wrong = (length - size) % RECORD == 0 && bytes[size..].chunks(RECORD).all(plausible);
+            let damage = format!("bytes 80–83 announce {announced} triangles, but {more} more follow");
+            let mut import = if counted_wrong {
+                read_binary(bytes, Some(damage), task)?
             } else {
-                (format!("{} bytes follow that are none", length - size), size)
+                read_binary(&bytes[..size], None, task)?
             };
-            let damage = format!("bytes 80–83 announce {announced} triangles, but {what}");
-            read_binary(&bytes[..end], Some(damage), task)
+            import.repair.appended_bytes = if counted_wrong { 0 } else { length - size };
+            Ok(import)
         }
         Some(size) => Err(ImportError::NotStl {
             reason: format!(
@@ -91,6 +92,9 @@ fn read_binary(bytes: &[u8], damage: Option<String>, task: &Task) -> Result<Impo
 
 fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     let (facets, lines, damage) = parse_ascii(bytes, task)?;
+    if let (true, Some(reason)) = (facets.is_empty(), &damage) {
+        return Err(ImportError::Damaged { reason: reason.clone() });
+    }
     if facets.is_empty() {
         return Err(ImportError::NotStl { reason: "it begins with \"solid\" but holds no \"facet\"".to_owned() });
     }

@@ -251,6 +251,9 @@ impl<'a> Slicer<'a> {
     }
 }
 
+/// Slivers shorter than this are rounding.
+const WORTH_TELLING_MM: f64 = 1.0;
+
 /// Leaves out holes and islands that are too thin to be anything, with a warning.
 fn drop_slivers(layer: &mut Slice) {
     let Slice { index, islands, warnings, .. } = layer;
@@ -258,7 +261,7 @@ fn drop_slivers(layer: &mut Slice) {
         let size = ring.area().abs();
         // A thin ring is as wide as its area over half its length.
         let thin = 2.0 * size < SLIVER_MM * ring.length();
-        if thin {
+        if thin && ring.length() > 2.0 * WORTH_TELLING_MM {
             warnings.push(Warning { kind: WarningKind::Sliver, layer: *index, place: center(ring), size });
         }
         !thin

@@ -1,7 +1,11 @@
-//! Random islands of eight families, as parts bring them: the same seed gives the same island.
+//! Random islands of eight families, as parts bring them: the same seed gives the same island. And whether layers are sound,
+//! judged without the program's own check.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test file uses some of it and may panic")]
 
-use beadwright::planar::{DVec2, FillRule, Polygon, Region, Ring};
+use beadwright::fill::sound;
+use beadwright::planar::triangulate::triangulate;
+use beadwright::planar::{DVec2, FillRule, Polygon, Region, Ring, polyline};
+use beadwright::{Layer, Mesh, Pass};
 use std::f64::consts::TAU;
 
 /// The families by name.
@@ -125,4 +129,56 @@ fn around(r: &mut Random, radius: f64, change: f64, most: usize) -> Vec<DVec2> {
 fn rectangle(middle: DVec2, length: f64, width: f64, way: f64) -> Vec<DVec2> {
     let (u, v) = (DVec2::from_angle(way) * length / 2.0, DVec2::from_angle(way).perp() * width / 2.0);
     vec![middle - u - v, middle + u - v, middle + u + v, middle - u + v]
+}
+
+/// A part that stands on islands, `height` high, mm; `None` without islands.
+pub fn extruded(islands: &[Polygon], height: f64) -> Option<Mesh> {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for island in islands {
+        let flat: Vec<DVec2> = island.rings().flat_map(|ring| ring.points().to_vec()).collect();
+        let (low, count) = (vertices.len() as u32, flat.len() as u32);
+        vertices.extend([0.0, height].iter().flat_map(|&z| flat.iter().map(move |p| p.extend(z))));
+        let caps = triangulate(island).into_iter().flat_map(|[a, b, c]| {
+            let [a, b, c] = [a, b, c].map(|corner| low + corner as u32);
+            [[a, c, b], [a + count, b + count, c + count]]
+        });
+        triangles.extend(caps);
+        let mut first = low;
+        for ring in island.rings() {
+            let n = ring.points().len() as u32;
+            let sides = (0..n).map(|k| (first + k, first + (k + 1) % n));
+            triangles.extend(sides.flat_map(|(a, b)| [[a, b, b + count], [a, b + count, a + count]]));
+            first += n;
+        }
+    }
+    (!triangles.is_empty()).then(|| Mesh::from_triangles(vertices, triangles).0)
+}
+
+/// The centre-line of a pass, seen from above.
+pub fn line(pass: &Pass) -> Vec<DVec2> {
+    let again = pass.closed.then(|| pass.points.first()).flatten();
+    pass.points.iter().chain(again).map(|p| p.truncate()).collect()
+}
+
+/// Greatest distance of centre-lines from the islands, judged at points and between them, mm.
+pub fn outside(passes: &[Pass], islands: &[Polygon]) -> f64 {
+    let to_edges = |p: DVec2| {
+        let edges = islands.iter().flat_map(|i| i.rings().flat_map(|ring| ring.edges()).collect::<Vec<_>>());
+        let squared = |(a, b)| polyline::distance_squared_to_segment(p, a, b);
+        edges.map(squared).fold(f64::INFINITY, f64::min).sqrt()
+    };
+    let places = passes.iter().flat_map(|pass| {
+        let line = line(pass);
+        line.windows(2).flat_map(|w| (0..8).map(|k| w[0].lerp(w[1], f64::from(k) / 8.0))).collect::<Vec<_>>()
+    });
+    let left = |p: &DVec2| !islands.iter().any(|island| island.contains(*p));
+    places.filter(left).map(to_edges).fold(0.0, f64::max)
+}
+
+/// Why a layer cannot be welded: centre-lines outside, or passes that cross.
+pub fn fault(layer: &Layer) -> Option<String> {
+    let by = outside(&layer.passes, &layer.islands);
+    let lines: Vec<Vec<DVec2>> = layer.passes.iter().map(line).collect();
+    let crossing = sound::crossings(&lines).next();
+    (by > 0.011 || crossing.is_some()).then(|| format!("layer {}: {by:.3} mm outside, {crossing:?}", layer.index + 1))
 }

@@ -15,7 +15,7 @@ pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 const MAX_CALLS: usize = 100_000;
 
 /// Most moves, arcs in chords.
-pub(super) const MAX_MOVES: usize = 20_000_000;
+pub(super) const MAX_MOVES: usize = 10_000_000;
 
 /// Most chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
