@@ -1,6 +1,6 @@
 //! What the fuzz targets call: each takes any bytes, and may neither panic nor return nonsense.
 //!
-//! `fuzz/run TARGET SECONDS` runs one, `fuzz/run` all of them; see README.md here.
+//! `fuzz/run TARGET SECONDS` runs one, `fuzz/run` all of them.
 
 #[path = "../crates/beadwright/tests/families/mod.rs"]
 mod families;

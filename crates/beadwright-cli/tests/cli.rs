@@ -40,7 +40,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn plan_writes_program_plan_metrics_and_report() {
     let folder = folder_with("cross");
     let said = ok(folder.path(), &["plan", "cross.stl", "-o", "out/deep", "--post", "krl", "--picture", "2"]);
-    assert!(said.contains("passes (arc starts)") && said.contains("planned / slice area"), "{said}");
+    assert!(said.contains("passes (arc starts)") && said.contains("covered / slice area"), "{said}");
     let written = files(&folder.path().join("out/deep"));
     let expected =
         ["CROSS.dat", "CROSS.src", "CROSS_L001.src", "layer-002.svg", "metrics.json", "plan.json", "report.html"];

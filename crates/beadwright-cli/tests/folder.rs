@@ -149,6 +149,48 @@ fn case_1614_single_files_replace_no_device_and_no_link_and_have_the_usual_mode(
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
 }
 
+/// No space left, and places where nothing can be written.
+#[test]
+fn case_1616_what_cannot_be_written_is_said_and_leaves_nothing() {
+    let place = tempfile::tempdir().unwrap();
+    let model = place.path().join("part.stl");
+    beadwright().args(["example", "cross", "-o"]).arg(&model).output().unwrap();
+    let refused = |arguments: &[&str], words: &str| {
+        let done = beadwright().current_dir(place.path()).args(arguments).output().unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(done.status.code() == Some(1) && said.contains(words) && said.lines().count() == 1, "{said}");
+    };
+    refused(&["plan", "part.stl", "--no-deposit", "-o", "/proc/here"], "/proc/here cannot be written");
+    refused(&["plan", "part.stl", "--no-deposit", "-o", "part.stl/here"], "cannot be written");
+    refused(&["plan", "part.stl", "--no-deposit", "-o", "part.stl"], "it is a file, not a folder");
+    if Path::new("/dev/full").exists() {
+        refused(&["example", "cross", "-o", "/dev/full"], "/dev/full cannot be written: No space left");
+    }
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
+}
+
+/// SIGTERM stops a run as Ctrl-C does: nothing is left behind.
+#[test]
+fn case_1617_a_run_that_is_told_to_end_leaves_nothing() {
+    let place = tempfile::tempdir().unwrap();
+    let model = place.path().join("part.stl");
+    beadwright().args(["example", "propeller", "-o"]).arg(&model).output().unwrap();
+    let mut run = beadwright();
+    run.current_dir(place.path()).args(["plan", "part.stl", "--set", "layers.height=0.1"]);
+    let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(800));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let done = child.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.code() == Some(1) && said.contains("cancelled"), "{:?}: {said}", done.status);
+    is_empty_but(place.path(), "part.stl");
+}
+
+fn is_empty_but(folder: &Path, file: &str) {
+    let names: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(names, [file]);
+}
+
 fn report_is_staged(place: &Path) -> bool {
     let entries = fs::read_dir(place).unwrap().filter_map(Result::ok);
     let mut stages = entries.filter(|e| e.file_name().to_string_lossy().starts_with(".beadwright-"));

@@ -3,6 +3,7 @@
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
 use beadwright::files::{Folder, PLAN, PlanFiles, Programs};
+use beadwright::plan::Summary;
 use std::path::Path;
 
 /// What can be written into a folder.
@@ -53,14 +54,26 @@ impl Export {
     }
 }
 
+/// Refuses programs that nobody should start.
+fn allowed(summary: &Summary) -> Result<(), String> {
+    match summary.forbidden.first() {
+        Some(reason) => Err(format!(
+            "Nothing was written, since the program should not be started. {reason} `beadwright plan --allow-findings` writes \
+             it all the same."
+        )),
+        None => Ok(()),
+    }
+}
+
 const NOT_YET: &str = "The plan is not complete yet.";
 
 fn program(state: &PlanState, name: &str) -> Result<Vec<Chunk>, String> {
-    let (Some(header), Some(profile), Some(_), true) =
+    let (Some(header), Some(profile), Some(summary), true) =
         (&state.header, &state.profile, &state.summary, state.is_of_last_request())
     else {
         return Err(NOT_YET.to_owned());
     };
+    allowed(summary)?;
     let files = dialect::write(name, &state.layers, &profile.job(&header.part)).map_err(|error| error.to_string())?;
     Ok(files.into_iter().map(|(file, text)| Chunk { file, text }).collect())
 }
@@ -74,6 +87,9 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     let Some(part) = state.part.as_ref().filter(|_| state.is_of_last_request()) else {
         return Err(NOT_YET.to_owned());
     };
+    if !dialects.is_empty() {
+        allowed(summary)?;
+    }
     let programs = Programs::new(dialects, &profile.job(&header.part)).map_err(|error| error.to_string())?;
     let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, 0);
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {

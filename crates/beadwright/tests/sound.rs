@@ -6,6 +6,7 @@ mod common;
 mod families;
 
 use beadwright::fill::STRATEGIES;
+use beadwright::glam::DVec3;
 use beadwright::model::import;
 use beadwright::plan::{self, Plan};
 use beadwright::planar::{DVec2, Polygon, Region, buffer};
@@ -13,7 +14,7 @@ use beadwright::profile::Profile;
 use beadwright::slice::LayerFit;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
-use beadwright::{Layer, Pass};
+use beadwright::{Layer, Mesh, Pass};
 use common::profile_by;
 use families::{FAMILIES, extruded, fault, islands, line};
 use rayon::prelude::*;
@@ -85,6 +86,44 @@ fn case_1604_what_is_left_of_the_height_is_told() {
     let metal = |plan: &Plan| plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.mesh_volume_mm3.unwrap();
     assert!((metal(&even) / (metal(&fixed) * 2.99 / 2.0) - 1.0).abs() < 0.02, "the metal follows the layers' height");
     assert_eq!(even.layers.len(), 2);
+}
+
+/// Lengths and areas of a plan: what must not depend on where the part lies or how its file is ordered.
+fn figures(mesh: &Mesh, strategy: &str) -> [f64; 4] {
+    let m = plan::plan("part", mesh, &profile_by("cmt-al2319-kuka", strategy), &Task::new()).unwrap().summary.metrics;
+    [m.passes as f64, m.deposited_length_mm, m.slice_area_mm2, m.planned_area_mm2]
+}
+
+#[test]
+fn plans_do_not_depend_on_where_a_part_lies_or_how_its_triangles_are_ordered() {
+    for (family, seed) in [(0, 3), (2, 5), (6, 4)] {
+        let mesh = extruded(&islands(family, seed), 4.0).unwrap();
+        let changed = |change: &dyn Fn(DVec3) -> DVec3, mirrored: bool| {
+            let vertices = mesh.vertices.iter().map(|v| change(*v)).collect();
+            let turned = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+            Mesh::from_triangles(vertices, mesh.triangles.iter().map(|t| turned(*t)).collect()).0
+        };
+        let mut order: Vec<[u32; 3]> = mesh.triangles.iter().rev().map(|[a, b, c]| [*c, *a, *b]).collect();
+        let half = order.len() / 2;
+        order.rotate_left(half);
+        let shuffled = Mesh::from_triangles(mesh.vertices.clone(), order).0;
+        let moved = changed(&|v| v + DVec3::new(123.4, -56.7, 0.0), false);
+        let quarter = changed(&|v| DVec3::new(-v.y, v.x, v.z), false);
+        let mirrored = changed(&|v| DVec3::new(-v.x, v.y, v.z), true);
+        for strategy in ["contour", "loop", "hybrid", "wall"] {
+            let same = figures(&mesh, strategy);
+            for (what, other) in
+                [("shuffled", &shuffled), ("moved", &moved), ("turned", &quarter), ("mirrored", &mirrored)]
+            {
+                let found = figures(other, strategy);
+                let near = |(a, b): (&f64, &f64), part: f64| (a - b).abs() <= part * a.abs();
+                // What lies on the part is the same; the way along it may begin elsewhere.
+                assert!(near((&same[2], &found[2]), 1e-6), "{family} {strategy} {what}: {same:?} {found:?}");
+                assert!(near((&same[3], &found[3]), 0.02), "{family} {strategy} {what}: {same:?} {found:?}");
+                assert!(near((&same[1], &found[1]), 0.05), "{family} {strategy} {what}: {same:?} {found:?}");
+            }
+        }
+    }
 }
 
 /// Why a part of islands cannot be welded as planned, or what it loses without a word.

@@ -114,6 +114,23 @@ fn papers_are_written_one_by_one() {
 }
 
 #[test]
+fn programs_that_nobody_should_start_are_not_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = super::window::example(folder.path(), "cross");
+    harness.state_mut().set_value("travel.clearance", "0.0");
+    wait(&mut harness);
+    let out = folder.path().join("out");
+    for export in [Export::All, Export::Program("krl".to_owned())] {
+        harness.state_mut().export(&export, &out);
+        let told = harness.state().messages().last().unwrap();
+        assert!(told.error && told.text.contains("travel.clearance = 0") && !out.exists(), "{}", told.text);
+    }
+    // The plan itself may be looked at.
+    harness.state_mut().export(&Export::File(PLAN), &out);
+    assert!(out.join(PLAN).exists());
+}
+
+#[test]
 fn a_picture_is_written() {
     if !has_adapter() {
         return;

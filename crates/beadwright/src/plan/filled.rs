@@ -2,7 +2,7 @@
 
 use super::scan_lines::Planned;
 use crate::fill::contour::{Contour, rings_only};
-use crate::fill::coverage;
+use crate::fill::coverage::{self, Bare};
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
@@ -50,7 +50,13 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         for stage in &mut fill.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
-        planned_area += covered(&fill, island, profile, reached, slice.index, &mut slice.warnings);
+        let left_out = slice.warnings[known..].iter().any(|w| w.kind == WarningKind::IslandTooSmall);
+        let (covered, bare) = covered(&fill, island, profile, reached);
+        planned_area += covered;
+        if bare.area > WORTH_TELLING * island.area() && !left_out {
+            let (kind, layer) = (WarningKind::Bare, slice.index);
+            slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
+        }
         fills.push(fill);
     }
     Filled { slice, fills, planned_area }
@@ -59,28 +65,15 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
 /// An island is warned of when its beads leave bare more than this part of it.
 const WORTH_TELLING: f64 = 0.01;
 
-/// Area of an island that its beads cover, mm²; warns of what they leave bare.
-fn covered(
-    fill: &Fill,
-    island: &Polygon,
-    profile: &Profile,
-    reached: f64,
-    layer: usize,
-    warnings: &mut Vec<Warning>,
-) -> f64 {
+/// Area of an island that its beads cover, mm², and what they leave bare of it.
+fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Bare) {
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-    if paths.is_empty() {
-        return 0.0;
-    }
-    if profile.fill.infill_density < 1.0 {
+    if profile.fill.infill_density < 1.0 && !paths.is_empty() {
         // Bare on purpose.
-        return reached;
+        return (reached, Bare::default());
     }
-    let (bare, area) = (coverage::bare(&paths, island, profile.bead.width), island.area());
-    if bare.area > WORTH_TELLING * area {
-        warnings.push(Warning { kind: WarningKind::Bare, layer, place: bare.place, size: bare.area });
-    }
-    (area - bare.area).max(0.0)
+    let bare = coverage::bare(&paths, island, profile.bead.width);
+    ((island.area() - bare.area).max(0.0), bare)
 }
 
 /// The fill of an island by a strategy, or, where that cannot be welded, by contours, with a warning.

@@ -261,23 +261,25 @@ pub fn plan_with<S: Sink + Send>(
     }
     let closed = mesh.neighbours.iter().flatten().all(|&across| across != NO_NEIGHBOUR);
     summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| closed && *volume > 0.0);
-    let volumes = other_volume(&summary, left.is_some());
+    let volumes = other_volume(&summary, mesh.volume(), left.is_some());
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
     Ok(summary)
 }
 
 /// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
 /// elsewhere than the part.
-fn other_volume(summary: &Summary, left: bool) -> Option<String> {
+fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
     /// Fraction of the mesh's volume.
     const WORTH_TELLING: f64 = 0.01;
-    let (slices, mesh) = (summary.metrics.part_volume_mm3, summary.metrics.mesh_volume_mm3?);
+    let slices = summary.metrics.part_volume_mm3;
     let more = slices / mesh - 1.0;
     if more.abs() <= WORTH_TELLING {
         return None;
     }
     let had = |kind| summary.warnings.summaries().any(|w| w.kind == kind);
-    let why = if had(WarningKind::ContoursUnited) {
+    let why = if summary.metrics.mesh_volume_mm3.is_none() {
+        "the surface is not closed, so the mesh's volume is a guess"
+    } else if had(WarningKind::ContoursUnited) {
         "shells overlap, and the mesh counts twice what the slices count once"
     } else if had(WarningKind::OpenContourDropped) {
         "contours that are not closed were dropped"

@@ -18,7 +18,7 @@ function tellLayer() {
   const numbers = [
     ["Passes", `${head.passes}`], ["Deposited length", metres(head.length)], ["Arc time", clock(head.seconds)],
     ["Travel across", metres(head.travel)], ["Layer height", `${head.height.toFixed(2)} mm`],
-    ["Planned / slice area", area(head.planned), ` of ${area(head.slice)} (${head.share.toFixed(1)} %)`],
+    ["Covered / slice area", area(head.planned), ` of ${area(head.slice)} (${head.share.toFixed(1)} %)`],
     ...head.judged ? [["Void", `${head.voids.toFixed(2)} %`], ["Overfill", `${head.overfill.toFixed(2)} %`]] : [],
     ["Warnings", head.warnings ? `${head.warnings}` : "none"],
   ];

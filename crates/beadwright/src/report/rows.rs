@@ -16,7 +16,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("total time", hours(m.total_time_s)),
         ("wire", format!("{:.2} m, {:.3} kg", m.wire_length_m, m.wire_mass_kg)),
         ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, part / 1e3)),
-        ("planned / slice area", format!("{:.2} %", 100.0 * m.coverage())),
+        ("covered / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
     if m.dwell_time_s > 0.0 {
         rows.insert(5, ("waits between layers", hours(m.dwell_time_s)));

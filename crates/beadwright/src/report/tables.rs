@@ -49,7 +49,7 @@ pub(super) fn totals(summary: &Summary, figures: Option<&Figures>) -> String {
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
     rows.push(("Part volume", volume(m.part_volume_mm3)));
     rows.push(("Deposited volume", volume(m.deposited_volume_mm3)));
-    rows.push(("Planned / slice area", format!("{:.2} %", 100.0 * m.coverage())));
+    rows.push(("Covered / slice area", format!("{:.2} %", 100.0 * m.coverage())));
     if let Some(f) = figures {
         rows.push(("Void, low", format!("{:.2} %, {:.2} % of the area", f.void_percent(), f.low_percent())));
         rows.push(("Overfill, outside", format!("{:.2} %, {:.2} %", f.overfill_percent(), f.outside_percent())));
