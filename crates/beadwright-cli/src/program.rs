@@ -188,7 +188,7 @@ impl Source {
 fn told_profile(text: &str) -> Option<&'static str> {
     const HEAD: usize = 40;
     let told = |line: &str| {
-        let line = line.trim_end_matches(|c: char| !c.is_ascii_alphanumeric());
+        let line = line.trim_end_matches(|c: char| !c.is_ascii_alphanumeric()).to_ascii_lowercase();
         BUILT_IN.iter().map(|(name, _)| *name).find(|name| line.strip_suffix(name).is_some_and(|l| l.ends_with(", ")))
     };
     text.lines().take(HEAD).find_map(told)

@@ -1,16 +1,16 @@
-//! What the beads of an island leave bare, by their footprints: each piece of a path covers half a width to both sides and
-//! around its ends. Measured on rows across the island, exact along each row.
+//! What beads leave bare, by their footprints: each piece of a path covers half a width to both sides and
+//! around its ends. Measured on rows across the region, exact along each row.
 
 use super::Path;
 use glam::DVec2;
-use planar::{Bounds, Polygon, Region};
+use planar::{Bounds, Region};
 
 /// Rows in a bead's width.
 const ROWS: f64 = 16.0;
 /// Beads count as wider by this fraction: neighbours that just touch leave nothing.
 const TOUCHING: f64 = 0.01;
 
-/// The part of an island that no bead covers.
+/// The part of a region that no bead covers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bare {
     /// mm²
@@ -19,9 +19,10 @@ pub struct Bare {
     pub place: DVec2,
 }
 
-/// What passes leave bare of an island; `width` is the nominal bead's, mm.
-pub fn bare(paths: &[&Path], island: &Polygon, width: f64) -> Bare {
-    let Some(bounds) = Bounds::of(island.outer.points().iter().copied()) else { return Bare::default() };
+/// What passes leave bare of a region; `width` is the nominal bead's, mm.
+pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
+    let outlines = region.polygons().iter().flat_map(|island| island.outer.points().iter().copied());
+    let Some(bounds) = Bounds::of(outlines) else { return Bare::default() };
     let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
     let step = bounds.size().y / count as f64;
     let first = bounds.min.y + step / 2.0;
@@ -37,7 +38,7 @@ pub fn bare(paths: &[&Path], island: &Polygon, width: f64) -> Bare {
             }
         }
     }
-    let inside = Region::from_normalised(vec![island.clone()]).rows(first, step, count);
+    let inside = region.rows(first, step, count);
     let (mut found, mut widest) = (Bare::default(), 0.0);
     for (k, (inside, covered)) in inside.iter().zip(&mut covered).enumerate() {
         covered.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -89,11 +90,15 @@ mod tests {
     use crate::fill::Path;
     use crate::pass::{Along, PassKind};
     use glam::DVec2;
-    use planar::{Polygon, Ring};
+    use planar::{Polygon, Region, Ring};
 
-    fn square(side: f64) -> Polygon {
+    fn square(side: f64) -> Region {
         let points = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(DVec2::from);
-        Polygon { outer: Ring::new(points.to_vec()), holes: Vec::new() }
+        region(points.to_vec())
+    }
+
+    fn region(points: Vec<DVec2>) -> Region {
+        Region::from_normalised(vec![Polygon { outer: Ring::new(points), holes: Vec::new() }])
     }
 
     fn line(from: (f64, f64), to: (f64, f64), width: f64) -> Path {
@@ -117,7 +122,7 @@ mod tests {
         let turn = DVec2::from_angle(0.7);
         let turned = |points: &[DVec2]| points.iter().map(|p| turn.rotate(*p)).collect::<Vec<_>>();
         let (island, pass) = (square(20.0), line((2.0, 4.0), (15.0, 13.0), 5.0));
-        let moved = Polygon { outer: Ring::new(turned(island.outer.points())), holes: Vec::new() };
+        let moved = region(turned(island.polygons()[0].outer.points()));
         let along = Path { points: turned(&pass.points), ..pass.clone() };
         let (a, b) = (bare(&[&pass], &island, 5.0).area, bare(&[&along], &moved, 5.0).area);
         assert!((a / b - 1.0).abs() < 2e-3, "{a} {b}");

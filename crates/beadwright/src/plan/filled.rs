@@ -62,8 +62,8 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
     Filled { slice, fills, planned_area }
 }
 
-/// An island is warned of when its beads leave bare more than this part of it.
-const WORTH_TELLING: f64 = 0.01;
+/// What beads leave bare is told when it is more than this part of an island.
+pub(super) const WORTH_TELLING: f64 = 0.01;
 
 /// Area of an island that its beads cover, mm², and what they leave bare of it.
 fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Bare) {
@@ -72,7 +72,7 @@ fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f
         // Bare on purpose.
         return (reached, Bare::default());
     }
-    let bare = coverage::bare(&paths, island, profile.bead.width);
+    let bare = coverage::bare(&paths, &Region::from(island.clone()), profile.bead.width);
     ((island.area() - bare.area).max(0.0), bare)
 }
 

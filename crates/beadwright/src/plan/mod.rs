@@ -23,7 +23,7 @@ pub use preview::preview;
 use crate::bead::wall::{WallBead, WallError};
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
-use crate::fill::{self, Path, Strategy};
+use crate::fill::{self, Path, Strategy, coverage};
 use crate::layer::{Layer, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
@@ -38,7 +38,7 @@ use crate::weld;
 use filled::{Filled, drop_short, fill_planned};
 use glam::{DVec2, DVec3};
 use planar::medial::Node;
-use planar::{Bounds, Polygon, Region};
+use planar::{Bounds, Polygon};
 use rayon::prelude::*;
 use scan_lines::Planned;
 use serde::Serialize;
@@ -384,7 +384,11 @@ fn plan_curves<S: Sink + Send>(
     };
     let summary = run([name, &profile.fill.strategy], slabs.len(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
-        return Err(PlanError::Empty("all curves are shorter than fill.min_pass_length.".to_owned()));
+        return Err(PlanError::Empty(
+            "each curve is shorter than fill.min_pass_length, or than the distance within which ends meet \
+             (wall.junction_tolerance)."
+                .to_owned(),
+        ));
     }
     Ok(summary)
 }
@@ -440,15 +444,18 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     for stage in &mut fill.stages {
         drop_short(stage, profile, index, &mut slice.warnings);
     }
-    let covered = sections.iter().fold(Region::default(), |region, section| {
-        region.union(&planar::buffer(
-            std::slice::from_ref(&section.points),
-            section.closed,
-            width / 2.0,
-            COVER_TOLERANCE_MM,
-        ))
-    });
-    let planned_area = covered.area();
+    let along = |closed: bool| {
+        let lines = sections.iter().filter(|section| section.closed == closed).map(|section| section.points.clone());
+        planar::buffer(&lines.collect::<Vec<_>>(), closed, width / 2.0, COVER_TOLERANCE_MM)
+    };
+    let covered = along(true).union(&along(false));
+    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+    let (bare, area) = (coverage::bare(&paths, &covered, width), covered.area());
+    if bare.area > filled::WORTH_TELLING * area {
+        let (kind, layer) = (WarningKind::Bare, index);
+        slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
+    }
+    let planned_area = (area - bare.area).max(0.0);
     slice.islands = covered.into_polygons();
     Filled { slice, fills: vec![fill], planned_area }
 }

@@ -7,6 +7,9 @@
 use glam::DVec2;
 use planar::medial::Node;
 use planar::polyline::point_at;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use std::collections::BTreeMap;
 
 /// Two edges that meet with a smaller turn than this become one, rad (25°).
 pub const KINK: f64 = 25.0 * std::f64::consts::PI / 180.0;
@@ -75,17 +78,14 @@ impl Graph {
     /// The graph of centre-lines; lines that come closer together than `tolerance` (mm) meet.
     pub fn of(lines: &[Line], tolerance: f64) -> Self {
         let lines: Vec<Line> = lines.iter().filter_map(opened).collect();
-        let mut cuts = crossings(&lines);
+        let (mut cuts, pieces) = (crossings(&lines), pieces(&lines));
         for (i, line) in lines.iter().enumerate().filter(|(_, line)| !line.closed) {
             for end in [line.nodes.first(), line.nodes.last()].into_iter().flatten() {
-                touches(&lines, i, end.at, tolerance).for_each(|(other, cut)| cuts[other].push(cut));
+                touches(&pieces, i, end.at, tolerance).for_each(|(other, cut)| cuts[other].push(cut));
             }
         }
-        let mut pieces = Vec::new();
-        for (line, cuts) in lines.iter().zip(&mut cuts) {
-            pieces.extend(pieces_of(line, cuts, tolerance));
-        }
-        Self::joining(pieces, tolerance).without_passed(tolerance)
+        let cut = lines.iter().zip(&mut cuts).flat_map(|(line, cuts)| pieces_of(line, cuts, tolerance));
+        Self::joining(cut.collect(), tolerance).without_passed(tolerance)
     }
 
     /// Whether an edge is a ring: it returns to its start without a kink and meets no other edge.
@@ -130,26 +130,34 @@ impl Graph {
     }
 
     /// Removes nodes that a line only passes through, and those where nothing meets.
-    fn without_passed(mut self, tolerance: f64) -> Self {
-        for node in 0..self.places.len() {
-            let at: Vec<usize> =
-                (0..self.edges.len()).filter(|&e| self.edges[e].from == node || self.edges[e].to == node).collect();
-            let [a, b] = at[..] else { continue };
-            if self.edges[a].from == self.edges[a].to || self.edges[b].from == self.edges[b].to {
+    fn without_passed(self, tolerance: f64) -> Self {
+        let Self { places, edges } = self;
+        let mut at: Vec<Vec<usize>> = vec![Vec::new(); places.len()];
+        for (e, edge) in edges.iter().enumerate() {
+            at[edge.from].push(e);
+            at[edge.to].push(e);
+        }
+        let mut edges: Vec<Option<Edge>> = edges.into_iter().map(Some).collect();
+        for node in 0..places.len() {
+            // A loop at the node stands there twice.
+            let [a, b] = at[node][..] else { continue };
+            let (Some(first), Some(second)) = (&edges[a], &edges[b]) else { continue };
+            let toward = |edge: &Edge| edge.direction(edge.from == node, tolerance);
+            let is_loop = a == b || first.from == first.to || second.from == second.to;
+            if is_loop || toward(first).angle_to(-toward(second)).abs() >= KINK {
                 continue;
             }
-            let toward = |e: usize| self.edges[e].direction(self.edges[e].from == node, tolerance);
-            if toward(a).angle_to(-toward(b)).abs() >= KINK {
-                continue;
-            }
-            let second = self.edges.swap_remove(a.max(b));
-            let first = self.edges.swap_remove(a.min(b));
+            let (Some(first), Some(second)) = (edges[a].take(), edges[b].take()) else { continue };
             let first = if first.to == node { first } else { first.reversed() };
             let second = if second.from == node { second } else { second.reversed() };
             let nodes = first.nodes.into_iter().chain(second.nodes.into_iter().skip(1)).collect();
-            self.edges.push(Edge { from: first.from, to: second.to, nodes });
+            let joined = edges.len();
+            for end in [first.from, second.to] {
+                at[end].iter_mut().filter(|e| **e == a || **e == b).for_each(|e| *e = joined);
+            }
+            edges.push(Some(Edge { from: first.from, to: second.to, nodes }));
         }
-        self.numbered()
+        Self { places, edges: edges.into_iter().flatten().collect() }.numbered()
     }
 
     fn numbered(mut self) -> Self {
@@ -210,21 +218,35 @@ fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, f64)> {
     (within(t) && within(u)).then_some((t, u))
 }
 
-/// The place nearest to `end` on every other line, if within the tolerance; cuts at a line's ends drop out later.
-fn touches(lines: &[Line], own: usize, end: DVec2, tolerance: f64) -> impl Iterator<Item = (usize, Cut)> + '_ {
-    let near = move |(other, line): (usize, &Line)| {
-        let mut best = (tolerance, None);
-        for (k, w) in line.nodes.windows(2).enumerate() {
-            let (a, b) = (w[0].at, w[1].at);
-            let share = ((end - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            let distance = end.distance(a.lerp(b, share));
-            if distance < best.0 || (distance == best.0 && best.1.is_none()) {
-                best = (distance, Some((k, share)));
-            }
-        }
-        best.1.map(|cut| (other, cut))
+/// A piece of a line: number of the line, number of the piece in it.
+type Piece = GeomWithData<rstar::primitives::Line<[f64; 2]>, (usize, usize)>;
+
+/// The pieces of all lines, to be found by their place.
+fn pieces(lines: &[Line]) -> RTree<Piece> {
+    let of = |(i, line): (usize, &Line)| {
+        let piece = move |(k, w): (usize, &[Node])| {
+            GeomWithData::new(rstar::primitives::Line::new(w[0].at.to_array(), w[1].at.to_array()), (i, k))
+        };
+        line.nodes.windows(2).enumerate().map(piece).collect::<Vec<_>>()
     };
-    lines.iter().enumerate().filter(move |(other, _)| *other != own).filter_map(near)
+    RTree::bulk_load(lines.iter().enumerate().flat_map(of).collect())
+}
+
+/// The place nearest to `end` on every other line, if within the tolerance; cuts at a line's ends drop out later.
+fn touches(pieces: &RTree<Piece>, own: usize, end: DVec2, tolerance: f64) -> impl Iterator<Item = (usize, Cut)> + '_ {
+    let mut nearest: BTreeMap<usize, (f64, Cut)> = BTreeMap::new();
+    let near = pieces.locate_within_distance(end.to_array(), tolerance * tolerance * (1.0 + 1e-9));
+    for piece in near.filter(|piece| piece.data.0 != own) {
+        let (a, b) = (DVec2::from(piece.geom().from), DVec2::from(piece.geom().to));
+        let share = ((end - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        let (distance, (line, k)) = (end.distance(a.lerp(b, share)), piece.data);
+        let best = nearest.entry(line).or_insert((distance, (k, share)));
+        // Of equally near pieces the first.
+        if (distance, k) < (best.0, best.1.0) {
+            *best = (distance, (k, share));
+        }
+    }
+    nearest.into_iter().filter(move |(_, (distance, _))| *distance <= tolerance).map(|(line, (_, cut))| (line, cut))
 }
 
 /// The pieces of a line between its cuts, each with whether its start and its end are cuts.
@@ -269,6 +291,8 @@ fn pieces_of(line: &Line, cuts: &mut Vec<Cut>, tolerance: f64) -> Vec<(Vec<Node>
 
 /// The cluster index of each end: ends within the tolerance of each other, directly or through others, share a cluster.
 fn clusters(ends: &[(DVec2, bool)], tolerance: f64) -> Vec<usize> {
+    let places = ends.iter().enumerate().map(|(i, (at, _))| GeomWithData::new(at.to_array(), i));
+    let tree: RTree<GeomWithData<[f64; 2], usize>> = RTree::bulk_load(places.collect());
     let mut cluster = vec![usize::MAX; ends.len()];
     let mut count = 0;
     for first in 0..ends.len() {
@@ -278,10 +302,10 @@ fn clusters(ends: &[(DVec2, bool)], tolerance: f64) -> Vec<usize> {
         let mut open = vec![first];
         cluster[first] = count;
         while let Some(here) = open.pop() {
-            for other in 0..ends.len() {
-                if cluster[other] == usize::MAX && ends[other].0.distance(ends[here].0) <= tolerance {
-                    cluster[other] = count;
-                    open.push(other);
+            for other in tree.locate_within_distance(ends[here].0.to_array(), tolerance * tolerance) {
+                if cluster[other.data] == usize::MAX {
+                    cluster[other.data] = count;
+                    open.push(other.data);
                 }
             }
         }
