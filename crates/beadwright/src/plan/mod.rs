@@ -410,6 +410,7 @@ fn run<S: Sink + Send>(
         torch: None,
         below: Vec::new(),
         built: 0.0,
+        points: 0,
         metrics: Metrics::new(profile),
         warnings: Warnings::default(),
     };
@@ -425,10 +426,12 @@ fn run<S: Sink + Send>(
         emitted.map_err(PlanError::Sink)?;
         ready = filled?;
     }
-    let Emitter { metrics, warnings, .. } = emitter;
+    let Emitter { metrics, warnings, points, .. } = emitter;
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
-    Ok(Summary { metrics, warnings, notes: profile.notes(), forbidden })
+    let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
+    let large = large.map(|most| format!("The plan has {points} points; {most} are the most (check.max_plan_points)."));
+    Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
 }
 
 /// The centre-lines of a layer as passes; the area they cover stands in for the slice.
@@ -481,6 +484,7 @@ struct Emitter<'a, S> {
     below: Vec<Polygon>,
     /// Top of the highest layer with beads, mm.
     built: f64,
+    points: usize,
     metrics: Metrics,
     warnings: Warnings,
 }
@@ -530,6 +534,7 @@ impl<S: Sink> Emitter<'_, S> {
             self.built = layer.z;
         }
         let points: usize = layer.passes.iter().map(|pass| pass.points.len()).sum();
+        self.points += points;
         if points > limits.max_points as usize {
             doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
         }

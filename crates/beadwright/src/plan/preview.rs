@@ -34,7 +34,8 @@ pub fn preview(
     let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
     // The layers below are taken for granted.
     let built = f64::INFINITY;
-    let mut emitter = Emitter { profile, sink: &mut last, torch: None, below: Vec::new(), built, metrics, warnings };
+    let mut emitter =
+        Emitter { profile, sink: &mut last, torch: None, below: Vec::new(), built, points: 0, metrics, warnings };
     filled.map(|filled| emitter.emit(filled)).transpose().map_err(PlanError::Sink)?;
     Ok(last.0)
 }
