@@ -25,7 +25,7 @@ pub enum WarningKind {
     /// The strategy could not fill an island (its passes left it, crossed, or were none), and contours fill it instead; the
     /// size is its area, mm².
     Refilled,
-    /// Beads leave part of an island bare; the size is that area, mm².
+    /// Beads leave part of an island bare, its rim not counted; the size is that area, mm².
     Bare,
     /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
     Unsound,
@@ -160,8 +160,7 @@ impl WarningSummary {
                 times("pass", "passes")
             ),
             WarningKind::Bare => format!(
-                "{layers}: {} of which the beads leave more than 1 % bare, {total:.1} mm² in all, the most {size:.1} mm² \
-                 {place}.",
+                "{layers}: beads leave {} bare by more than 1 %, {total:.1} mm² in all, the most {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::Unsound => format!(

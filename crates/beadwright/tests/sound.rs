@@ -134,30 +134,22 @@ fn wrong(islands: &[Polygon], profile: &Profile) -> Option<String> {
         Err(plan::PlanError::Empty(_)) => return None,
         Err(error) => return Some(error.to_string()),
     };
-    plan.layers.iter().find_map(|layer| fault(layer).or_else(|| untold(layer, profile)))
+    plan.layers.iter().find_map(|layer| fault(layer).or_else(|| untold(layer)))
 }
 
-/// What a layer leaves bare beyond 1 % of an island without a warning, measured with polygons instead of rows.
-fn untold(layer: &Layer, profile: &Profile) -> Option<String> {
+/// Where the area that a layer is said to cover is wrong by more than 1 %, measured with polygons instead of rows.
+fn untold(layer: &Layer) -> Option<String> {
     let footprint = |pass: &Pass| {
         let pieces = line(pass);
         let piece = |(i, w): (usize, &[DVec2])| buffer(&[w.to_vec()], false, 0.505 * pass.width.after(i), 0.02);
         pieces.windows(2).enumerate().map(piece).collect::<Vec<_>>()
     };
     let beads = layer.passes.iter().flat_map(footprint).reduce(|a, b| a.union(&b)).unwrap_or_default();
-    let told: f64 = layer.warnings.iter().filter(|w| tells_of_area(w.kind)).map(|w| w.size).sum();
-    let bare: f64 = layer
-        .islands
-        .iter()
-        .map(|island| (Region::from(island.clone()).difference(&beads).area(), island.area()))
-        .filter(|(bare, area)| *bare > 0.0105 * area + 0.01 * profile.bead.width.powi(2))
-        .map(|(bare, _)| bare)
-        .sum();
-    (bare > 1.05 * told + 1.0).then(|| format!("layer {}: {bare:.1} mm² bare, {told:.1} told", layer.index + 1))
-}
-
-fn tells_of_area(kind: WarningKind) -> bool {
-    matches!(kind, WarningKind::Bare | WarningKind::IslandTooSmall)
+    let area: f64 = layer.islands.iter().map(Polygon::area).sum();
+    let covered = area - Region::from_normalised(layer.islands.clone()).difference(&beads).area();
+    let said = layer.planned_area;
+    ((covered - said).abs() > 0.01 * area)
+        .then(|| format!("layer {}: {covered:.1} covered, {said:.1} said", layer.index))
 }
 
 /// `BEADWRIGHT_PARTS=2000` tries so many parts of other seeds.

@@ -33,8 +33,10 @@ pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
             let radius = path.width.after(i) * (0.5 + TOUCHING / 2.0);
             let (low, high) = (ends[0].y.min(ends[1].y) - radius, ends[0].y.max(ends[1].y) + radius);
             let row = |y: f64| ((y - first) / step).clamp(0.0, count as f64);
-            for k in row(low).ceil() as usize..(row(high).floor() as usize + 1).min(count) {
-                covered[k].extend(across(ends[0], ends[1], radius, first + k as f64 * step));
+            let from = row(low).ceil() as usize;
+            let rows = covered.iter_mut().enumerate().take((row(high).floor() as usize + 1).min(count)).skip(from);
+            for (k, covered) in rows {
+                covered.extend(across(ends[0], ends[1], radius, first + k as f64 * step));
             }
         }
     }

@@ -38,7 +38,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         Some(size) if size < length && size > HEADER && plausible(&bytes[HEADER..]) => {
             let (announced, more) = ((size - HEADER) / RECORD, (length - size) / RECORD);
             // Either the count is wrong and further triangles follow, or a program has appended data of its own.
-            let counted_wrong = (length - size) % RECORD == 0 && bytes[size..].chunks(RECORD).all(plausible);
+            let counted_wrong = (length - size).is_multiple_of(RECORD) && bytes[size..].chunks(RECORD).all(plausible);
             let damage = format!("bytes 80–83 announce {announced} triangles, but {more} more follow");
             let mut import = if counted_wrong {
                 read_binary(bytes, Some(damage), task)?
@@ -104,9 +104,11 @@ fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
 
 type Facet = ([f32; 3], [[f32; 3]; 3]);
 
+type Parsed = (Vec<Facet>, Vec<u32>, Option<String>);
+
 /// Facets, the line on which each begins, and what is missing at the end. Names of solids may be any bytes; several solids
 /// may follow.
-fn parse_ascii(bytes: &[u8], task: &Task) -> Result<(Vec<Facet>, Vec<u32>, Option<String>), ImportError> {
+fn parse_ascii(bytes: &[u8], task: &Task) -> Result<Parsed, ImportError> {
     let (mut facets, mut lines): (Vec<Facet>, Vec<u32>) = (Vec::new(), Vec::new());
     let mut open: Option<([f32; 3], Vec<[f32; 3]>)> = None;
     let (mut line_number, mut in_solid) = (0, false);

@@ -1,6 +1,7 @@
 //! A slice with its passes, and the places in it that a bead cannot reach.
 
 use super::scan_lines::Planned;
+use crate::deposit::RIM;
 use crate::fill::contour::{Contour, rings_only};
 use crate::fill::coverage::{self, Bare};
 use crate::fill::sound::{self, Fault};
@@ -53,7 +54,7 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         let left_out = slice.warnings[known..].iter().any(|w| w.kind == WarningKind::IslandTooSmall);
         let (covered, bare) = covered(&fill, island, profile, reached);
         planned_area += covered;
-        if bare.area > WORTH_TELLING * island.area() && !left_out {
+        if let Some(bare) = bare.filter(|_| !left_out) {
             let (kind, layer) = (WarningKind::Bare, slice.index);
             slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
         }
@@ -63,17 +64,21 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
 }
 
 /// What beads leave bare is told when it is more than this part of an island.
-pub(super) const WORTH_TELLING: f64 = 0.01;
+const WORTH_TELLING: f64 = 0.01;
 
-/// Area of an island that its beads cover, mm², and what they leave bare of it.
-fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Bare) {
+/// Area of an island that its beads cover, mm², and what they leave bare inside its rim, if that is worth telling.
+fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Option<Bare>) {
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
     if profile.fill.infill_density < 1.0 && !paths.is_empty() {
         // Bare on purpose.
-        return (reached, Bare::default());
+        return (reached, None);
     }
-    let bare = coverage::bare(&paths, &Region::from(island.clone()), profile.bead.width);
-    ((island.area() - bare.area).max(0.0), bare)
+    let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
+    let bare = coverage::bare(&paths, &whole, width).area;
+    let least = WORTH_TELLING * area;
+    // At the rim the deposit model does not count voids either: beads are flat there.
+    let inner = (bare > least).then(|| coverage::bare(&paths, &whole.offset(-RIM * width, Join::ROUND), width));
+    ((area - bare).max(0.0), inner.filter(|inner| inner.area > least))
 }
 
 /// The fill of an island by a strategy, or, where that cannot be welded, by contours, with a warning.

@@ -453,15 +453,19 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     };
     let covered = along(true).union(&along(false));
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-    let (bare, area) = (coverage::bare(&paths, &covered, width), covered.area());
-    if bare.area > filled::WORTH_TELLING * area {
+    let bare = coverage::bare(&paths, &covered, width);
+    // Where a curve was too short or vanished in a junction.
+    if bare.area > BARE_CURVE * width * width {
         let (kind, layer) = (WarningKind::Bare, index);
         slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
     }
-    let planned_area = (area - bare.area).max(0.0);
+    let planned_area = (covered.area() - bare.area).max(0.0);
     slice.islands = covered.into_polygons();
     Filled { slice, fills: vec![fill], planned_area }
 }
+
+/// What is left bare of curves is told from this area on, in squared bead widths.
+const BARE_CURVE: f64 = 0.5;
 
 /// Accuracy of the round ends of the area that a curve covers, mm.
 const COVER_TOLERANCE_MM: f64 = 0.02;
