@@ -42,7 +42,7 @@ pub(crate) struct Source {
 }
 
 enum Content {
-    Plan(PlanFile),
+    Plan(Box<PlanFile>),
     Program(String),
 }
 
@@ -96,7 +96,7 @@ impl Source {
         let text = text::of(&file::read(path)?).with_context(context)?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let content = if text.trim_start().starts_with('{') {
-            Content::Plan(plan_file::read(&text).with_context(context)?)
+            Content::Plan(Box::new(plan_file::read(&text).with_context(context)?))
         } else {
             Content::Program(text)
         };
@@ -116,18 +116,23 @@ impl Source {
         if let Some(name) = &wanted.profile {
             return profile::load(name, &wanted.set);
         }
-        match &self.content {
-            Content::Plan(PlanFile { profile: Some(profile), .. }) if wanted.set.is_empty() => Ok(profile.clone()),
-            Content::Plan(PlanFile { profile: Some(profile), .. }) => {
-                profile::with_settings(profile.toml_text()?, &wanted.set)
-            }
-            Content::Plan(PlanFile { header, .. }) => anyhow::bail!(
+        let plan = match &self.content {
+            Content::Plan(plan) => plan,
+            Content::Program(text) => return profile::load(told_profile(text).unwrap_or(profile::USUAL), &wanted.set),
+        };
+        let Some(profile) = &plan.profile else {
+            let name = &plan.header.profile;
+            anyhow::bail!(
                 "{}: this plan.json is of version 1 and does not carry its profile{}. Give it with --profile, or make the \
                  plan again.",
                 self.path.display(),
-                if header.profile.is_empty() { String::new() } else { format!(" (\"{}\")", header.profile) }
-            ),
-            Content::Program(text) => profile::load(told_profile(text).unwrap_or(profile::USUAL), &wanted.set),
+                if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
+            );
+        };
+        if wanted.set.is_empty() {
+            Ok(profile.clone())
+        } else {
+            profile::with_settings(profile.toml_text()?, &wanted.set)
         }
     }
 
@@ -142,7 +147,7 @@ impl Source {
     ) -> anyhow::Result<Loaded> {
         let Self { path, name, content } = self;
         let text = match content {
-            Content::Plan(plan) => return Ok(layers_of(name, plan, profile)),
+            Content::Plan(plan) => return Ok(layers_of(name, *plan, profile)),
             Content::Program(text) => text,
         };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
