@@ -14,9 +14,10 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Profile: a built-in name or a TOML file.
-    #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
-    profile: String,
+    /// Profile: a built-in name or a TOML file; cmt-al2319-kuka if left out. Programs are then read with the profile that
+    /// they name.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    profile: Option<String>,
     /// Change a value of the profile; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -57,7 +58,7 @@ fn parse_layers(text: &str) -> Result<Chosen, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let profile = profile::load(arguments.profile.as_deref().unwrap_or(profile::USUAL), &arguments.set)?;
     let all = || fill::STRATEGIES.iter().map(|s| s.name().to_owned()).collect();
     let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
     let (task, bar) = progress::task()?;
@@ -70,9 +71,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         entries.push(entry.with_context(|| format!("{}", arguments.model.model.display()))?);
     }
     let mut notes = Vec::new();
-    let given = profile::Wanted { profile: Some(arguments.profile.clone()), set: Vec::new() };
+    let wanted = profile::Wanted { profile: arguments.profile.clone(), set: arguments.set.clone() };
     for path in &arguments.program {
-        let loaded = program::Source::open(path)?.load(&arguments.reading, &given, &profile, Some(&import), &task)?;
+        let source = program::Source::open(path)?;
+        let own = source.profile(&wanted)?;
+        let loaded = source.load(&arguments.reading, &wanted, &own, Some(&import), &task)?;
         entries.push(compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &chosen, &task)?);
         notes.extend(loaded.notes.into_iter().map(|note| format!("{}: {note}", loaded.name)));
     }

@@ -4,8 +4,7 @@ use crate::{file, model, profile, program, progress};
 use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::import_damaged;
-use beadwright::text;
+use beadwright::model::{decoded, import_damaged};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
@@ -25,14 +24,15 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let bytes = file::read(&arguments.file)?;
-    if let Some(file) = model::read_iges(&arguments.file, &bytes)? {
+    let bytes = &*decoded(&bytes).with_context(|| format!("{}", arguments.file.display()))?;
+    if let Some(file) = model::read_iges(&arguments.file, bytes)? {
         return Ok(curves(&file, arguments)?);
     }
-    if is_program(&bytes) {
+    if is_program(bytes) {
         return read_program(arguments);
     }
     let (task, bar) = progress::task()?;
-    let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
+    let import = import_damaged(bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
@@ -62,9 +62,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Whether the file holds a plan or a program. Models are also recognised by their content, and are not programs.
 fn is_program(bytes: &[u8]) -> bool {
-    let Ok(text) = text::of(bytes) else { return false };
+    let Ok(text) = std::str::from_utf8(bytes) else { return false };
     let solid = text.trim_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case("solid"));
-    !text.contains('\0') && !solid && (text.trim_start().starts_with('{') || reading::recognise(&text).is_some())
+    !text.contains('\0') && !solid && (text.trim_start().starts_with('{') || reading::recognise(text).is_some())
 }
 
 /// What a plan or a program holds.

@@ -22,7 +22,8 @@ pub(crate) fn limit() -> u64 {
         let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
         let system = System::new_with_specifics(memory);
         let total = system.cgroup_limits().map_or(system.total_memory(), |limits| limits.total_memory);
-        (total as f64 * PART) as u64
+        // Where the system does not tell, nothing is limited.
+        if total == 0 { u64::MAX } else { (total as f64 * PART) as u64 }
     })
 }
 

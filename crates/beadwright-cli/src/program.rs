@@ -80,12 +80,12 @@ pub(crate) fn fitted(
     let points = size.x * size.y / (step * step);
     anyhow::ensure!(
         points <= deposit::MANY_POINTS,
-        "--grid {step}: over {:.0} × {:.0} mm that are {points:.0e} points; at most {:.0e} are computed, that is --grid \
-         {:.3}.",
+        "--grid {step}: over {:.0} × {:.0} mm that are {points:.0e} points; at most {:.0e} are computed. Take --grid {:.3} \
+         or more.",
         size.x,
         size.y,
         deposit::MANY_POINTS,
-        (size.x * size.y / deposit::MANY_POINTS).sqrt()
+        ((size.x * size.y / deposit::MANY_POINTS).sqrt() * 1e3).ceil() / 1e3
     );
     Ok(settings)
 }
@@ -123,7 +123,7 @@ impl Source {
         let Some(profile) = &plan.profile else {
             let name = &plan.header.profile;
             anyhow::bail!(
-                "{}: this plan.json is of version 1 and does not carry its profile{}. Give it with --profile, or make the \
+                "{}: this plan.json does not carry its profile{}, as those of version 1 do not. Give it with --profile, or make the \
                  plan again.",
                 self.path.display(),
                 if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
@@ -159,8 +159,8 @@ impl Source {
         let (told, printer) = (told_profile(&text), program.moves.iter().any(|m| matches!(m.metal, Metal::Volume(_))));
         anyhow::ensure!(
             !printer || told.is_some() || wanted.profile.is_some(),
-            "{}: this is a printer's program, and it does not say for which bead: give a profile with --profile, such as \
-             fdm-abs-0.4, or your own.",
+            "{}: this is a printer's program, and it names no built-in profile: give the one of its bead with --profile, \
+             such as fdm-abs-0.4, or your own.",
             path.display()
         );
         let settings = plan::deposit_settings(profile);
@@ -211,7 +211,9 @@ impl Reading {
 }
 
 fn layers_of(name: String, plan: PlanFile, profile: &Profile) -> Loaded {
-    let settings = plan.settings.unwrap_or_else(|| plan::deposit_settings(profile));
+    // A plan that carries its profile is judged by it, or by the one that is asked for.
+    let own = plan.settings.filter(|_| plan.profile.is_none());
+    let settings = own.unwrap_or_else(|| plan::deposit_settings(profile));
     let mut metrics = Metrics::new(profile);
     plan.layers.iter().for_each(|layer| metrics.add(layer));
     let (totals, notes) = (Totals::of_plan(&metrics), Vec::new());

@@ -4,6 +4,7 @@ use beadwright::task::Task;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 static RUNNING: OnceLock<Task> = OnceLock::new();
 
@@ -17,8 +18,17 @@ pub(crate) fn task() -> anyhow::Result<(Task, ProgressBar)> {
         shown.set_position((fraction * 1000.0) as u64);
     });
     _ = RUNNING.set(task.clone());
-    ctrlc::set_handler(cancel)?;
+    ctrlc::set_handler(stop)?;
     Ok((task, bar))
+}
+
+/// Asked once, stops the task; asked again, ends at once. What it leaves, the next run clears.
+fn stop() {
+    static ASKED: AtomicBool = AtomicBool::new(false);
+    if ASKED.swap(true, Ordering::Relaxed) {
+        std::process::exit(1);
+    }
+    cancel();
 }
 
 /// Stops the task, if one runs.

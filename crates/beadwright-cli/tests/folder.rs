@@ -178,7 +178,10 @@ fn case_1617_a_run_that_is_told_to_end_leaves_nothing() {
     let mut run = beadwright();
     run.current_dir(place.path()).args(["plan", "part.stl", "--set", "layers.height=0.1"]);
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(800));
+    // The handler is there before the first file.
+    while !fs::read_dir(place.path()).unwrap().any(|e| e.unwrap().file_name().to_string_lossy().starts_with(".beadwr"))
+    {
+    }
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     let done = child.wait_with_output().unwrap();
     let said = String::from_utf8_lossy(&done.stderr).into_owned();

@@ -128,7 +128,7 @@ pub enum PlanFileError {
     Empty,
     /// An impossible bead.
     #[error(
-        "width, height, speed and rise of the bead must be greater than 0 and below {MAX_REACH_MM}, the machining allowance 0 to 50 mm. Make the plan again with `beadwright plan`."
+        "width, height, speed and rise of the bead must be greater than 0 and at most {MAX_MEASURE}, the machining allowance 0 to 50 mm. Make the plan again with `beadwright plan`."
     )]
     Bead,
     /// An impossible layer.
@@ -282,7 +282,7 @@ impl FileLayer {
         }
         let outlines = || islands.iter().flat_map(|i| i.holes.iter().chain([&i.outline]).flatten());
         if !possible(height) || !near(z) || !outlines().all(|p| near(p.x) && near(p.y)) {
-            return wrong("its height or a coordinate is out of all bounds (20 m)");
+            return wrong("its thickness (at most 2 m) or a coordinate (at most 20 m) is out of all bounds");
         }
         let islands: Vec<Polygon> = islands.into_iter().map(FileIsland::polygon).collect();
         let read = |(i, pass): (usize, FilePass)| {

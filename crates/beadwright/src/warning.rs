@@ -160,7 +160,7 @@ impl WarningSummary {
                 times("pass", "passes")
             ),
             WarningKind::Bare => format!(
-                "{layers}: beads leave {} bare by more than 1 %, {total:.1} mm² in all, the most {size:.1} mm² {place}.",
+                "{layers}: beads leave part of {} bare, {total:.1} mm² in all, the most {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::Unsound => format!(

@@ -105,6 +105,9 @@ impl Folder {
     pub fn commit(mut self) -> Result<Written, FolderError> {
         let error = named(&self.named);
         self.close().map_err(&error)?;
+        // Two runs into one folder take turns; where folders cannot be locked, they are alone.
+        let parent = self.folder.parent().and_then(|parent| File::open(parent).ok());
+        parent.iter().for_each(|parent| _ = parent.lock());
         let earlier = earlier(&self.folder);
         let whole = [super::PLAN, super::METRICS].iter().all(|name| self.names.contains(*name));
         let old: BTreeSet<String> = earlier.into_iter().filter(|name| whole || self.names.contains(name)).collect();
@@ -123,7 +126,8 @@ impl Folder {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, format!("{name} is a folder there")));
         }
         let current = std::env::current_dir().and_then(fs::canonicalize).is_ok_and(|at| at.starts_with(folder));
-        if current || self.exchange(old).is_err() {
+        let inside = new.starts_with(folder);
+        if current || inside || self.exchange(old).is_err() {
             self.move_each(old)?;
         }
         Ok(())
@@ -134,13 +138,17 @@ impl Folder {
         let (new, mut linked) = (self.stage.new_files(), 0);
         let others = |name: &str| !old.contains(name) && !self.names.contains(name);
         link_all(&self.folder, &new, &others, &mut linked)?;
-        fs::set_permissions(&new, fs::metadata(&self.folder)?.permissions())?;
+        let before = fs::metadata(&self.folder)?;
+        fs::set_permissions(&new, before.permissions())?;
+        if !same_owner(&before, &fs::metadata(&new)?) {
+            return Err(io::ErrorKind::PermissionDenied.into());
+        }
         swap(&new, &self.folder)?;
-        // What somebody has put there meanwhile stays, too.
-        for entry in fs::read_dir(&new)?.filter_map(Result::ok) {
+        // What somebody has put there meanwhile stays, too. From here on nothing fails: the exchange is done.
+        for entry in fs::read_dir(&new).into_iter().flatten().filter_map(Result::ok) {
             let place = self.folder.join(entry.file_name());
             if others(&entry.file_name().to_string_lossy()) && fs::symlink_metadata(&place).is_err() {
-                fs::rename(entry.path(), place)?;
+                _ = fs::rename(entry.path(), place);
             }
         }
         Ok(())
@@ -193,18 +201,33 @@ fn link_all(from: &Path, to: &Path, wanted: &dyn Fn(&str) -> bool, linked: &mut 
             continue;
         }
         *linked += 1;
-        if *linked > MOST_ENTRIES {
-            return Err(io::ErrorKind::QuotaExceeded.into());
+        // Stages of other runs cannot be linked, and folders that are read only could not be cleared afterwards.
+        let (is_dir, about) = (entry.file_type()?.is_dir(), entry.metadata()?);
+        let is_stage = stage::is_stage(&entry.file_name().to_string_lossy());
+        if *linked > MOST_ENTRIES || is_stage || (is_dir && about.permissions().readonly()) {
+            return Err(io::ErrorKind::Unsupported.into());
         }
-        if entry.file_type()?.is_dir() {
+        if is_dir {
             fs::create_dir(&place)?;
             link_all(&entry.path(), &place, &|_| true, linked)?;
-            fs::set_permissions(&place, entry.metadata()?.permissions())?;
+            fs::set_permissions(&place, about.permissions())?;
         } else {
             fs::hard_link(entry.path(), place)?;
         }
     }
     Ok(())
+}
+
+/// Whether two folders belong to the same user and group.
+#[cfg(unix)]
+fn same_owner(a: &fs::Metadata, b: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.uid(), a.gid()) == (b.uid(), b.gid())
+}
+
+#[cfg(not(unix))]
+fn same_owner(_: &fs::Metadata, _: &fs::Metadata) -> bool {
+    true
 }
 
 /// Exchanges two folders in one step.
@@ -228,7 +251,9 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let write = || -> io::Result<()> {
         let (itself, behind) = (fs::symlink_metadata(path), fs::metadata(path));
-        if behind.as_ref().is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+        let is_device = behind.as_ref().is_ok_and(|there| !there.is_file() && !there.is_dir());
+        // `/dev/stdout` is a link to whatever it has been redirected to.
+        if is_device || path.starts_with("/dev") {
             return File::options().write(true).open(path)?.write_all(bytes);
         }
         if itself.is_ok_and(|there| there.is_symlink()) {

@@ -8,6 +8,10 @@ use tempfile::TempDir;
 const PREFIX: &str = ".beadwright-";
 /// While files are moved one by one: the names of those that give way.
 const JOURNAL: &str = "moving";
+/// The journal while it is written.
+const DRAFT: &str = "draft";
+/// Whatever else is in a folder, it is none of ours.
+const OURS: [&str; 5] = ["new", "old", "lock", JOURNAL, DRAFT];
 
 /// Files on their way into a folder. Dropped, it leaves nothing behind.
 pub(super) struct Stage {
@@ -40,8 +44,10 @@ impl Stage {
     /// Moves files of a stage that lies in `target`, one by one: the `old` ones out of it, then the `new` ones into it. If
     /// one cannot be moved, nothing changes; what a killed run has not moved, the next one moves.
     pub(super) fn move_into(mut self, target: &Path, old: &[&str], new: &[&str]) -> io::Result<()> {
-        let journal = self.folder.path().join(JOURNAL);
-        fs::write(&journal, old.join("\n"))?;
+        let (journal, draft) = (self.folder.path().join(JOURNAL), self.folder.path().join(DRAFT));
+        // Whole or not there: half a list would leave old files among the new ones.
+        fs::write(&draft, old.join("\n"))?;
+        fs::rename(draft, &journal)?;
         // Should even the way back fail, the stage stays, with the older set in it.
         self.folder.disable_cleanup(true);
         let moves = moves(self.folder.path(), target, old, new);
@@ -79,6 +85,9 @@ pub(super) fn clear(place: &Path) {
     let Ok(entries) = fs::read_dir(place) else { return };
     let stages = entries.filter_map(Result::ok).filter(|e| e.file_name().to_string_lossy().starts_with(PREFIX));
     for stage in stages.map(|entry| entry.path()).filter(|path| path.is_dir()) {
+        if !names(&stage).is_ok_and(|names| names.iter().all(|name| OURS.contains(&name.as_str()))) {
+            continue;
+        }
         let lock = open_lock(&stage);
         if lock.as_ref().is_ok_and(|lock| lock.try_lock().is_ok()) {
             // Nothing is deleted of which a part is still to be moved.
@@ -94,10 +103,23 @@ fn complete(stage: &Path, target: &Path) -> io::Result<()> {
     // Once a new file has been moved, all old ones have.
     let old: Vec<&str> = journal.lines().filter(|name| !stage.join("old").join(name).exists()).collect();
     let new: Vec<&str> = new.iter().map(String::as_str).collect();
-    moves(stage, target, &old, &new).iter().try_for_each(|(from, to)| fs::rename(from, to))
+    for (from, to) in moves(stage, target, &old, &new) {
+        match fs::rename(from, to) {
+            // Somebody has taken it away meanwhile.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            done => done?,
+        }
+    }
+    // Nothing is left to move, even if the rest of the stage is cleared only in part.
+    fs::remove_file(stage.join(JOURNAL))
+}
+
+/// Whether a file belongs to a stage.
+pub(super) fn is_stage(name: &str) -> bool {
+    name.starts_with(PREFIX)
 }
 
 /// Names in a folder; names that are not text are none of ours.
-pub(super) fn names(folder: &Path) -> io::Result<Vec<String>> {
+fn names(folder: &Path) -> io::Result<Vec<String>> {
     fs::read_dir(folder)?.map(|entry| entry.map(|e| e.file_name().into_string().unwrap_or_default())).collect()
 }

@@ -70,13 +70,16 @@ fn cuts(edges: &RTree<Line<[f64; 2]>>, from: DVec2, to: DVec2) -> Vec<f64> {
     edges.locate_in_envelope_intersecting(&piece.envelope()).filter_map(|edge| cut(&piece, edge)).collect()
 }
 
-/// Places at which a piece may lie farthest outside: between two cuts it lies either inside or outside.
+/// Places at which a piece may lie farthest outside: between two cuts it lies either inside or outside, and one without cuts
+/// as its ends do.
 fn places(from: DVec2, to: DVec2, cuts: &[f64]) -> Vec<DVec2> {
+    if cuts.is_empty() {
+        return vec![to];
+    }
     let mut ends: Vec<f64> = cuts.iter().copied().chain([0.0, 1.0]).collect();
     ends.sort_by(f64::total_cmp);
-    let least = if cuts.is_empty() { 1.0 } else { LEAST_SAMPLES };
     let between = |w: &[f64]| {
-        let count = ((w[1] - w[0]) * from.distance(to) / SAMPLE_MM).ceil().clamp(least, MOST_SAMPLES);
+        let count = ((w[1] - w[0]) * from.distance(to) / SAMPLE_MM).ceil().clamp(LEAST_SAMPLES, MOST_SAMPLES);
         (0..=count as usize).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / count).collect::<Vec<_>>()
     };
     ends.windows(2).flat_map(between).map(|t| from.lerp(to, t)).collect()

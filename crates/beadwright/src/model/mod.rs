@@ -158,7 +158,10 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
 }
 
 /// Text as UTF-8 with usual line ends; anything else as it is.
-fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TextError> {
+///
+/// # Errors
+/// [`TextError`] for text in an encoding that is not read.
+pub fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TextError> {
     let is_text = stl::announced_size(bytes) != Some(bytes.len()) && text::needs_decoding(bytes);
     Ok(if is_text { text::of(bytes)?.into_bytes().into() } else { bytes.into() })
 }

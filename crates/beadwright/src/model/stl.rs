@@ -38,7 +38,8 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         Some(size) if size < length && size > HEADER && plausible(&bytes[HEADER..]) => {
             let (announced, more) = ((size - HEADER) / RECORD, (length - size) / RECORD);
             // Either the count is wrong and further triangles follow, or a program has appended data of its own.
-            let counted_wrong = (length - size).is_multiple_of(RECORD) && bytes[size..].chunks(RECORD).all(plausible);
+            let next = &bytes[size..length.min(size + RECORD)];
+            let counted_wrong = plausible(next) && next[..48].iter().any(|&byte| byte != 0);
             let damage = format!("bytes 80–83 announce {announced} triangles, but {more} more follow");
             let mut import = if counted_wrong {
                 read_binary(bytes, Some(damage), task)?
@@ -141,6 +142,8 @@ fn parse_ascii(bytes: &[u8], task: &Task) -> Result<Parsed, ImportError> {
             facets.push((normal, corners));
         } else if first.eq_ignore_ascii_case(b"endsolid") {
             in_solid = false;
+        } else if first.eq_ignore_ascii_case(b"solid") {
+            in_solid = true;
         }
     }
     let damage = if open.is_some() {

@@ -273,13 +273,13 @@ fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
     const WORTH_TELLING: f64 = 0.01;
     let slices = summary.metrics.part_volume_mm3;
     let more = slices / mesh - 1.0;
-    if more.abs() <= WORTH_TELLING {
+    if more.abs() <= WORTH_TELLING || mesh <= 0.0 {
         return None;
     }
     let had = |kind| summary.warnings.summaries().any(|w| w.kind == kind);
     let why = if summary.metrics.mesh_volume_mm3.is_none() {
         "the surface is not closed, so the mesh's volume is a guess"
-    } else if had(WarningKind::ContoursUnited) {
+    } else if had(WarningKind::ContoursUnited) && more < 0.0 {
         "shells overlap, and the mesh counts twice what the slices count once"
     } else if had(WarningKind::OpenContourDropped) {
         "contours that are not closed were dropped"
