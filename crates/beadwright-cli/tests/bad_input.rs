@@ -173,7 +173,10 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
     fs::write(folder.path().join("other.gcode"), "G21\nG90\nM83\nG1 X0 Y0 Z0.2 F600\nG1 X20 E1\n").unwrap();
     let asked = run(folder.path(), &["simulate", "other.gcode"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();
-    assert!(asked.status.code() == Some(1) && said.contains("give a profile with --profile"), "{said}");
+    assert!(
+        asked.status.code() == Some(1) && said.contains("printer's program") && said.contains("--profile"),
+        "{said}"
+    );
 }
 
 #[test]

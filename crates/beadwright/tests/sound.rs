@@ -14,10 +14,11 @@ use beadwright::profile::Profile;
 use beadwright::slice::LayerFit;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
-use beadwright::{Layer, Mesh, Pass};
+use beadwright::{Layer, Mesh};
 use common::profile_by;
 use families::{FAMILIES, extruded, fault, islands, line};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn case(name: &str) -> Vec<u8> {
@@ -139,12 +140,16 @@ fn wrong(islands: &[Polygon], profile: &Profile) -> Option<String> {
 
 /// Where the area that a layer is said to cover is wrong by more than 1 %, measured with polygons instead of rows.
 fn untold(layer: &Layer) -> Option<String> {
-    let footprint = |pass: &Pass| {
-        let pieces = line(pass);
-        let piece = |(i, w): (usize, &[DVec2])| buffer(&[w.to_vec()], false, 0.505 * pass.width.after(i), 0.02);
-        pieces.windows(2).enumerate().map(piece).collect::<Vec<_>>()
-    };
-    let beads = layer.passes.iter().flat_map(footprint).reduce(|a, b| a.union(&b)).unwrap_or_default();
+    // Pieces of one width, to a hundredth of a millimetre, are buffered together.
+    let mut pieces: BTreeMap<i64, Vec<Vec<DVec2>>> = BTreeMap::new();
+    for pass in &layer.passes {
+        for (i, piece) in line(pass).windows(2).enumerate() {
+            let width = (100.0 * pass.width.after(i)).round() as i64;
+            pieces.entry(width).or_default().push(piece.to_vec());
+        }
+    }
+    let footprint = |(width, lines): (&i64, &Vec<Vec<DVec2>>)| buffer(lines, false, 0.00505 * *width as f64, 0.02);
+    let beads = pieces.iter().map(footprint).reduce(|a, b| a.union(&b)).unwrap_or_default();
     let area: f64 = layer.islands.iter().map(Polygon::area).sum();
     let covered = area - Region::from_normalised(layer.islands.clone()).difference(&beads).area();
     let said = layer.planned_area;
