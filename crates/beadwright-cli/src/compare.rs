@@ -70,6 +70,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let entry = compare::strategy(&import.mesh, &profile, name, settings, &chosen, &task);
         entries.push(entry.with_context(|| format!("{}", arguments.model.model.display()))?);
     }
+    anyhow::ensure!(
+        entries.iter().all(|entry| !entry.layers.is_empty()),
+        "--layers: the part has none of these layers"
+    );
     let mut notes = Vec::new();
     let wanted = profile::Wanted { profile: arguments.profile.clone(), set: arguments.set.clone() };
     for path in &arguments.program {

@@ -71,6 +71,7 @@ fn case_1622_bombs_are_stopped() {
     check("box40x60.stl", &["plan", "CASE", "--threads", "100000"], 2, &["1024"]);
     check("box40x60.stl", &["compare", "CASE", "--layers", "1-4000000000"], 2, &["at most 100000"]);
     check("box40x60.stl", &["compare", "CASE", "--layers", "5-1"], 2, &["the lower first"]);
+    check("box40x60.stl", &["compare", "CASE", "--layers", "50"], 1, &["none of these layers"]);
     check("box40x60.stl", &["plan", "CASE", "--picture", "99"], 1, &["the part has the layers 1 to"]);
     check("krl_arcbomb.src", &["inspect", "CASE", "--max-memory", "0.1"], 1, &["0.1 GB of memory", "--max-memory"]);
     #[cfg(unix)]

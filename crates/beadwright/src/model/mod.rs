@@ -114,7 +114,11 @@ pub enum ImportError {
         triangles: usize,
     },
     /// The part is too far out.
-    #[error("the model reaches {reach_m:.1} m from the origin; at most {} m are supported. Move it to the origin, or check the unit of the file.", MAX_REACH_MM / 1000.0)]
+    #[error(
+        "the model reaches {reach} m from the origin; at most {most} m are supported. Move it to the origin, or check the unit of the file.",
+        reach = metres(*reach_m),
+        most = MAX_REACH_MM / 1000.0
+    )]
     TooFar {
         /// Largest coordinate, m.
         reach_m: f64,
@@ -122,6 +126,11 @@ pub enum ImportError {
     /// Stopped by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// A length that may be out of all bounds, m.
+fn metres(length: f64) -> String {
+    if length < 1e6 { format!("{length:.1}") } else { format!("{length:.0e}") }
 }
 
 /// Reads a model from the bytes of a file; the content decides the format, not the file's name. A file that ends too early
