@@ -149,7 +149,7 @@ fn parse_ascii(bytes: &[u8], task: &Task) -> Result<Parsed, ImportError> {
     let damage = if open.is_some() {
         Some(format!("it is cut short: it ends at line {line_number} in triangle {}", facets.len() + 1))
     } else {
-        in_solid
+        (in_solid && !facets.is_empty())
             .then(|| format!("it ends at line {line_number} after {} triangles, without \"endsolid\"", facets.len()))
     };
     Ok((facets, lines, damage))
