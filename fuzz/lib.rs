@@ -82,7 +82,7 @@ pub fn plan_json(data: &[u8]) {
 fn program(head: &str, data: &[u8]) {
     let Ok(text) = text::of(data) else { return };
     let text = format!("{head}{text}");
-    // Every module that is called is there, and calls the first.
+    // Every module that is called is there.
     let mut module = |name: &str| Some(format!("{head}{}", name.len()));
     let Ok(read) = reading::read(&text, &mut module, &Options::default()) else { return };
     assert!(read.moves.iter().all(|m| m.to.is_finite() && m.to.abs().max_element() <= MAX_REACH_MM));
@@ -137,7 +137,7 @@ pub fn polygons(data: &[u8]) {
     assert!(less.offset(1.0, Join::ROUND).difference(&a).area() <= slack + 0.02 * a.perimeter());
 }
 
-/// Two built-in profiles for each of which parts of some hand's width have room.
+/// The built-in profiles for welding.
 static PROFILES: LazyLock<Vec<Profile>> =
     LazyLock::new(|| BUILT_IN.iter().take(4).filter_map(|(_, text)| Profile::parse(text).ok()).collect());
 

@@ -123,8 +123,8 @@ impl Source {
         let Some(profile) = &plan.profile else {
             let name = &plan.header.profile;
             anyhow::bail!(
-                "{}: this plan.json does not carry its profile{}, as those of version 1 do not. Give it with --profile, or make the \
-                 plan again.",
+                "{}: this plan.json does not carry its profile{}, as those of version 1 do not. Give it with --profile, or \
+                 make the plan again.",
                 self.path.display(),
                 if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
             );

@@ -121,6 +121,11 @@ pub struct Fill {
 }
 
 impl Fill {
+    /// Whether nothing is laid.
+    pub fn is_empty(&self) -> bool {
+        self.stages.iter().all(Vec::is_empty)
+    }
+
     /// Adds the passes of a neighbour, its outermost contours to the outermost ones here.
     fn add(&mut self, other: Self, order: ContourOrder) {
         let (mut own, mut stages) = (std::mem::take(&mut self.stages), other.stages);

@@ -42,7 +42,7 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         } else {
             Fill::default()
         };
-        if reached > 0.0 && fill.stages.iter().all(Vec::is_empty) {
+        if reached > 0.0 && fill.is_empty() {
             // Wide enough for a bead, but with room for neither a ring nor a wall.
             let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
             let (kind, size) = (WarningKind::IslandTooSmall, island.area());

@@ -484,7 +484,7 @@ struct Emitter<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
     torch: Option<DVec2>,
-    /// Outlines of the layer below.
+    /// Outlines of the layer below, of the islands that are welded.
     below: Vec<Polygon>,
     /// Top of the highest layer with beads, mm.
     built: f64,
@@ -498,6 +498,8 @@ impl<S: Sink> Emitter<'_, S> {
         let Filled { slice, fills, planned_area } = filled;
         let Slice { index, z, height, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
+        let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
+        let laid = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
@@ -515,6 +517,7 @@ impl<S: Sink> Emitter<'_, S> {
             order::order(fills, &self.profile.order_settings(index), &mut self.torch).into_iter().map(lift).collect();
         let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
         self.doubts(&mut layer);
+        self.below = laid;
         layer.warnings.iter().for_each(|w| self.warnings.add(*w));
         self.metrics.add(&layer);
         self.sink.layer(layer)
@@ -542,11 +545,11 @@ impl<S: Sink> Emitter<'_, S> {
         if points > limits.max_points as usize {
             doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
         }
-        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < profile.process.arc_start_delay;
+        let soonest = profile.soonest_arc_end();
+        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < 0.999 * soonest;
         for pass in layer.passes.iter().filter(unsteady) {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
         }
-        self.below.clone_from(&layer.islands);
     }
 }
 
