@@ -15,8 +15,10 @@ use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use beadwright::{example, plan_file};
+use rayon::prelude::*;
 use readers::{Motion, distance};
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// Centre-lines may lie this far outside their place, mm: grid, simplification and arc tolerance.
 const TOLERANCE: f64 = 0.02;
@@ -35,20 +37,26 @@ fn plan_of(mesh: &Mesh, profile: &Profile) -> Plan {
 /// Parts with walls of one bead; the other strategies have no room in them.
 const THIN_WALLED: [&str; 4] = ["blade", "gourd", "pot", "tian"];
 
-fn each_case(mut check: impl FnMut(&str, &Plan, &Profile)) {
+/// Every example by every strategy, with two profiles; all tests share these plans.
+static CASES: LazyLock<Vec<(String, Plan, Profile)>> = LazyLock::new(|| {
     // The two large closed ones are planned in wall_paths.rs.
-    for part in example::ALL.iter().filter(|part| !["gourd", "pot"].contains(&part.name)) {
-        let mesh = part.mesh();
+    let parts = example::ALL.par_iter().filter(|part| !["gourd", "pot"].contains(&part.name));
+    let cases = parts.flat_map_iter(|part| {
         let thin = THIN_WALLED.contains(&part.name);
-        for strategy in STRATEGIES.iter().filter(|strategy| (strategy.name() == "wall") == thin) {
-            for (profile_name, angle) in [("cmt-al2319-kuka", 0.0), ("plasma-304-cnc", 33.0)] {
-                let mut profile = profile(profile_name, strategy.name(), angle);
-                profile.bead.width = if thin { 4.0 } else { profile.bead.width };
-                let plan = plan_of(&mesh, &profile);
-                check(&format!("{} {} {profile_name}", part.name, strategy.name()), &plan, &profile);
-            }
-        }
-    }
+        let strategies = STRATEGIES.iter().filter(move |strategy| (strategy.name() == "wall") == thin);
+        let profiles = [("cmt-al2319-kuka", 0.0), ("plasma-304-cnc", 33.0)];
+        strategies.flat_map(move |strategy| profiles.map(|profile| (part, thin, strategy.name(), profile)))
+    });
+    let planned = cases.map(|(part, thin, strategy, (profile_name, angle))| {
+        let mut profile = profile(profile_name, strategy, angle);
+        profile.bead.width = if thin { 4.0 } else { profile.bead.width };
+        (format!("{} {strategy} {profile_name}", part.name), plan_of(&part.mesh(), &profile), profile)
+    });
+    planned.collect()
+});
+
+fn each_case(mut check: impl FnMut(&str, &Plan, &Profile)) {
+    CASES.iter().for_each(|(case, plan, profile)| check(case, plan, profile));
 }
 
 /// Distance from a point to the boundary of a layer, mm.

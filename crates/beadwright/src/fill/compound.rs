@@ -29,13 +29,22 @@ impl Strategy for Compound {
 }
 
 fn thick(part: &Polygon, settings: &FillSettings) -> Fill {
+    within_perimeters(part, settings, |core| infill(core, settings))
+}
+
+/// Perimeters, and what `infill` lays in the core inside them.
+pub(super) fn within_perimeters(
+    part: &Polygon,
+    settings: &FillSettings,
+    infill: impl Fn(&Region) -> Vec<Path>,
+) -> Fill {
     let outermost = settings.outermost(part);
     if outermost.is_empty() {
         return Fill::default();
     }
     let (perimeters, innermost) = rings(outermost, settings, settings.perimeters);
     let mut stages = settings.ordered(perimeters);
-    let infill = infill(&core(&innermost, settings), settings);
+    let infill = infill(&core(&innermost, settings));
     stages.insert(if settings.perimeters_first { stages.len() } else { 0 }, infill);
     Fill { stages, fixed_order: false }
 }

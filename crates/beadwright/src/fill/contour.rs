@@ -25,17 +25,14 @@ pub fn rings_only(island: &Polygon, settings: &FillSettings) -> Fill {
 
 /// Up to `count` rings from `outermost` inwards, and the region that the innermost ones bound.
 pub(super) fn rings(outermost: Region, settings: &FillSettings, count: u32) -> (Vec<Vec<Path>>, Region) {
-    let mut stages = Vec::new();
-    let mut region = outermost;
-    for done in 1.. {
-        stages.push(region.rings().map(|ring| Path::contour(ring.clone(), settings.bead.width)).collect());
-        if done == count {
-            break;
-        }
-        region = region.offset(-settings.stepover, Join::ROUND);
-        if region.is_empty() {
-            break;
-        }
-    }
-    (stages, region)
+    let mut levels = levels(outermost, settings, count);
+    let ring = |ring: &planar::Ring| Path::contour(ring.clone(), settings.bead.width);
+    let stages = levels.iter().map(|level| level.rings().map(ring).collect()).collect();
+    (stages, levels.pop().unwrap_or_default())
+}
+
+/// The regions that up to `count` rings bound, from `outermost` inwards until nothing is left.
+pub(super) fn levels(outermost: Region, settings: &FillSettings, count: u32) -> Vec<Region> {
+    let inwards = |region: &Region| Some(region.offset(-settings.stepover, Join::ROUND)).filter(|r| !r.is_empty());
+    std::iter::successors(Some(outermost), inwards).take(count as usize).collect()
 }

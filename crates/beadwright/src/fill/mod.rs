@@ -11,16 +11,28 @@
 //! | [`contour`] | rings parallel to the boundary, until nothing is left |
 //! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
 //! | [`hybrid`] | contours, and their pockets filled along their medial axis (Zhao et al. 2023) |
+//! | [`spiral`] | contours connected into one path (Park et al. 2003) |
+//! | [`fermat`] | connected Fermat spirals (Zhao et al. 2016) |
+//! | [`hilbert`] | a Hilbert curve |
+//! | [`partition`] | zigzags in nearly convex cells (Ding et al. 2014) |
+//! | [`mat`] | rings from the medial axis outwards (Ding et al. 2016) |
 //! | [`wall`] | thin walls along their middle, in the fewest paths that do not cross (Li et al.) |
 
 pub mod angle;
 pub mod compound;
 pub mod contour;
 pub mod coverage;
+pub mod fermat;
+pub mod hilbert;
 pub mod hybrid;
+pub mod line_index;
+pub mod mat;
 pub mod one_loop;
+pub mod partition;
 pub mod raster;
+mod ring_tree;
 pub mod sound;
+pub mod spiral;
 pub mod thin;
 pub mod trails;
 pub mod wall;
@@ -34,13 +46,18 @@ use planar::{Join, Polygon, Region, Ring};
 use serde::{Deserialize, Serialize};
 
 /// The strategies by name.
-pub const STRATEGIES: [&dyn Strategy; 7] = [
+pub const STRATEGIES: [&dyn Strategy; 12] = [
     &one_loop::OneLoop,
     &raster::Raster,
     &zigzag::Zigzag,
     &contour::Contour,
     &compound::Compound,
     &hybrid::Hybrid,
+    &spiral::Spiral,
+    &fermat::Fermat,
+    &hilbert::Hilbert,
+    &partition::Partition,
+    &mat::Mat,
     &wall::Wall,
 ];
 

@@ -26,7 +26,8 @@ pub enum RasterTurn {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FillSection {
-    /// Strategy: `loop`, `raster`, `zigzag`, `contour`, `compound`, `hybrid` or `wall`.
+    /// Strategy: `loop`, `raster`, `zigzag`, `contour`, `compound`, `hybrid`, `spiral`, `fermat`, `hilbert`, `partition`,
+    /// `mat` or `wall`.
     pub strategy: String,
     /// Model for the overlap of neighbouring beads, which determines the stepover.
     pub overlap: Overlap,
@@ -34,7 +35,7 @@ pub struct FillSection {
     pub stepover: Option<f64>,
     /// Distance from the innermost perimeter to the infill, in bead widths (0.591 in Liu et al. 2022).
     pub contour_gap: f64,
-    /// Number of perimeters around the infill of `compound`.
+    /// Number of perimeters around the infill of `compound`, `hilbert` and `partition`.
     pub perimeters: u32,
     /// Order of contours: `outside-in` or `inside-out`.
     pub contour_order: ContourOrder,
@@ -52,7 +53,7 @@ pub struct FillSection {
     pub raster_spacing: RasterSpacing,
     /// Minimum length of a pass, mm; shorter passes are left out with a warning.
     pub min_pass_length: f64,
-    /// Whether `compound` lays the perimeters before the infill; default false.
+    /// Whether `compound`, `hilbert` and `partition` lay the perimeters before the infill; default false.
     #[serde(default)]
     pub perimeters_first: bool,
     /// Density of the infill of `compound` inside the part, as a fraction from 0 to 1; default 1.

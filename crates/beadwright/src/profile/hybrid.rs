@@ -6,7 +6,8 @@ use crate::limit::section;
 section! {
     /// Thresholds of the strategy `hybrid` (Zhao et al. 2023); every key has a default.
     HybridSection "hybrid" {
-        /// Whether to follow the paper to the letter; default false.
+        /// Whether to follow the paper to the letter; default false. Joins are then mitred, corner pockets from half a bead
+        /// width on are kept, and `scan_along = "auto"` means the short side.
         literal: bool = false;
         /// How far a contour is moved inwards to find its pockets, in stepovers; default 1.5.
         pocket_depth: f64 = 1.5, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead beside them";
@@ -30,8 +31,8 @@ section! {
         /// Direction of the scan lines in wide skeleton regions: along the `short` or the `long` side of their smallest
         /// enclosing rectangle, or `auto` for the one with fewer arc starts, then fewer turns; default auto.
         scan_along: ScanAlong = ScanAlong::Auto;
-        /// What is laid first: `skeleton-first` or `contours-first`; default skeleton-first.
-        order: HybridOrder = HybridOrder::SkeletonFirst;
+        /// What is laid first: `skeleton-first` or `contours-first`; default contours-first.
+        order: HybridOrder = HybridOrder::ContoursFirst;
         /// How far free ends of cut contours reach into the fill, in bead widths; default 0.5.
         end_overlap: f64 = 0.5, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
         /// How far sharp corners of contours are drawn out into the void beyond them, as a fraction from 0 (not at all)
@@ -45,6 +46,9 @@ section! {
     }
 }
 
+/// The longest corner pocket that the paper's filter drops, in bead widths: its figures need this much.
+const LITERAL_POCKET: f64 = 0.5;
+
 impl HybridSection {
     /// In mm, for beads of width `w` that lie `d` apart.
     pub(super) fn settings(&self, w: f64, d: f64) -> HybridSettings {
@@ -53,7 +57,11 @@ impl HybridSection {
             pocket_depth: self.pocket_depth * d,
             tolerance: self.tolerance * d,
             min_pocket_area: self.min_pocket_area * w * w,
-            min_pocket_length: self.min_pocket_length * w,
+            min_pocket_length: if self.literal {
+                self.min_pocket_length.min(LITERAL_POCKET)
+            } else {
+                self.min_pocket_length
+            } * w,
             skeleton_gap: self.skeleton_gap * d,
             least_gap: self.least_gap * d,
             region_width: self.region_width * d,

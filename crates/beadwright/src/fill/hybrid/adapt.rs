@@ -2,7 +2,7 @@
 //! distance to its neighbour on either side, within the limits of the process. Metal is laid where there is room for
 //! it, and small gaps close without a bead of their own.
 
-use super::line_index::LineIndex;
+use crate::fill::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;

@@ -5,7 +5,7 @@
 //! level away. A link stays inside the outline and crosses nothing.
 
 use super::contours::{Contours, Piece};
-use super::line_index::LineIndex;
+use crate::fill::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::PassKind;
 use glam::DVec2;

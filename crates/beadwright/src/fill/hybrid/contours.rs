@@ -38,7 +38,7 @@ pub fn cut(levels: &[Level], regions: &Region, settings: &FillSettings) -> Conto
             let thin = thin(&level.region, settings);
             level.region.rings().for_each(|ring| take(ring, &thin));
         } else {
-            let capped = capped(&level.region, settings);
+            let capped = if regions.is_empty() { level.region.clone() } else { capped(&level.region, settings) };
             capped.rings().for_each(|ring| take(&drawn_out(ring, settings), &knife));
         }
     }

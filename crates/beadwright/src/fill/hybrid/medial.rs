@@ -5,7 +5,7 @@
 //! contours fill half a stepover on each side, so each of the n beads fills (W − d)/n. Its width follows from that,
 //! within the limits of the process, and the speed keeps the bead height.
 
-use super::line_index::LineIndex;
+use crate::fill::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
@@ -102,7 +102,29 @@ fn across(piece: &Polygon, outermost: &Region, settings: &FillSettings) -> Optio
     }
     let inside = outermost.clip_line(&[middle - half, middle + half], Keep::Inside);
     let points = inside.into_iter().find(|part| part.len() == 2)?;
-    Some(Line { points, widths: vec![settings.bead.width; 2], closed: false })
+    Some(Line { points, widths: vec![settings.bead.width; 2], closed: false, contour: false })
+}
+
+/// Passes with ends near each other linked into one, where a link crosses nothing; closed ones stay as they are.
+pub fn linked(passes: Vec<Path>, settings: &FillSettings) -> Vec<Path> {
+    let reach = JOIN * settings.stepover;
+    let mut laid = LineIndex::new(reach);
+    passes.iter().enumerate().for_each(|(number, pass)| laid.add_line(number, &pass.path()));
+    let line = |pass: Path| Line {
+        widths: (0..pass.points.len()).map(|i| pass.width.after(i)).collect(),
+        points: pass.points,
+        closed: pass.closed,
+        contour: pass.kind == PassKind::Contour,
+    };
+    let linked = join(passes.into_iter().map(line).collect(), reach, &laid).into_iter();
+    let pass = |line: Line| Path {
+        kind: if line.contour { PassKind::Contour } else { PassKind::Skeleton },
+        closed: line.closed,
+        points: line.points,
+        width: Along::Each(line.widths),
+        reversible: true,
+    };
+    linked.map(pass).collect()
 }
 
 /// A centre-line with the width at each point.
@@ -111,6 +133,8 @@ struct Line {
     points: Vec<DVec2>,
     widths: Vec<f64>,
     closed: bool,
+    /// Whether part of it is a contour.
+    contour: bool,
 }
 
 impl Line {
@@ -220,7 +244,12 @@ fn line(rungs: &[Rung], j: usize, n: usize, settings: &FillSettings) -> Line {
         let share = (rung.thickness + 2.0 * gap - d) / (n as f64 * d);
         (settings.bead.width * share).clamp(limits.0, limits.1)
     };
-    Line { points: rungs.iter().map(at).collect(), widths: rungs.iter().map(width).collect(), closed: false }
+    Line {
+        points: rungs.iter().map(at).collect(),
+        widths: rungs.iter().map(width).collect(),
+        closed: false,
+        contour: false,
+    }
 }
 
 /// The middle of the area that a ring bounds.
@@ -309,5 +338,6 @@ fn join(mut lines: Vec<Line>, reach: f64, laid: &LineIndex) -> Vec<Line> {
         let skip = usize::from(line.points.last() == other.points.first());
         line.points.extend(&other.points[skip..]);
         line.widths.extend(&other.widths[skip..]);
+        line.contour |= other.contour;
     }
 }

@@ -19,17 +19,17 @@
 pub mod adapt;
 pub mod chain;
 pub mod contours;
-pub mod line_index;
 pub mod medial;
 pub mod pockets;
 pub mod skeleton;
 
-use super::thin;
-use super::{Fill, FillSettings, Path, Strategy};
+use super::{Fill, FillSettings, PassKind, Path, Strategy};
+use super::{contour, coverage, thin};
 use contours::Contours;
 use planar::{Join, Polygon, Region};
 use pockets::Level;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Contours with filled pockets.
 pub struct Hybrid;
@@ -111,8 +111,13 @@ impl Strategy for Hybrid {
     }
 }
 
+/// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this part of its width.
+const HIGH: f64 = 0.8;
+/// Parts of the skeleton regions that are tried, the largest regions first.
+const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
+
 /// The results of all steps for one island, to be tested and drawn.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Steps {
     /// The contours from outside in, with their pockets.
     pub levels: Vec<Level>,
@@ -127,17 +132,64 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Runs all steps.
+    /// Runs all steps. By default there are never more passes than contours alone would have: where the skeleton regions
+    /// would need more, the smallest are left to the contours.
     pub fn of(island: &Polygon, settings: &FillSettings) -> Self {
         let outermost = settings.outermost(island);
         let levels = pockets::levels(outermost.clone(), settings);
         let regions = pockets::merge(&levels, &outermost, settings);
+        if settings.hybrid.literal {
+            return Self::with(levels, regions, &outermost, settings);
+        }
+        let most = contour::levels(outermost.clone(), settings, u32::MAX).iter().flat_map(Region::rings).count();
+        let mut pieces = regions.into_polygons();
+        pieces.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        let counts: BTreeSet<usize> = SHARES.map(|share| (share * pieces.len() as f64).round() as usize).into();
+        let tried = counts.into_iter().map(|count| {
+            let kept = Region::from_normalised(pieces[..count].to_vec());
+            let mut steps = Self::with(levels.clone(), kept, &outermost, settings);
+            (steps.chains, steps.skeleton) = adapted(steps.chains, steps.skeleton, island, settings);
+            steps.link(settings);
+            steps.keep_longest(most, settings);
+            let bare = steps.bare(&outermost, settings);
+            (bare, steps)
+        });
+        let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, steps)| steps).unwrap_or_default()
+    }
+
+    /// Links beads of the skeleton to contours that end near them.
+    fn link(&mut self, settings: &FillSettings) {
+        let passes = self.chains.drain(..).chain(self.skeleton.drain(..)).collect();
+        (self.chains, self.skeleton) =
+            medial::linked(passes, settings).into_iter().partition(|pass| pass.kind == PassKind::Contour);
+    }
+
+    /// Area that is left void, mm²: a bead is high enough over the inner part of its width.
+    fn bare(&self, outermost: &Region, settings: &FillSettings) -> f64 {
+        let narrower = |path: &Path| Path { width: path.width.clone().map(|width| HIGH * width), ..path.clone() };
+        let high: Vec<Path> = self.chains.iter().chain(&self.skeleton).map(narrower).collect();
+        coverage::bare(&high.iter().collect::<Vec<_>>(), outermost, settings.bead.width).area
+    }
+
+    /// The steps after the regions are known.
+    fn with(levels: Vec<Level>, regions: Region, outermost: &Region, settings: &FillSettings) -> Self {
         let contours = contours::cut(&levels, &regions, settings);
-        let chains = chain::join(&contours, &outermost, settings);
-        let skeleton = skeleton::fill(&outermost, &regions, &chains, settings);
-        let (chains, skeleton) =
-            if settings.hybrid.literal { (chains, skeleton) } else { adapted(chains, skeleton, island, settings) };
+        let chains = chain::join(&contours, outermost, settings);
+        let skeleton = skeleton::fill(outermost, &regions, &chains, settings);
         Self { levels, regions, contours, chains, skeleton }
+    }
+
+    /// Leaves out passes that end before the arc is steady, and the shortest ones until at most so many are left, those of
+    /// the skeleton first.
+    fn keep_longest(&mut self, most: usize, settings: &FillSettings) {
+        let keep = |passes: &mut Vec<Path>, most: usize| {
+            passes.retain(|pass| nominal_length(pass, settings) >= settings.min_pass_length);
+            passes.sort_by(|a, b| b.length().total_cmp(&a.length()));
+            passes.truncate(most);
+        };
+        keep(&mut self.chains, most);
+        keep(&mut self.skeleton, most - self.chains.len());
     }
 
     /// The passes in the order of the settings.
@@ -148,6 +200,13 @@ impl Steps {
         };
         Fill { stages, fixed_order: false }
     }
+}
+
+/// Length of the nominal bead that takes as long as a pass, mm: a narrower bead is laid faster.
+fn nominal_length(pass: &Path, settings: &FillSettings) -> f64 {
+    let line = pass.path();
+    let pieces = line.windows(2).enumerate();
+    pieces.map(|(i, ends)| ends[0].distance(ends[1]) / settings.law.pace(&settings.bead, pass.width.after(i))).sum()
 }
 
 /// Both kinds of passes with widths that follow the room.

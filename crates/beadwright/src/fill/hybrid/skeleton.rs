@@ -4,8 +4,8 @@
 //! fill and contours keep exactly d2. Narrow pieces get beads along their [medial axis](super::medial); wide ones, and
 //! in the paper all, get a zigzag aligned with their smallest rectangle.
 
-use super::line_index::LineIndex;
 use super::{ScanAlong, medial};
+use crate::fill::line_index::LineIndex;
 use crate::fill::{FillSettings, Path, zigzag};
 use glam::DVec2;
 use planar::polyline::{length, without_end};
@@ -109,6 +109,7 @@ fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Path> {
     match settings.hybrid.scan_along {
         ScanAlong::Short => at(short),
         ScanAlong::Long => at(long),
+        ScanAlong::Auto if settings.hybrid.literal => at(short),
         ScanAlong::Auto => {
             let (a, b) = (at(short), at(long));
             let cost = |passes: &[Path]| (passes.len(), passes.iter().map(|p| p.points.len()).sum::<usize>());

@@ -25,6 +25,12 @@ pub struct Line {
 }
 
 impl Line {
+    /// A ring whose widths are not known yet.
+    pub fn ring(points: Vec<DVec2>) -> Self {
+        let (widths, thin) = (vec![0.0; points.len()], vec![false; points.len()]);
+        Self { points, widths, thin, closed: true }
+    }
+
     /// Number of pieces.
     pub fn count(&self) -> usize {
         if self.closed { self.points.len() } else { self.points.len().saturating_sub(1) }

@@ -99,6 +99,8 @@ pub struct LoopSettings<'a> {
 
 /// Points per stepover on lines that are being relaxed.
 const POINTS_PER_STEPOVER: f64 = 7.0;
+/// Rings by themselves keep this fraction of half the narrowest bead from the outline.
+const CLOSEST: f64 = 0.9;
 /// Coordinates are rounded to this, mm, so that an island is filled alike wherever it lies.
 const GRAIN_MM: f64 = 1e-6;
 
@@ -126,6 +128,33 @@ pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
         (Steps::of(&part, &LoopSettings::of(settings, middle)), middle)
     });
     placed.collect()
+}
+
+/// The rings of an island by themselves, level by level from the outline inwards, each as wide as its cell. They stay where
+/// two of the narrowest beads have room side by side.
+pub(super) fn apart(island: &Polygon, settings: &FillSettings) -> Vec<Vec<Path>> {
+    let mut levels: Vec<Vec<Path>> = Vec::new();
+    let (allowance, roomy) = (settings.machining_allowance, settings.double() / 2.0);
+    for part in island.offset(allowance - roomy, Join::ROUND).offset(roomy, Join::ROUND).polygons() {
+        let (part, middle) = about_origin(part);
+        let settings = LoopSettings::of(settings, middle);
+        let room = Room::of(&part, &settings);
+        let rings = rings_of(&room, &settings);
+        let mut lines: Vec<Line> = rings.iter().map(|ring| Line::ring(ring.points.clone())).collect();
+        cells::set_widths(&mut lines, &room, &settings);
+        for (ring, line) in rings.iter().zip(&mut lines) {
+            line.fit_inside(&room, &settings);
+            // What is left of a ring in a corner may be tighter than a bead can turn.
+            let least = CLOSEST * settings.width_limits.0 / 2.0;
+            if line.points.iter().any(|p| room.at(*p) < least) {
+                continue;
+            }
+            let level = ring.level as usize;
+            levels.resize_with(levels.len().max(level), Vec::new);
+            levels[level - 1].push(pass(finish::finished(line, &room, &settings), middle));
+        }
+    }
+    levels
 }
 
 /// The polygon moved so that the middle of its bounding box is the origin, and where that middle was.

@@ -58,6 +58,11 @@ impl LineIndex {
         self.around(a, b).any(|(_, _, c, d)| cut(c, d))
     }
 
+    /// Every piece near a place, with its number and that of its line; those within sight, and some beyond.
+    pub fn near(&self, place: DVec2) -> impl Iterator<Item = (usize, usize, DVec2, DVec2)> + '_ {
+        self.around(place - self.size, place + self.size)
+    }
+
     fn around(&self, a: DVec2, b: DVec2) -> impl Iterator<Item = Piece> + '_ {
         covered(a, b, self.size).flat_map(|cell| self.cells.get(&cell).into_iter().flatten().copied())
     }
