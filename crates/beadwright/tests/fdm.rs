@@ -12,7 +12,7 @@ use beadwright::dialect::reading::{self, Options};
 use beadwright::example;
 use beadwright::fill::compound::Compound;
 use beadwright::fill::zigzag::regions::Weave;
-use beadwright::fill::{Strategy as _, angle};
+use beadwright::fill::{FillSettings, Strategy as _, angle};
 use beadwright::layer::Layer;
 use beadwright::model::import;
 use beadwright::pass::{Pass, PassKind};
@@ -99,6 +99,12 @@ fn sparse_infill_is_solid_at_tops_and_bottoms() {
     }
 }
 
+/// The angle with the fewest turns on layers of `compound`.
+fn fewest_turns(layers: &[&[Polygon]], settings: &FillSettings) -> Option<f64> {
+    let infills: Vec<Vec<Region>> = layers.iter().map(|l| angle::infills(&Compound, l, settings)).collect();
+    angle::fewest_turns(&infills, settings)
+}
+
 #[test]
 fn the_best_angle_has_no_more_turns_than_any_other() {
     let profile = profile("fdm-abs-0.4");
@@ -109,8 +115,8 @@ fn the_best_angle_has_no_more_turns_than_any_other() {
         let plan = plan::plan(part, &mesh, &profile, &Task::new()).unwrap();
         let island = &plan.layers[5].islands[0];
         let (core, spacing) = (Compound.infill(island, &settings), Spacing::AtMost(settings.stepover));
-        let alone = angle::best(&Compound, &[std::slice::from_ref(island)], &settings).unwrap();
-        let pair = angle::best(&Compound, &[std::slice::from_ref(island); 2], &settings).unwrap();
+        let alone = fewest_turns(&[std::slice::from_ref(island)], &settings).unwrap();
+        let pair = fewest_turns(&[std::slice::from_ref(island); 2], &settings).unwrap();
         let turns = |a: f64| ends_at(&core, a, spacing);
         for k in 0..720 {
             let a = f64::from(k) * PI / 720.0;
@@ -138,7 +144,7 @@ fn an_edge_with_hardly_more_turns_wins() {
         let mut settings = profile.fill_settings(0);
         settings.stepover *= width;
         for count in [1, 2] {
-            let best = angle::best(&Compound, &vec![&islands[..]; count], &settings).unwrap().to_degrees();
+            let best = fewest_turns(&vec![&islands[..]; count], &settings).unwrap().to_degrees();
             assert!((best / 90.0 - (best / 90.0).round()).abs() < 1e-6, "{width}: {best}");
         }
     }
@@ -156,7 +162,7 @@ fn a_turned_part_has_a_turned_angle() {
         }
     };
     for turn in [0.0, 0.3, 1.1, 2.5] {
-        let best = angle::best(&Compound, &[&[ring(turn)]], &settings).unwrap();
+        let best = fewest_turns(&[&[ring(turn)]], &settings).unwrap();
         assert!(((best - turn + 0.5 * PI).rem_euclid(PI) - 0.5 * PI).abs() < 1e-4, "{best} for {turn}");
     }
 }
