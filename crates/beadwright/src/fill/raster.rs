@@ -23,6 +23,7 @@ impl Strategy for Raster {
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
         settings.outermost(island)
     }
+
     fn lines(&self, infill: &Region, settings: &FillSettings) -> Fill {
         let scan = Scan::new(infill, settings.raster_angle, settings.spacing());
         let line = |span| {

@@ -332,13 +332,15 @@ fn goals_of(plate: &Plate, sweep: &[At]) -> Vec<Goal> {
     let [travel, time] = plate.paper;
     let goal = |what, goal, value: &dyn Fn(&At) -> f64| Goal { what, goal, ours: Spread::of(sweep, value) };
     vec![
-        goal("contour travel, of file order (shuffled, weak)", travel, &|at| at.saved().travel),
-        goal("contour travel, of columns (boustrophedon)", travel, &|at| at.ours().saved(&at.others[0]).travel),
-        goal("layer time, of plain", time, &|at| at.saved().time),
-        goal("layer time, of plain with columns", time, &|at| at.ours().saved(&at.others[0]).time),
-        goal("layer time, of plain, by the paper's methods", time, &|at| at.others[1].saved(&at.steps[0]).time),
-        goal("layer time, best angle of fixed 0°/90°", -LOSES_AT_MOST, &|at| at.ours().saved(&at.others[2]).time),
-        goal("layer time, best angle of 0° on both layers", -LOSES_AT_MOST, &|at| at.ours().saved(&at.others[3]).time),
+        goal("contour travel against file order (shuffled, weak)", travel, &|at| at.saved().travel),
+        goal("contour travel against columns (boustrophedon)", travel, &|at| at.ours().saved(&at.others[0]).travel),
+        goal("layer time against plain", time, &|at| at.saved().time),
+        goal("layer time against plain with columns", time, &|at| at.ours().saved(&at.others[0]).time),
+        goal("layer time against plain, by the paper's methods", time, &|at| at.others[1].saved(&at.steps[0]).time),
+        goal("layer time, best angle against 0°/90°", -LOSES_AT_MOST, &|at| at.ours().saved(&at.others[2]).time),
+        goal("layer time, best angle against 0° on both layers", -LOSES_AT_MOST, &|at| {
+            at.ours().saved(&at.others[3]).time
+        }),
     ]
 }
 
