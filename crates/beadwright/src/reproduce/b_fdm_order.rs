@@ -437,8 +437,8 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
         ));
         page.svg(&turned.sketch(&PLAIN, "plain").svg()).svg(&turned.sketch(&OURS, &lines).svg());
     }
-    let [turns, ..] =
-        angles::plots(&angle::curves(&Compound, &[plate.polygon.clone()], &printer.profile.fill_settings(0)), None);
+    let curves = angle::curves(&Compound, std::slice::from_ref(&plate.polygon), &printer.profile.fill_settings(0));
+    let [turns, ..] = angles::plots(&curves, None);
     page.svg(&turns.svg());
 }
 
