@@ -1,4 +1,4 @@
-//! The raster angle with the fewest turns (Han et al. 2018, 3.1), and what else depends on the angle.
+//! Raster angles with few turns (Han et al. 2018, 3.1), and what else depends on the angle.
 
 use super::{FillSettings, Strategy};
 use glam::DVec2;
@@ -10,32 +10,63 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// An edge direction may have up to this fraction more turns than the best angle.
 const EDGE_SLACK: f64 = 0.01;
 
-/// The angle, radians, with the fewest turns on a layer and on the next one, whose lines are turned by 90° (eq 9).
-/// `None` where no scan lines are laid.
+/// Edge directions that are worth a trial.
+const EDGES_TRIED: usize = 4;
+
+/// Angles closer than this count as one, radians.
+const SAME_ANGLE: f64 = 1e-6;
+
+/// The regions of some islands that a strategy fills with scan lines.
+pub fn infills(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSettings) -> Vec<Region> {
+    let regions = islands.iter().map(|island| strategy.infill(island, settings));
+    regions.filter(|region| !region.is_empty()).collect()
+}
+
+/// The angle, radians, with the fewest turns on a layer and on the next one, whose lines are turned by 90° (eq 9);
+/// from the [`infills`] of the layers. `None` where no scan lines are laid.
+pub fn fewest_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Option<f64> {
+    few_turns(layers, settings).first().copied()
+}
+
+/// Angles that may take the least time on such layers, radians, the likeliest first: those with few turns, and the
+/// fixed angle of the settings. Turns are not all: short lines cost less, and every path costs a start. An angle comes
+/// within 0..90° first and turned by 90° after it: where both layers are alike their lines are the same.
+pub fn candidates(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
+    let few = few_turns(layers, settings);
+    let fixed = (!few.is_empty()).then_some(settings.raster_angle);
+    let mut candidates: Vec<f64> = Vec::new();
+    for angle in few.into_iter().chain(fixed) {
+        let rest = angle.rem_euclid(FRAC_PI_2);
+        let first = if FRAC_PI_2 - rest < SAME_ANGLE { 0.0 } else { rest };
+        if candidates.iter().all(|known| (known - first).abs() > SAME_ANGLE) {
+            candidates.extend([first, first + FRAC_PI_2]);
+        }
+    }
+    candidates
+}
+
+/// The angle with the fewest turns, then edge directions with few.
 ///
 /// The number of turns is known exactly for angles between the directions of edges. Exactly along an edge it may be
 /// lower still, so the directions of the longest edges are tried too. One with hardly more turns wins over an angle
 /// close to it, such as 89.9°.
-pub fn best(strategy: &dyn Strategy, layers: &[&[Polygon]], settings: &FillSettings) -> Option<f64> {
+fn few_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
     let turned = |layer: usize| if layer % 2 == 1 { FRAC_PI_2 } else { 0.0 };
-    let regions: Vec<(f64, Region)> = layers
-        .iter()
-        .enumerate()
-        .flat_map(|(i, islands)| islands.iter().map(move |island| (turned(i), strategy.infill(island, settings))))
-        .filter(|(_, region)| !region.is_empty())
-        .collect();
+    let layers = layers.iter().enumerate();
+    let regions: Vec<(f64, &Region)> = layers.flat_map(|(i, all)| all.iter().map(move |r| (turned(i), r))).collect();
     let spacing = settings.spacing();
     let sum = regions.iter().fold(Turns::default(), |sum, (turn, region)| {
         let turns = Turns::new(region, spacing);
         sum.plus(&if *turn > 0.0 { turns.turned(*turn) } else { turns })
     });
-    let (between, fewest) = sum.least()?;
+    let Some((between, fewest)) = sum.least() else { return Vec::new() };
     let along = |angle: f64| regions.iter().map(|(turn, region)| ends_at(region, angle + turn, spacing)).sum::<i64>();
-    let edges = sum.edges().iter().map(|&(angle, _)| (along(angle), angle));
+    let mut edges: Vec<(i64, f64)> = sum.edges().iter().map(|&(angle, _)| (along(angle), angle)).collect();
     // The longest edges come first: among equals the longest wins.
-    let edge = edges.min_by_key(|(count, _)| *count);
-    let edge = edge.filter(|(count, _)| *count as f64 <= fewest as f64 * (1.0 + EDGE_SLACK));
-    Some(edge.map_or(between, |(_, angle)| angle))
+    edges.sort_by_key(|(count, _)| *count);
+    let wins = edges.first().is_some_and(|(count, _)| *count as f64 <= fewest as f64 * (1.0 + EDGE_SLACK));
+    let along_edges = edges.into_iter().map(|(_, angle)| angle).take(EDGES_TRIED);
+    (!wins).then_some(between).into_iter().chain(along_edges).collect()
 }
 
 /// What depends on the raster angle, on one layer.
@@ -51,7 +82,7 @@ pub struct Curves {
 
 /// The curves for the islands of a layer; lengths and areas for every degree.
 pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSettings) -> Curves {
-    let regions: Vec<Region> = islands.iter().map(|island| strategy.infill(island, settings)).collect();
+    let regions = infills(strategy, islands, settings);
     let spacing = settings.spacing();
     let turns = regions.iter().fold(Turns::default(), |sum, region| sum.plus(&Turns::new(region, spacing)));
     let corners = turns.steps().windows(2).flat_map(|w| [(w[0].0, w[0].1), (w[1].0, w[0].1)]);

@@ -26,6 +26,10 @@ impl Strategy for Compound {
         let (_, innermost) = rings(settings.outermost(island), settings, settings.perimeters);
         core(&innermost, settings)
     }
+
+    fn lines(&self, region: &Region, settings: &FillSettings) -> Fill {
+        Fill { stages: vec![infill(region, settings)], fixed_order: false }
+    }
 }
 
 fn thick(part: &Polygon, settings: &FillSettings) -> Fill {

@@ -79,6 +79,11 @@ pub trait Strategy: Sync {
         Region::default()
     }
 
+    /// The scan lines through such a region.
+    fn lines(&self, _infill: &Region, _settings: &FillSettings) -> Fill {
+        Fill::default()
+    }
+
     /// Features narrower than this get no metal, mm.
     fn narrowest(&self, settings: &FillSettings) -> f64 {
         settings.wall.width_limits.0

@@ -13,12 +13,7 @@ impl Strategy for Raster {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let scan = Scan::new(&self.infill(island, settings), settings.raster_angle, settings.spacing());
-        let line = |span| {
-            let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
-            Path { reversible: false, ..Path::line(PassKind::Infill, points.to_vec(), settings.bead.width) }
-        };
-        Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
+        self.lines(&self.infill(island, settings), settings)
     }
 
     fn narrowest(&self, settings: &FillSettings) -> f64 {
@@ -27,5 +22,14 @@ impl Strategy for Raster {
 
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
         settings.outermost(island)
+    }
+
+    fn lines(&self, infill: &Region, settings: &FillSettings) -> Fill {
+        let scan = Scan::new(infill, settings.raster_angle, settings.spacing());
+        let line = |span| {
+            let points = [End::Left, End::Right].map(|end| scan.turn_back(scan.end(span, end)));
+            Path { reversible: false, ..Path::line(PassKind::Infill, points.to_vec(), settings.bead.width) }
+        };
+        Fill { stages: vec![(0..scan.spans().len()).map(line).collect()], fixed_order: true }
     }
 }

@@ -19,11 +19,12 @@ mod preview;
 mod scan_lines;
 
 pub use preview::preview;
+pub use scan_lines::{ToFill, raster_angle};
 
 use crate::bead::wall::{WallBead, WallError};
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
-use crate::fill::{self, Path, Strategy, coverage};
+use crate::fill::{self, Fill, Path, Strategy, coverage};
 use crate::layer::{Layer, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
@@ -503,18 +504,7 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let (nominal, law) = (self.profile.bead(), &self.profile.bead.law);
-        let pace = self.profile.process.deposition_speed * self.profile.pace_in(height);
-        let lift = |path: Path| Pass {
-            kind: path.kind,
-            closed: path.closed,
-            points: path.points.into_iter().map(|p| p.extend(z)).collect(),
-            // The wire feed stays the same: a wider bead is laid more slowly.
-            pace: path.width.map(|width| pace * law.pace(&nominal, width)),
-            width: path.width,
-        };
-        let passes =
-            order::order(fills, &self.profile.order_settings(index), &mut self.torch).into_iter().map(lift).collect();
+        let passes = passes(fills, index, (z, height), self.profile, &mut self.torch);
         let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
         self.doubts(&mut layer);
         self.below = laid;
@@ -551,6 +541,27 @@ impl<S: Sink> Emitter<'_, S> {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
         }
     }
+}
+
+/// What is laid on a layer, in order and at its height; `top` and `thickness` of the layer, mm.
+fn passes(
+    fills: Vec<Fill>,
+    layer: usize,
+    (top, thickness): (f64, f64),
+    profile: &Profile,
+    torch: &mut Option<DVec2>,
+) -> Vec<Pass> {
+    let (nominal, law) = (profile.bead(), &profile.bead.law);
+    let pace = profile.process.deposition_speed * profile.pace_in(thickness);
+    let lift = |path: Path| Pass {
+        kind: path.kind,
+        closed: path.closed,
+        points: path.points.into_iter().map(|p| p.extend(top)).collect(),
+        // The wire feed stays the same: a wider bead is laid more slowly.
+        pace: path.width.map(|width| pace * law.pace(&nominal, width)),
+        width: path.width,
+    };
+    order::order(fills, &profile.order_settings(layer), torch).into_iter().map(lift).collect()
 }
 
 /// A gap below a layer counts from this part of its thickness on.

@@ -1,7 +1,9 @@
 //! What the scan lines of a layer depend on besides its own islands: the layer it is paired with, and the layers above
 //! and below.
 
-use crate::fill::{self, Strategy};
+use crate::fill::{self, FillSettings, Strategy};
+use crate::layer::Layer;
+use crate::metrics::Metrics;
 use crate::profile::{Profile, RasterTurn};
 use crate::slice::{BATCH, Slice, Slicer};
 use crate::task::{Cancelled, Task};
@@ -27,25 +29,75 @@ pub(super) fn planned(
     task: &Task,
 ) -> Result<Vec<Planned>, Cancelled> {
     let slices = slicer.batch(batch, task)?;
-    let angles = raster_angles(&slices, strategy, profile);
     let solid = solid_regions(batch, &slices, slicer, profile, task)?;
+    let angles = raster_angles(&slices, &solid, strategy, profile);
     let planned = slices.into_iter().zip(angles.into_iter().zip(solid));
     Ok(planned.map(|(slice, (raster_angle, solid))| Planned { slice, raster_angle, solid }).collect())
 }
 
 /// The best raster angle of each layer, where the profile asks for it.
-fn raster_angles(slices: &[Slice], strategy: &dyn Strategy, profile: &Profile) -> Vec<Option<f64>> {
+fn raster_angles(
+    slices: &[Slice],
+    solid: &[Option<Region>],
+    strategy: &dyn Strategy,
+    profile: &Profile,
+) -> Vec<Option<f64>> {
     // Batches are even, so pairs of layers do not straddle them.
     const { assert!(BATCH.is_multiple_of(2)) };
     if profile.fill.raster_turn != RasterTurn::Best {
         return vec![None; slices.len()];
     }
-    let pair = |pair: &[Slice]| {
-        let islands: Vec<&[Polygon]> = pair.iter().map(|s| &s.islands[..]).collect();
-        let angle = fill::angle::best(strategy, &islands, &profile.fill_settings(0));
+    let pair = |(pair, solid): (&[Slice], &[Option<Region>])| {
+        let layers: Vec<ToFill> =
+            pair.iter().zip(solid).map(|(s, solid)| ToFill { islands: &s.islands, solid: solid.as_ref() }).collect();
+        let angle = raster_angle(&layers, strategy, profile);
         (0..pair.len()).map(|i| angle.map(|a| a + FRAC_PI_2 * i as f64)).collect::<Vec<_>>()
     };
-    slices.par_chunks(2).flat_map_iter(pair).collect()
+    slices.par_chunks(2).zip(solid.par_chunks(2)).flat_map_iter(pair).collect()
+}
+
+/// What the scan lines of a layer fill.
+#[derive(Debug, Clone, Copy)]
+pub struct ToFill<'a> {
+    /// Its islands.
+    pub islands: &'a [Polygon],
+    /// Where a sparse infill is solid all the same; `None` where all of it is.
+    pub solid: Option<&'a Region>,
+}
+
+/// A likelier angle is kept where another would save no more than this fraction of the time: the angle should not
+/// change from layers to the next ones for nothing.
+const TIME_SLACK: f64 = 0.002;
+
+/// At least this fraction of the metal that the fixed angle lays: an angle may not be quick because it leaves more bare.
+const LEAST_METAL: f64 = 0.98;
+
+/// The angle, radians, of the scan lines of two layers, the second of which is turned by 90°, with which their metal is
+/// laid in the least time. The lines are laid and timed at the angles with few turns and at the profile's own angle, so
+/// they take no more time for their metal than there, within 0.2 %. `None` where no scan lines are laid.
+pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profile) -> Option<f64> {
+    let settings = profile.fill_settings(0);
+    let infills: Vec<Vec<Region>> =
+        layers.iter().map(|layer| fill::angle::infills(strategy, layer.islands, &settings)).collect();
+    let laid = |angle: f64| {
+        let (mut metrics, mut torch) = (Metrics::new(profile), None);
+        for (i, (layer, infills)) in layers.iter().zip(&infills).enumerate() {
+            let raster_angle = angle + FRAC_PI_2 * i as f64;
+            let settings = FillSettings { raster_angle, solid: layer.solid, ..profile.fill_settings(i) };
+            let fills = infills.iter().map(|region| strategy.lines(region, &settings)).collect();
+            let passes = super::passes(fills, i, (0.0, profile.layers.height), profile, &mut torch);
+            metrics.add(&Layer { passes, ..Layer::default() });
+        }
+        (metrics.total_time_s, metrics.deposited_volume_mm3)
+    };
+    let least_metal = LEAST_METAL * laid(settings.raster_angle).1;
+    let timed = |angle: f64| {
+        let (seconds, metal) = laid(angle);
+        (metal > 0.0 && metal >= least_metal).then(|| (seconds / metal, angle))
+    };
+    let timed: Vec<(f64, f64)> = fill::angle::candidates(&infills, &settings).into_iter().filter_map(timed).collect();
+    let least = timed.iter().map(|(time, _)| *time).fold(f64::INFINITY, f64::min);
+    timed.into_iter().find(|(time, _)| *time <= least * (1.0 + TIME_SLACK)).map(|(_, angle)| angle)
 }
 
 /// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`

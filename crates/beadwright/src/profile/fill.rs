@@ -16,8 +16,8 @@ pub enum RasterTurn {
     Alternate,
     /// Turned by `raster_increment` from layer to layer.
     Increment,
-    /// The angle with the fewest turns, chosen for each pair of layers, the second of which is turned by 90° (Han et
-    /// al. 2018, 3.1).
+    /// The angle that takes the least time, of those with few turns and of `raster_angle`, chosen for each pair of
+    /// layers, the second of which is turned by 90° (Han et al. 2018, 3.1).
     Best,
 }
 
@@ -44,7 +44,7 @@ pub struct FillSection {
     /// Angle of the scan lines on the first layer, ° from the x axis.
     pub raster_angle: f64,
     /// How the raster angle changes from layer to layer: `fixed`, `alternate`, `increment`, or `best` for the angle
-    /// with the fewest turns, chosen for each pair of layers.
+    /// that takes the least time, chosen for each pair of layers, the second of which is turned by 90°.
     pub raster_turn: RasterTurn,
     /// Change of the raster angle per layer for `raster_turn = "increment"`, °.
     pub raster_increment: f64,

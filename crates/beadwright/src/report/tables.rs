@@ -114,7 +114,7 @@ fn strategy(name: &str, profile: &Profile) -> String {
         RasterTurn::Best => String::new(),
     };
     let raster = match fill.raster_turn {
-        RasterTurn::Best => format!("scan lines at the angle with the fewest turns, {spacing}"),
+        RasterTurn::Best => format!("scan lines at the quickest angle for every two layers, {spacing}"),
         _ => format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle),
     };
     match name {

@@ -25,14 +25,19 @@ pub fn cube() -> Vec<Facet> {
 
 /// What stands on a counter-clockwise outline.
 pub fn prism(outline: &[(f64, f64)], height: f64) -> Vec<Facet> {
-    let low: Vec<DVec3> = outline.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();
-    let high = |i: usize| low[i].with_z(height);
     let ring = Ring::new(outline.iter().map(|&(x, y)| DVec2::new(x, y)).collect());
-    let caps = triangulate(&Polygon::simple(ring)).into_iter();
+    extruded(&Polygon::simple(ring), height)
+}
+
+/// What stands on an outline with holes.
+pub fn extruded(base: &Polygon, height: f64) -> Vec<Facet> {
+    let low: Vec<DVec3> = base.rings().flat_map(|ring| ring.points()).map(|p| p.extend(0.0)).collect();
+    let high = |i: usize| low[i].with_z(height);
+    let caps = triangulate(base).into_iter();
     let caps = caps.flat_map(|[a, b, c]| [[low[a], low[c], low[b]], [high(a), high(b), high(c)]]);
-    let walls = (0..low.len()).flat_map(|i| {
-        let j = (i + 1) % low.len();
-        [[low[i], low[j], high(j)], [low[i], high(j), high(i)]]
+    let walls = base.rings().flat_map(Ring::edges).flat_map(|(a, b)| {
+        let [a, b] = [a, b].map(|p| p.extend(0.0));
+        [[a, b, b.with_z(height)], [a, b.with_z(height), a.with_z(height)]]
     });
     caps.chain(walls).collect()
 }

@@ -21,14 +21,15 @@ impl Strategy for Zigzag {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        thin::around(island, settings, |part, settings| Fill {
-            stages: vec![zigzag(&self.infill(part, settings), settings)],
-            fixed_order: false,
-        })
+        thin::around(island, settings, |part, settings| self.lines(&self.infill(part, settings), settings))
     }
 
     fn infill(&self, island: &Polygon, settings: &FillSettings) -> Region {
         settings.outermost(island)
+    }
+
+    fn lines(&self, infill: &Region, settings: &FillSettings) -> Fill {
+        Fill { stages: vec![zigzag(infill, settings)], fixed_order: false }
     }
 }
 
