@@ -1,8 +1,9 @@
 //! Where the layers of a wall lie: as high as its beads grow (Li et al., section 1.2).
 //!
-//! Where a wall leans by φ from the build direction it rises by h_n cos φ. The lean is taken point by point, between
-//! neighbouring layers. A layer stays level, so it rises by the mean of that over its points, and each piece of its path
-//! is paced by the width of the wall there: where the wall leans more, a level layer cuts it wider and takes more metal.
+//! Where a wall leans by φ from the build direction, a bead h_n away from the one below lies h_n cos φ above it. The lean
+//! is taken point by point, between neighbouring layers. A layer stays level, so it rises by what its most leaning points
+//! allow: nowhere is a bead farther than h_n from the one below. Each piece of its path is paced by the width of the wall
+//! there: where the wall leans more, a level layer cuts it wider and takes more metal.
 
 use crate::bead::wall::WallBead;
 use crate::model::Mesh;
@@ -20,6 +21,9 @@ const MOST_LEAN: f64 = std::f64::consts::FRAC_PI_3;
 
 /// Points of an outline at which its lean is measured.
 const POINTS: usize = 64;
+
+/// One in so many points may lean more than the layer's rise allows for.
+const ASIDE: usize = 20;
 
 /// The layers of a mesh wall that stands on z = 0.
 pub(super) fn of_mesh(mesh: &Mesh, wall: &WallBead, profile: &Profile, task: &Task) -> Result<Vec<Slab>, Cancelled> {
@@ -45,11 +49,13 @@ pub(super) fn of_mesh(mesh: &Mesh, wall: &WallBead, profile: &Profile, task: &Ta
     Ok(stacked(top, wall, rise))
 }
 
-/// What a layer rises that leans by these angles (radians) at its points: the mean of h_n cos φ, mm.
+/// What a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them, a few
+/// points aside, which may lie on a corner or an edge.
 fn rise(wall: &WallBead, leans: impl Iterator<Item = f64>) -> f64 {
-    let (count, sum) =
-        leans.fold((0, 0.0), |(count, sum), lean| (count + 1, sum + wall.rise_leaning(lean.min(MOST_LEAN))));
-    if count == 0 { wall.rise() } else { sum / f64::from(count) }
+    let mut leans: Vec<f64> = leans.map(|lean| lean.min(MOST_LEAN)).collect();
+    leans.sort_by(f64::total_cmp);
+    let aside = leans.len() / ASIDE;
+    leans.iter().rev().nth(aside).map_or(wall.rise(), |lean| wall.rise_leaning(*lean))
 }
 
 fn rings(slice: &Slice) -> impl Iterator<Item = &Ring> {
