@@ -52,7 +52,7 @@ fn the_wire_brings_the_metal_of_the_wall() {
 
 #[test]
 fn every_piece_of_a_leaning_wall_gets_the_metal_that_it_takes() {
-    // The pot leans by 14° in its sides and by 25° at its corners, so its speeds differ; the metal never does.
+    // The pot leans by 14° in its sides and by 24° at its corners, so its speeds differ; the metal never does.
     for b in built("pot") {
         let wire = b.profile.mass_balance().wire;
         for layer in &b.plan.layers[1..] {

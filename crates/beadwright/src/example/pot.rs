@@ -13,7 +13,7 @@ const WALL: f64 = 4.0;
 /// Outer half width at the foot and at the rim.
 const HALF_WIDTH: (f64, f64) = (50.0, 30.0);
 /// Outer corner radius at the foot; at the rim it is the half width, a circle.
-const FOOT_RADIUS: f64 = 8.0;
+const FOOT_RADIUS: f64 = 12.0;
 /// Corners have the chords of an arc with this many times the rim's radius: 0.03 mm there is 0.0075 mm on the rim.
 const FINE: f64 = 4.0;
 

@@ -137,8 +137,8 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let goals = goals(&all);
     let mut page = Sheet::new(
         "d-thin-wall",
-        "Li et al.: a frame 田, a blade, a gourd and a pot, each wall one bead thick. Figures are the worse of two: the \
-         part as it is, and turned by 33° about the vertical.",
+        "Li et al.: a frame 田, a blade, a gourd and a pot, each wall one bead thick. What is reached is judged by the worse \
+         of two figures: the part as it is, and turned by 33° about the vertical. All below that is the part as it is.",
     );
     page.heading("Reached or not");
     page.table(&["what", "ours", "the paper", ""], &goals.iter().map(goal_row).collect::<Vec<_>>());
@@ -147,7 +147,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         "The paper prints no bead and no wire feed. B₁, h₁, h_n and the wire feed below are solved backwards from layers \
          and height, by the circles of eqs 5 to 7, whose area is the metal of the wire; so these two agree by \
          construction, which shows nothing. Gourd and pot have the shapes of our examples: the paper gives only their \
-         largest and smallest sizes.",
+         largest and smallest sizes, so their layers hold for these shapes.",
     );
     page.table(&BEAD_HEAD, &plain.built.iter().map(bead_row).collect::<Vec<_>>());
     let window = window(plain);
@@ -302,7 +302,7 @@ impl Frame {
         let heights = JUDGED.map(|count| {
             let (nominal, mean) = (settings.nominal.rise * count as f64, judged.total.mean() * count as f64);
             let at = |growth: &crate::deposit::stack::Growth| Heights {
-                low: (nominal - growth.hollow) / mean,
+                low: (nominal - growth.hollow).max(0.0) / mean,
                 high: (nominal + growth.peak) / mean,
             };
             judged.growth.get(count - 1).map_or(Heights { low: 0.0, high: f64::INFINITY }, at)
