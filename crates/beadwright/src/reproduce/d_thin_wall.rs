@@ -188,7 +188,6 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     Ok(Reproduced { page, lines, files })
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "the form that map_err takes")]
 fn wrong(error: impl std::fmt::Display) -> ReproduceError {
     ReproduceError(error.to_string())
 }
