@@ -166,6 +166,7 @@ fn only_optional_keys_may_be_missing() {
         "krl.arctech",
         "rapid.tool_frame",
         "rapid.part_frame",
+        "start_stop.crater_fill_time",
         "urscript.tool_frame",
     ];
     for (name, full) in BUILT_IN {
@@ -381,7 +382,7 @@ fn frames_loads_and_seams_of_rapid_are_checked() {
     check(ABB, "tool_load = [4.5", "tool_load = [0.0", &["rapid.tool_load = 0", "kg"]);
     check(ABB, "arc = \"instructions\"", "arc = \"plane\"", &["Did you mean \"plain\"?"]);
     check(ABB, "wire_feed_unit = \"m/min\"", "wire_feed_unit = \"m/h\"", &["m/min", "mm/s"]);
-    check(ABB, "fill_time = 0.3", "fill_time = -1.0", &["rapid.seam.fill_time = -1", "between 0 and 60 s"]);
+    check(ABB, "fill_time = 0.3\n", "fill_time = -1.0\n", &["rapid.seam.fill_time = -1", "between 0 and 60 s"]);
     check(ABB, "heat_feed = 1.0", "heat_feed = 6.0", &["rapid.seam.heat_feed", "of the wire feed"]);
 }
 

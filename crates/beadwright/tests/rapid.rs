@@ -156,8 +156,8 @@ fn exact_stops_without_a_zone_and_no_list_where_none_is_wanted() {
     rapid.orientation = [0.0, 0.7072, 0.0, 0.7072];
     let files = written("frame", &job(), 2, &profile);
     assert!(!files.contains_key("frame.pgf") && files.values().all(|text| !text.contains("zBead")));
-    // 2.4 m/min is 40 mm/s.
-    assert!(files["frame_L001.mod"].contains("[8.000,0,[1,7,0.000,40.000,0.000,129.000,0,0,0],"));
+    // 2.71 m/min is 45.167 mm/s.
+    assert!(files["frame_L001.mod"].contains("[8.000,0,[1,7,0.000,45.167,0.000,129.000,0,0,0],"));
     readers::rapid::run(&files, "frame", "");
     assert!(files["frame_L001.mod"].contains("[0.0000000,0.7071068,0.0000000,0.7071068]"));
 }

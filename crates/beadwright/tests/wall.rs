@@ -1,4 +1,4 @@
-//! Height prediction of walls against the paper's table, integrals and closed forms.
+//! Height prediction of walls against integrals and closed forms.
 #![allow(clippy::unwrap_used)]
 
 use beadwright::bead::wall::{WallBead, WallError};
@@ -7,32 +7,6 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 fn wall(width: f64, height: f64) -> WallBead {
     WallBead::new(width, height).unwrap()
-}
-
-/// Part, B₁, h₁, h_n as printed, layers, total height.
-const TABLE: [(&str, f64, f64, f64, usize, f64); 4] = [
-    ("tian", 4.5, 1.884, 1.4186, 18, 26.0),
-    ("blade", 3.5, 1.6885, 1.3467, 74, 100.0),
-    ("gourd", 4.0, 1.6072, 1.1880, 168, 200.0),
-    ("pot", 4.0, 1.6237, 1.2058, 66, 80.0),
-];
-
-#[test]
-fn the_papers_table() {
-    for (part, width, height, rise, layers, total) in TABLE {
-        // h₁ of the 田 frame has three decimals in the table: half of its last digit is 0.0005 mm.
-        let rounding = if part == "tian" { 0.0005 } else { 0.00005 };
-        let (low, high) = (wall(width, height - rounding).rise(), wall(width, height + rounding).rise());
-        assert!(low - 5e-5 < rise && rise < high + 5e-5, "{part}: {low} to {high}");
-        let bead = wall(width, height);
-        assert_eq!(format!("{:.1}", bead.total(layers)), format!("{total:.1}"), "{part}");
-        assert_eq!(bead.layers_for(total), layers, "{part}");
-        assert_eq!(bead.positions(&vec![0.0; layers - 1]).unwrap().len(), layers);
-    }
-    let rises = TABLE.map(|(_, width, height, ..)| format!("{:.4}", wall(width, height).rise()));
-    // The frame's 1.4187 is 1.4186 with the h₁ = 1.8839 mm that 26.0 mm of 18 layers ask for.
-    assert_eq!(rises, ["1.4187", "1.3467", "1.1880", "1.2058"]);
-    assert_eq!(format!("{:.4}", wall(4.5, 1.8839).rise()), "1.4186");
 }
 
 /// The area between the upper circle and the lower one, by Simpson's rule over the height, split where widths kink.
@@ -104,6 +78,11 @@ fn what_is_no_bead_is_refused() {
         let refused = WallBead::new(width, height).unwrap_err();
         assert!(refused.to_string().contains("from 0.05 to 50"), "{refused}");
     }
+    for (thickness, area) in [(0.0, 1.0), (4.0, f64::NAN), (4.0, 0.0), (4.0, 1e-5), (4.0, 21.0)] {
+        assert!(WallBead::for_wall(thickness, area).is_err(), "{thickness} {area}");
+    }
+    let refused = WallBead::for_wall(4.0, 24.0).unwrap_err().to_string();
+    assert!(refused.contains("its layers would be 6.000 mm high"), "{refused}");
     assert!(WallBead::for_rise(4.0, 1e3).is_err() && WallBead::for_rise(4.0, f64::NAN).is_err());
 }
 
@@ -120,5 +99,9 @@ proptest! {
         prop_assert!((wall(3.0 * width, 3.0 * bead.height()).rise() - 3.0 * bead.rise()).abs() < 1e-12 * bead.rise());
         let again = WallBead::for_rise(width, bead.rise()).unwrap();
         prop_assert!((again.height() - bead.height()).abs() < 1e-10 * bead.height());
+        // The metal of a bead and the thickness of its wall tell the bead.
+        let again = WallBead::for_wall(bead.thickness(), bead.area()).unwrap();
+        prop_assert!((again.width() / width - 1.0).abs() < 1e-9 && (again.height() / bead.height() - 1.0).abs() < 1e-9);
+        prop_assert!((again.rise() * bead.thickness() / bead.area() - 1.0).abs() < 1e-9);
     }
 }

@@ -1,7 +1,6 @@
 //! Walls given by curves: read from IGES, lofted, leaning, and the same as those given by a solid.
 #![allow(clippy::unwrap_used)]
 
-use beadwright::bead::wall::WallBead;
 use beadwright::curve::Nurbs;
 use beadwright::example;
 use beadwright::layer::Layer;
@@ -44,32 +43,41 @@ fn circle(radius: f64, z: f64) -> Nurbs {
 
 #[test]
 fn curves_and_solid_give_the_same_wall() {
-    for (name, width, height, top, count) in
-        [("tian", 4.5, 1.884, 26.0, 18), ("blade", 3.5, 1.6885, 100.0, 74), ("gourd", 4.0, 1.6072, 200.0, 187)]
+    for (name, width, height, top) in
+        [("tian", 4.5, 2.128, 26.0), ("blade", 3.5, 2.05, 100.0), ("gourd", 4.0, 1.98, 200.0)]
     {
         let profile = profile(width, height);
         let by_curves = layers(&of_example(name), top, &profile);
         let by_mesh = plan::plan(name, &example::find(name).unwrap().mesh(), &profile, &Task::new()).unwrap().layers;
-        assert_eq!((by_curves.len(), by_mesh.len()), (count, count), "{name}");
+        assert!(by_curves.len().abs_diff(by_mesh.len()) <= 1, "{name}: {} {}", by_curves.len(), by_mesh.len());
         for (a, b) in by_curves.iter().zip(&by_mesh) {
             assert_eq!(a.passes.len(), b.passes.len(), "{name}");
-            assert!((a.z - b.z).abs() < 0.5, "{name}: {} {}", a.z, b.z);
-            let length = |l: &Layer| l.passes.iter().map(Pass::length).sum::<f64>();
-            // The mesh of the blade ends half a bead before its mean line does.
-            let least = length(b) / length(a);
-            assert!((0.95..1.01).contains(&least), "{name}: {least}");
+            // Of a solid both sides count, and the one that leans more decides: within 1 % of the height.
+            assert!((a.z - b.z).abs() < 0.01 * top, "{name}: {} {}", a.z, b.z);
         }
+        // How much wall there is: lengths of the paths times heights of the layers.
+        let wall = |layers: &[Layer]| -> f64 {
+            layers.iter().map(|l| l.height * l.passes.iter().map(Pass::length).sum::<f64>()).sum()
+        };
+        // The mesh of the blade ends half a bead before its mean line does.
+        let least = wall(&by_mesh) / wall(&by_curves);
+        assert!((0.95..1.01).contains(&least), "{name}: {least}");
     }
 }
 
 #[test]
 fn a_leaning_wall_rises_by_the_cosine() {
-    let (angle, wall) = (30.0_f64.to_radians(), WallBead::new(4.0, 1.6072).unwrap());
+    let (angle, profile) = (30.0_f64.to_radians(), profile(4.0, 1.8));
+    let wall = profile.single_wall().unwrap();
     let cone = curves(&[circle(30.0, 0.0), circle(30.0 + 100.0 * angle.tan(), 100.0)]).unwrap();
-    let laid = layers(&cone, 100.0, &profile(4.0, 1.6072));
-    assert_eq!(laid[0].height, 1.6072);
+    let laid = layers(&cone, 100.0, &profile);
+    assert_eq!(laid[0].height, wall.height());
     for layer in &laid[1..laid.len() - 1] {
-        assert!((layer.height - wall.rise() * angle.cos()).abs() < 1e-6, "{}", layer.height);
+        assert!((layer.height - wall.rise() * angle.cos()).abs() < 1e-5, "{}", layer.height);
+        // A level cut through the wall is 4 mm / cos 30° wide, so the bead keeps its metal and its speed.
+        for s in layer.passes[0].segments() {
+            assert!((s.width - 4.0 / angle.cos()).abs() < 0.03 && (s.pace / 8.0 - 1.0).abs() < 0.01, "{s:?}");
+        }
         // The centre-line is that at the middle of the layer.
         let radius = 30.0 + (layer.z - layer.height / 2.0) * angle.tan();
         for point in &layer.passes[0].points {
@@ -82,11 +90,13 @@ fn a_leaning_wall_rises_by_the_cosine() {
 #[test]
 fn an_upright_wall_rises_by_h_n_and_its_layers_end_where_they_should() {
     let ring = curves(&[circle(40.0, 7.0)]).unwrap();
-    let wall = WallBead::new(4.0, 1.6237).unwrap();
-    let laid = layers(&ring, 80.0, &profile(4.0, 1.6237));
+    let profile = profile(4.0, 1.81);
+    let wall = profile.single_wall().unwrap();
+    // The area of the bead over the thickness of the wall.
+    assert!((wall.rise() - 1.81 * 2.0 / 3.0).abs() < 1e-12);
+    let laid = layers(&ring, wall.total(66), &profile);
     assert_eq!(laid.len(), 66);
     assert!((laid[65].z - wall.total(66)).abs() < 1e-9);
-    assert!((laid[65].z - 80.0).abs() < 0.05);
     assert!(laid.iter().all(|l| l.passes.len() == 1 && l.passes[0].closed));
 }
 
@@ -104,7 +114,10 @@ fn between_two_heights_the_way_is_straight_wherever_the_curves_begin() {
             assert!((point.length() - 30.0).abs() < 0.6, "{point}");
         }
     }
-    assert!((wall.offset(20.0, 30.0) - 4.0).abs() < 0.1, "{}", wall.offset(20.0, 30.0));
+    // 20 mm outwards on 50 mm upwards, at every point.
+    for (at, lean) in wall.leans(20.0, 30.0) {
+        assert!((lean - 0.4_f64.atan()).abs() < 0.01 && (at.length() - 30.0).abs() < 0.6, "{at}: {lean}");
+    }
 }
 
 #[test]

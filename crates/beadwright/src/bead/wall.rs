@@ -7,6 +7,9 @@
 //! Every ratio λ = B₁/h₁ > 0 has exactly one h_n. Eq (7) prints θ₁ = asin(4h₁B₁/(4h₁² + B₁²)), which is the half angle
 //! of the cap only for λ ≥ 2; θ₁ = 2 atan(2h₁/B₁) is the same there, and right for higher beads too. For λ above
 //! 2.62 the second bead reaches below the foot of the first; that does not affect the wall above it.
+//!
+//! The wire decides: [`WallBead::for_wall`] takes the metal of a bead and the thickness of the wall, so that the metal
+//! fed is the metal of the wall, and finds B₁ and h₁. The wall's mean thickness is 0.98 to 1.03 B₁ for λ from 2 to 2.7.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -57,6 +60,21 @@ pub enum WallError {
         /// Greatest possible h_n, mm.
         most: f64,
     },
+    /// No bead of that area makes a wall of that thickness.
+    #[error(
+        "beads of {area} mm² do not make a wall {thickness} mm thick: its layers would be {rise:.3} mm high, at most \
+         {most:.1} mm can be. Check the units: bead.width and bead.height are in mm."
+    )]
+    Thickness {
+        /// Wanted mean thickness, mm.
+        thickness: f64,
+        /// Area of a bead, mm².
+        area: f64,
+        /// Height of a layer of that metal, mm.
+        rise: f64,
+        /// Greatest possible height of a layer, mm.
+        most: f64,
+    },
     /// A layer leans so far that it would not rise.
     #[error("layer {layer} of the wall leans {degrees:.1}° from the build direction; below 90° a layer rises.")]
     Lean {
@@ -102,17 +120,33 @@ impl WallBead {
         if !(width.is_finite() && width > 0.0) {
             return Err(WallError::Size { width, height: rise });
         }
-        // The rise grows with the height of the bead.
-        let (mut low, mut high) = (width / Self::RATIOS.1, width / Self::RATIOS.0);
-        let (least, most) = (Self::solved(width, low).rise, Self::solved(width, high).rise);
+        let of_ratio = |ratio: f64| Self::solved(width, width / ratio);
+        let (most, least) = (of_ratio(Self::RATIOS.0).rise, of_ratio(Self::RATIOS.1).rise);
         if !(least..=most).contains(&rise) {
             return Err(WallError::Rise { width, rise, least, most });
         }
-        while high - low > 2.0 * f64::EPSILON * high {
-            let middle = 0.5 * (low + high);
-            *(if Self::solved(width, middle).rise < rise { &mut low } else { &mut high }) = middle;
+        Ok(of_ratio(ratio_where(|ratio| of_ratio(ratio).rise <= rise)))
+    }
+
+    /// The wall of mean `thickness` (mm) of beads of `area` (mm²): the metal of a bead fills what a layer rises, so its
+    /// layers are `area`/`thickness` high.
+    ///
+    /// # Errors
+    /// [`WallError::Size`] for impossible values, [`WallError::Thickness`] where no accepted λ makes such a wall.
+    pub fn for_wall(thickness: f64, area: f64) -> Result<Self, WallError> {
+        let possible = |v: f64| v.is_finite() && v > 0.0;
+        if !possible(thickness) || !possible(area) {
+            return Err(WallError::Size { width: thickness, height: area / thickness });
         }
-        Ok(Self::solved(width, 0.5 * (low + high)))
+        // Thickness over rise grows with λ alone, whatever the size.
+        let slender = |ratio: f64| Self::solved(1.0, 1.0 / ratio).slenderness();
+        let (wanted, least) = (thickness * thickness / area, slender(Self::RATIOS.0));
+        if !(least..=slender(Self::RATIOS.1)).contains(&wanted) {
+            return Err(WallError::Thickness { thickness, area, rise: area / thickness, most: thickness / least });
+        }
+        let ratio = ratio_where(|ratio| slender(ratio) >= wanted);
+        let width = (area / Self::solved(1.0, 1.0 / ratio).area()).sqrt();
+        Ok(Self::solved(width, width / ratio))
     }
 
     /// Width B₁ of the first bead, mm.
@@ -128,6 +162,17 @@ impl WallBead {
     /// λ = B₁/h₁.
     pub fn ratio(&self) -> f64 {
         self.width / self.height
+    }
+
+    /// Mean thickness of the wall above the first bead, mm, over the waves of its sides: what a bead holds over what a
+    /// layer rises.
+    pub fn thickness(&self) -> f64 {
+        self.area() / self.rise
+    }
+
+    /// Mean thickness of the wall over the rise of a layer.
+    fn slenderness(&self) -> f64 {
+        self.thickness() / self.rise
     }
 
     /// Radius R of the circle, mm (eq 7). The wall above the first bead is 2R wide.
@@ -188,6 +233,16 @@ impl WallBead {
         }
         Ok(tops)
     }
+}
+
+/// The least accepted λ at which `reached` holds, which does from there on.
+fn ratio_where(reached: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = WallBead::RATIOS;
+    while high - low > 2.0 * f64::EPSILON * high {
+        let middle = 0.5 * (low + high);
+        *(if reached(middle) { &mut high } else { &mut low }) = middle;
+    }
+    high
 }
 
 /// Area of the cap with half angle θ on the unit circle.

@@ -16,11 +16,13 @@ pub(super) const CHECK: Check = Check {
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let profile = subject.profile;
-    let nominal = profile.mass_balance().warning().map(|text| Finding::of_plan(&CHECK, text));
-    let (bead, law, process) = (profile.bead(), &profile.bead.law, &profile.process);
-    let fitting = |width: f64| process.deposition_speed * law.pace(&bead, width);
+    let (process, balance) = (&profile.process, profile.mass_balance());
+    let nominal = balance.warning().map(|text| Finding::of_plan(&CHECK, text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
-        let fitting = |width: f64| fitting(width) * profile.pace_in(layer.height);
+        let pace = profile.pace_in(layer.index, layer.height);
+        // A wall takes the wire that fills its width over the rise of the layer.
+        let rise = profile.wall_rise(layer.index, layer.height);
+        let fitting = |width: f64| rise.map_or_else(|| pace(width), |rise| balance.wire / (width * rise));
         let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
         let s = pass.segments().find(off)?;
         let (width, fitting) = (s.width, fitting(s.width));

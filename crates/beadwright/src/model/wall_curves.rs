@@ -136,22 +136,29 @@ impl WallCurves {
         }
     }
 
-    /// Mean distance by which the centre-lines move sideways from one height to another, mm.
-    pub fn offset(&self, low: f64, high: f64) -> f64 {
-        let points = |z: f64| -> Vec<DVec2> {
-            let paired = |curves: &[Curve]| curves.iter().flat_map(|c| c.evenly(PAIRS)).collect::<Vec<_>>();
-            match self.between(z) {
-                Between::One(curves) => paired(curves),
-                Between::Two(lower, upper, share) => lower
-                    .iter()
-                    .zip(upper)
-                    .flat_map(|(a, b)| mixed(&a.evenly(PAIRS), &b.turned_to(a, PAIRS), share))
-                    .collect(),
-            }
+    /// How the wall leans between two heights, at corresponding points of its centre-lines: places halfway up, and the
+    /// angle from the build direction there, radians. A point that only slides along its line does not lean.
+    pub fn leans(&self, low: f64, high: f64) -> Vec<(DVec2, f64)> {
+        let (lower, upper) = (self.paired(low), self.paired(high));
+        let lean = |(lower, upper): (&Vec<DVec2>, &Vec<DVec2>)| -> Vec<(DVec2, f64)> {
+            let closed = lower.first() == lower.last();
+            let lean = |(i, (a, b)): (usize, (&DVec2, &DVec2))| {
+                let sideways = tangent(lower, i, closed).perp_dot(*b - *a).abs();
+                (a.midpoint(*b), sideways.atan2(high - low))
+            };
+            lower.iter().zip(upper).enumerate().map(lean).collect()
         };
-        let (lower, upper) = (points(low), points(high));
-        let count = lower.len().max(1) as f64;
-        lower.iter().zip(&upper).map(|(a, b)| a.distance(*b)).sum::<f64>() / count
+        lower.iter().zip(&upper).flat_map(lean).collect()
+    }
+
+    /// Corresponding points of every centre-line at height `z`.
+    fn paired(&self, z: f64) -> Vec<Vec<DVec2>> {
+        match self.between(z) {
+            Between::One(curves) => curves.iter().map(|c| c.evenly(PAIRS)).collect(),
+            Between::Two(lower, upper, share) => {
+                lower.iter().zip(upper).map(|(a, b)| mixed(&a.evenly(PAIRS), &b.turned_to(a, PAIRS), share)).collect()
+            }
+        }
     }
 
     fn between(&self, z: f64) -> Between<'_> {
@@ -234,6 +241,17 @@ impl Curve {
         own.push(own[0]);
         own
     }
+}
+
+/// Direction of a line at one of its points; a closed line ends with its first point.
+fn tangent(line: &[DVec2], i: usize, closed: bool) -> DVec2 {
+    let last = line.len() - 1;
+    let (before, behind) = match i {
+        0 if closed => (last - 1, 1),
+        i if i == last && closed => (last - 1, 1),
+        _ => (i.saturating_sub(1), (i + 1).min(last)),
+    };
+    (line[behind] - line[before]).normalize_or_zero()
 }
 
 fn mixed(lower: &[DVec2], upper: &[DVec2], share: f64) -> Vec<DVec2> {

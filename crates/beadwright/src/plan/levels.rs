@@ -1,7 +1,9 @@
 //! Where the layers of a wall lie: as high as its beads grow (Li et al., section 1.2).
 //!
-//! A layer rises by h_n cos φ where the wall leans by φ from the build direction. The lean is taken from neighbouring
-//! layers, as a mean over each: how far the centre-line or the outline moves sideways on the way up.
+//! Where a wall leans by φ from the build direction, a bead h_n away from the one below lies h_n cos φ above it. The lean
+//! is taken point by point, between neighbouring layers. A layer stays level, so it rises by what its most leaning points
+//! allow: nowhere is a bead farther than h_n from the one below. Each piece of its path is paced by the width of the wall
+//! there: where the wall leans more, a level layer cuts it wider and takes more metal.
 
 use crate::bead::wall::WallBead;
 use crate::model::Mesh;
@@ -10,52 +12,93 @@ use crate::plan::MAX_LAYERS;
 use crate::profile::Profile;
 use crate::slice::{self, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Task};
-use planar::Region;
+use glam::DVec2;
+use planar::Ring;
 use rayon::prelude::*;
 
 /// A wall is not taken to lean more than this, radians (60°): steeper places are shoulders and floors, not walls.
 const MOST_LEAN: f64 = std::f64::consts::FRAC_PI_3;
+
+/// Points of an outline at which its lean is measured.
+const POINTS: usize = 64;
+
+/// One in so many points may lean more than the layer's rise allows for.
+const ASIDE: usize = 20;
 
 /// The layers of a mesh wall that stands on z = 0.
 pub(super) fn of_mesh(mesh: &Mesh, wall: &WallBead, profile: &Profile, task: &Task) -> Result<Vec<Slab>, Cancelled> {
     let (step, top) = (wall.rise(), mesh.bounds().1.z.max(0.0));
     let slabs = slice::even_slabs(mesh, step);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
-    let mut sideways = Vec::with_capacity(slicer.layer_count());
+    let mut rises = Vec::with_capacity(slicer.layer_count());
     let mut below: Option<Slice> = None;
     for batch in 0..slicer.batch_count() {
         let slices: Vec<Slice> = below.take().into_iter().chain(slicer.batch(batch, task)?).collect();
-        sideways.par_extend(slices.par_windows(2).map(|pair| offset(&pair[0], &pair[1])));
+        rises.par_extend(slices.par_windows(2).map(|pair| {
+            let upper: Vec<(DVec2, DVec2)> = rings(&pair[1]).flat_map(Ring::edges).collect();
+            let lean = |p: DVec2| (to_nearest(p, &upper) / step).atan();
+            rise(wall, rings(&pair[0]).flat_map(evenly).map(lean))
+        }));
         below = slices.into_iter().last();
     }
     // Slices lie at (k + ½) · step.
-    let lean = |z: f64| {
+    let rise = |z: f64| {
         let pair = (z / step - 0.5).max(0.0) as usize;
-        sideways.get(pair.min(sideways.len().saturating_sub(1))).map_or(0.0, |offset: &f64| (offset / step).atan())
+        rises.get(pair.min(rises.len().saturating_sub(1))).copied().unwrap_or(step)
     };
-    Ok(stacked(top, wall, lean))
+    Ok(stacked(top, wall, rise))
 }
 
-/// How far the outline moves sideways between two slices, as a mean over it, mm: the area in one but not in both, over
-/// the length of the outline.
-fn offset(lower: &Slice, upper: &Slice) -> f64 {
-    let [a, b] = [lower, upper].map(|slice| Region::from_normalised(slice.islands.clone()));
-    let length = (a.perimeter() + b.perimeter()) / 2.0;
-    if length > 0.0 { (a.difference(&b).area() + b.difference(&a).area()) / length } else { 0.0 }
+/// What a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them, a few
+/// points aside, which may lie on a corner or an edge.
+fn rise(wall: &WallBead, leans: impl Iterator<Item = f64>) -> f64 {
+    let mut leans: Vec<f64> = leans.map(|lean| lean.min(MOST_LEAN)).collect();
+    leans.sort_by(f64::total_cmp);
+    let aside = leans.len() / ASIDE;
+    leans.iter().rev().nth(aside).map_or(wall.rise(), |lean| wall.rise_leaning(*lean))
+}
+
+fn rings(slice: &Slice) -> impl Iterator<Item = &Ring> {
+    slice.islands.iter().flat_map(|island| island.rings())
+}
+
+/// Points at equal distances along a ring.
+fn evenly(ring: &Ring) -> Vec<DVec2> {
+    let line: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
+    let length = planar::polyline::length(&line);
+    (0..POINTS).filter_map(|k| planar::polyline::point_at(&line, length * k as f64 / POINTS as f64)).collect()
+}
+
+/// Distance from a point to the nearest edge, mm; 0 where there is none, as above the top of a wall.
+fn to_nearest(p: DVec2, edges: &[(DVec2, DVec2)]) -> f64 {
+    let squared = edges.iter().map(|&(a, b)| planar::polyline::distance_squared_to_segment(p, a, b));
+    squared.reduce(f64::min).unwrap_or_default().sqrt()
 }
 
 /// The layers of a wall of centre-lines.
 pub(super) fn of_curves(curves: &WallCurves, height: f64, wall: &WallBead) -> Vec<Slab> {
-    let step = wall.rise();
-    stacked(height, wall, |z| (curves.offset(z - step / 2.0, z + step / 2.0) / step).atan())
+    let half = wall.rise() / 2.0;
+    stacked(height, wall, |z| rise(wall, curves.leans(z - half, z + half).into_iter().map(|(_, lean)| lean)))
 }
 
-/// The first layer is as high as the first bead; each further one rises by h_n cos φ, until the top is nearest.
-fn stacked(top: f64, wall: &WallBead, lean: impl Fn(f64) -> f64) -> Vec<Slab> {
+/// How centre-lines lean within a layer: places, and the angle from the build direction there, radians.
+pub(super) fn leans(curves: &WallCurves, slab: Slab) -> Vec<(DVec2, f64)> {
+    curves.leans(slab.z - slab.height, slab.z)
+}
+
+/// The lean at the place nearest to a point, radians.
+pub(super) fn lean_at(leans: &[(DVec2, f64)], at: DVec2) -> f64 {
+    let nearest = leans.iter().min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
+    nearest.map_or(0.0, |(_, lean)| lean.min(MOST_LEAN))
+}
+
+/// The first layer is as high as the first bead; each further one rises as `rise` says of its middle, mm, until the top
+/// is nearest.
+fn stacked(top: f64, wall: &WallBead, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let mut slabs = vec![Slab { z: wall.height(), height: wall.height() }];
     let mut z = wall.height();
     while slabs.len() < MAX_LAYERS {
-        let height = wall.rise_leaning(lean(z + wall.rise() / 2.0).min(MOST_LEAN));
+        let height = rise(z + wall.rise() / 2.0);
         if z + height / 2.0 >= top {
             break;
         }

@@ -21,7 +21,7 @@ mod scan_lines;
 pub use preview::preview;
 pub use scan_lines::{ToFill, raster_angle};
 
-use crate::bead::wall::{WallBead, WallError};
+use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, Path, Strategy, coverage};
@@ -355,6 +355,21 @@ fn strategy_of<E>(profile: &Profile) -> Result<&'static dyn Strategy, PlanError<
     fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))
 }
 
+/// Where the layers of a part would lie, without planning them.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn slabs<'a>(
+    part: impl Into<PartRef<'a>>,
+    profile: &Profile,
+    task: &Task,
+) -> Result<Vec<Slab>, PlanError<Infallible>> {
+    match part.into() {
+        PartRef::Mesh(mesh) => slabs_of(mesh, profile, task),
+        PartRef::Curves(curves, height) => Ok(levels::of_curves(curves, height, &profile.single_wall()?)),
+    }
+}
+
 /// Where the layers of a mesh lie.
 fn slabs_of<E>(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
@@ -373,8 +388,7 @@ fn plan_curves<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let wall = WallBead::new(profile.bead.width, profile.bead.height)?;
-    let slabs = levels::of_curves(curves, height, &wall);
+    let slabs = levels::of_curves(curves, height, &profile.single_wall()?);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
         let fill = |index: usize| {
@@ -440,10 +454,10 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     let (settings, width) = (profile.fill_settings(index), profile.bead.width);
     let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
     let sections = curves.at(slab.z - slab.height / 2.0, settings.wall.chord_error);
-    let line = |section: &Section| Line {
-        nodes: section.points.iter().map(|&at| Node { at, radius: width / 2.0 }).collect(),
-        closed: section.closed,
-    };
+    let leans = levels::leans(curves, slab);
+    // A layer cuts a leaning wall aslant: it is wider there.
+    let node = |&at: &DVec2| Node { at, radius: width / 2.0 / levels::lean_at(&leans, at).cos() };
+    let line = |section: &Section| Line { nodes: section.points.iter().map(node).collect(), closed: section.closed };
     let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
     for stage in &mut fill.stages {
         drop_short(stage, profile, index, &mut slice.warnings);
@@ -551,14 +565,13 @@ fn passes(
     profile: &Profile,
     torch: &mut Option<DVec2>,
 ) -> Vec<Pass> {
-    let (nominal, law) = (profile.bead(), &profile.bead.law);
-    let pace = profile.process.deposition_speed * profile.pace_in(thickness);
+    let pace = profile.pace_in(layer, thickness);
     let lift = |path: Path| Pass {
         kind: path.kind,
         closed: path.closed,
         points: path.points.into_iter().map(|p| p.extend(top)).collect(),
         // The wire feed stays the same: a wider bead is laid more slowly.
-        pace: path.width.map(|width| pace * law.pace(&nominal, width)),
+        pace: path.width.map(&pace),
         width: path.width,
     };
     order::order(fills, &profile.order_settings(layer), torch).into_iter().map(lift).collect()

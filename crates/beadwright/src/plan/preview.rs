@@ -2,7 +2,6 @@
 
 use super::filled::{Filled, fill_planned};
 use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_of, strategy_of, weld_curves};
-use crate::bead::wall::WallBead;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
 use crate::profile::{Profile, RasterTurn};
@@ -25,7 +24,7 @@ pub fn preview(
     let filled = match part {
         Part::Mesh(import) => of_mesh(&import.mesh, profile, index, task)?,
         Part::Curves { curves, height, .. } => {
-            let slabs = levels::of_curves(curves, *height, &WallBead::new(profile.bead.width, profile.bead.height)?);
+            let slabs = levels::of_curves(curves, *height, &profile.single_wall()?);
             let index = index.min(slabs.len().saturating_sub(1));
             slabs.get(index).map(|slab| weld_curves(curves, index, *slab, profile))
         }

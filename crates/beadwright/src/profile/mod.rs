@@ -179,14 +179,35 @@ impl Profile {
             Foretell::Always => true,
             Foretell::Never => false,
         };
-        foretold.then(|| WallBead::new(self.bead.width, self.bead.height)).transpose()
+        foretold.then(|| self.single_wall()).transpose()
     }
 
-    /// Pace in a layer of that thickness (mm), as a multiple of the pace in a nominal layer: layers fitted evenly to a part
-    /// get the metal that fills them.
-    pub fn pace_in(&self, height: f64) -> f64 {
-        let fitted = self.layers.fit == LayerFit::Even && self.wall_bead().is_ok_and(|wall| wall.is_none());
-        if fitted && height > 0.0 { self.layers.height / height } else { 1.0 }
+    /// The wall as thick as the bead is wide, one bead a layer, of the metal that a bead holds.
+    ///
+    /// # Errors
+    /// [`WallError`] for a bead from which no wall can be predicted.
+    pub fn single_wall(&self) -> Result<WallBead, WallError> {
+        WallBead::for_wall(self.bead.width, self.bead().area())
+    }
+
+    /// What layer `index` (from 0) of that thickness (mm) adds to a wall, mm; `None` where walls are not foretold. The
+    /// first is thicker than what it adds: the bead on the substrate is a cap, higher than the others but of their metal.
+    pub fn wall_rise(&self, index: usize, height: f64) -> Option<f64> {
+        let wall = self.wall_bead().ok().flatten()?;
+        Some(if index == 0 { wall.rise() } else { height })
+    }
+
+    /// Pace, mm/s, of a bead by its width, mm, in layer `index` (from 0) of that thickness (mm). In a wall the bead fills
+    /// its width over what the layer adds. Elsewhere the law of the bead holds, and layers fitted evenly to a part get
+    /// the metal that fills them.
+    pub fn pace_in(&self, index: usize, height: f64) -> impl Fn(f64) -> f64 + '_ {
+        let (bead, nominal, rise) = (self.bead(), self.process.deposition_speed, self.wall_rise(index, height));
+        let fitted = self.layers.fit == LayerFit::Even && height > 0.0;
+        let thinner = if fitted { self.layers.height / height } else { 1.0 };
+        move |width| match rise {
+            Some(rise) => nominal * bead.area() / (width * rise),
+            None => nominal * thinner * self.bead.law.pace(&bead, width),
+        }
     }
 
     /// Distance between neighbouring centre-lines, mm.
