@@ -6,8 +6,8 @@ use crate::limit::section;
 section! {
     /// Thresholds of the strategy `hybrid` (Zhao et al. 2023); every key has a default.
     HybridSection "hybrid" {
-        /// Whether to follow the paper to the letter; default false. Joins are then mitred, corner pockets from half a bead
-        /// width on are kept, and `scan_along = "auto"` means the short side.
+        /// Whether to follow the paper to the letter; default false. Corner pockets from half a bead width on are then
+        /// kept, and `scan_along = "auto"` means the short side.
         literal: bool = false;
         /// How far a contour is moved inwards to find its pockets, in stepovers; default 1.5.
         pocket_depth: f64 = 1.5, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead beside them";
@@ -46,22 +46,20 @@ section! {
     }
 }
 
-/// The longest corner pocket that the paper's filter drops, in bead widths: its figures need this much.
+/// Longer corner pockets are never dropped by the paper's filter, in bead widths: it takes 12 arc starts on its propeller
+/// with this, and 32 with three.
 const LITERAL_POCKET: f64 = 0.5;
 
 impl HybridSection {
     /// In mm, for beads of width `w` that lie `d` apart.
     pub(super) fn settings(&self, w: f64, d: f64) -> HybridSettings {
+        let pocket = if self.literal { self.min_pocket_length.min(LITERAL_POCKET) } else { self.min_pocket_length };
         HybridSettings {
             literal: self.literal,
             pocket_depth: self.pocket_depth * d,
             tolerance: self.tolerance * d,
             min_pocket_area: self.min_pocket_area * w * w,
-            min_pocket_length: if self.literal {
-                self.min_pocket_length.min(LITERAL_POCKET)
-            } else {
-                self.min_pocket_length
-            } * w,
+            min_pocket_length: pocket * w,
             skeleton_gap: self.skeleton_gap * d,
             least_gap: self.least_gap * d,
             region_width: self.region_width * d,

@@ -11,10 +11,15 @@
 //! | regions filled | [`skeleton`] | 1.2 |
 //! | widths that follow the room (ours) | [`adapt`] | |
 //!
+//! Joins are round in both modes. The paper has square corners come back whole from in and out, as mitred joins do; with
+//! round ones their pocket is 0.44 w long and its filter drops it. Mitred joins of any limit break its propeller into 16 to
+//! 24 passes a layer instead of 12.
+//!
 //! The default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket is
 //! not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from
 //! the remaining contours, since it fills what lies outside their neighbourhood; narrow regions get a few beads along
-//! their medial axis instead of short strokes across; the ends of cut contours reach into the fill.
+//! their medial axis instead of short strokes across; the ends of cut contours reach into the fill, and beads are linked to contours that end near them. It never takes
+//! more passes than contours alone: the smallest regions are left to the contours.
 
 pub mod adapt;
 pub mod chain;
