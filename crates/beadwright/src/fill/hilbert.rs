@@ -94,6 +94,9 @@ struct End {
     along: f64,
 }
 
+/// The end to which another is linked (piece, whether its last point), and the way there.
+type Link = (usize, bool, Vec<DVec2>);
+
 /// Joins pieces of lines, whose ends lie on the boundary of a region, along it; between the two ends that a link joins
 /// there is no third.
 fn joined(pieces: Vec<Vec<DVec2>>, region: &Region, longest: f64) -> Vec<Vec<DVec2>> {
@@ -101,7 +104,7 @@ fn joined(pieces: Vec<Vec<DVec2>>, region: &Region, longest: f64) -> Vec<Vec<DVe
     let mut links = links(&pieces, &rings, longest);
     links.sort_by(|a, b| a.2.total_cmp(&b.2));
     // What each end is linked to, with the way there.
-    let mut linked: Vec<[Option<(usize, bool, Vec<DVec2>)>; 2]> = vec![[None, None]; pieces.len()];
+    let mut linked: Vec<[Option<Link>; 2]> = vec![[None, None]; pieces.len()];
     let mut group: Vec<usize> = (0..pieces.len()).collect();
     for (from, to, length) in links {
         let taken = |end: &End| linked[end.piece][usize::from(end.last)].is_some();

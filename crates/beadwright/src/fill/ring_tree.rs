@@ -11,7 +11,7 @@ use glam::DVec2;
 use planar::nearest::foot;
 use planar::{Polygon, Region, Ring};
 use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// How the rings of the first chain are joined; detours always lead back out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -177,6 +177,9 @@ struct RingTree {
 /// Another ring, and pairs of places that face each other: on the one and on the other.
 type Facing = (usize, Vec<[DVec2; 2]>);
 
+/// For every other ring the places that face each other, with their distance, mm.
+type Found = BTreeMap<usize, Vec<(f64, [DVec2; 2])>>;
+
 /// A ring that may be hung: whether it lies on the level of the other, when it was found, its number, and on which ring it
 /// hangs, with its place among the neighbours of that.
 type Waiting = (bool, usize, usize, Option<(usize, usize)>);
@@ -226,13 +229,12 @@ impl RingTree {
         let d = self.stepover;
         let mut near = LineIndex::new(ACROSS * d);
         self.loops.iter().enumerate().for_each(|(number, ring)| near.add_line(number, &ring.closed()));
-        let mut found: Vec<std::collections::BTreeMap<usize, Vec<(f64, [DVec2; 2])>>> =
-            vec![Default::default(); self.loops.len()];
+        let mut found = vec![Found::new(); self.loops.len()];
         for (number, ring) in self.loops.iter().enumerate() {
             let samples = (ring.length() / (SAMPLE * d)).ceil().max(8.0) as usize;
             for k in 0..samples {
                 let here = ring.place(ring.length() * k as f64 / samples as f64);
-                let mut feet = std::collections::BTreeMap::new();
+                let mut feet = BTreeMap::new();
                 for (other, _, a, b) in near.near(here).filter(|piece| piece.0 != number) {
                     let levels = self.loops[other].level.abs_diff(ring.level);
                     let foot = foot((a, b), here);

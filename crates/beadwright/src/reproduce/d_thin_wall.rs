@@ -5,6 +5,7 @@
 //! has to be solved backwards for each part, from its layers and its height. So these two agree by construction, and
 //! only what was not used for that is judged.
 
+use super::goal::{self, Goal};
 use super::{ReproduceError, Reproduced};
 use crate::bead::wall::WallBead;
 use crate::bead::wire_area;
@@ -113,19 +114,6 @@ pub struct Figures {
     pub straight: Frame,
 }
 
-/// Something that can be reached or not.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Goal {
-    /// What, and under which conditions.
-    pub what: String,
-    /// Our figure; the worse one of all turns.
-    pub ours: String,
-    /// The paper's figure.
-    pub paper: String,
-    /// Whether ours is good enough.
-    pub reached: bool,
-}
-
 /// Runs the experiment.
 ///
 /// # Errors
@@ -140,8 +128,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         "Li et al.: a frame 田, a blade, a gourd and a pot, each wall one bead thick. What is reached is judged by the worse \
          of two figures: the part as it is, and turned by 33° about the vertical. All below that is the part as it is.",
     );
-    page.heading("Reached or not");
-    page.table(&["what", "ours", "the paper", ""], &goals.iter().map(goal_row).collect::<Vec<_>>());
+    goal::tabulate(&mut page, &goals);
     page.heading("What the paper prints, and the bead it asks for");
     page.text(
         "The paper prints no bead and no wire feed. B₁, h₁, h_n and the wire feed below are solved backwards from layers \
@@ -337,12 +324,6 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
     let worst = |value: &dyn Fn(&Figures) -> f64| all.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
     let least = |value: &dyn Fn(&Figures) -> f64| -worst(&|f| -value(f));
     let built = || all.iter().flat_map(|figures| &figures.built);
-    let goal = |what: &str, ours: String, paper: &str, reached: bool| Goal {
-        what: what.to_owned(),
-        ours,
-        paper: paper.to_owned(),
-        reached,
-    };
     let starts = worst(&|f| f.planned.starts as f64);
     let high = worst(&|f| f.planned.heights.iter().map(|h| h.high).fold(0.0, f64::max));
     let piled = least(&|f| f.straight.heights.iter().map(|h| h.high).fold(f64::INFINITY, f64::min));
@@ -366,36 +347,36 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
     let (longest, layers) =
         (alike.iter().map(|a| a.2).fold(0.0, f64::max), alike.first().map_or((0, 0), |a| (a.0, a.1)));
     vec![
-        goal("frame: arc starts a layer", format!("{starts}"), "2, at first 3", starts <= 2.0),
-        goal(
+        Goal::new("frame: arc starts a layer", format!("{starts}"), "2, at first 3", starts <= 2.0),
+        Goal::new(
             "frame: highest point after 8 and 18 layers over the mean, at most 1.25",
             format!("{high:.2}"),
             "25.6 mm of 26",
             high <= 1.25,
         ),
-        goal(
+        Goal::new(
             "frame, straight through: highest point over the mean, well above 1.25",
             format!("{piled:.2}"),
             "given up after 8 layers",
             piled >= 1.5,
         ),
-        goal("gourd: layers with the pot's bead, 168 ± 3", gourd, "168", gourd_fits),
-        goal("pot: layers with the gourd's bead, 66 ± 1", pot, "66", pot_fits),
-        goal("blade: layers with the pot's wire feed, set by the same current, 74 ± 1", blade, "74", blade_fits),
-        goal(
+        Goal::new("gourd: layers with the pot's bead, 168 ± 3", gourd, "168", gourd_fits),
+        Goal::new("pot: layers with the gourd's bead, 66 ± 1", pot, "66", pot_fits),
+        Goal::new("blade: layers with the pot's wire feed, set by the same current, 74 ± 1", blade, "74", blade_fits),
+        Goal::new(
             "four parts: metal of the wire over the part's volume, 0.98 to 1.02",
             format!("{:.3} to {:.3}", metal.0, metal.1),
             "not told",
             metal.0 >= 0.98 && metal.1 <= 1.02,
         ),
-        goal("four parts: findings of wire-balance", unbalanced.to_string(), "not told", unbalanced == 0),
-        goal(
+        Goal::new("four parts: findings of wire-balance", unbalanced.to_string(), "not told", unbalanced == 0),
+        Goal::new(
             "four parts: covered, at least 99 %",
             format!("{:.2} %", 100.0 * covered.0),
             "not told",
             covered.0 >= 0.99,
         ),
-        goal(
+        Goal::new(
             "blade from STL and from IGES: same layers, lengths within 5 %",
             format!("{} and {} layers, {:+.1} %", layers.0, layers.1, 100.0 * (longest - 1.0)),
             "74 layers, from IGES",
@@ -406,20 +387,6 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
 
 /// Lengths of paths from solid and curves may differ by this: the path of a solid ends half a bead before its end.
 const LIKE: f64 = 0.05;
-
-impl Goal {
-    fn verdict(&self) -> &'static str {
-        if self.reached { "reached" } else { "not reached" }
-    }
-
-    fn line(&self) -> String {
-        format!("{:<11}  {}: {} (paper: {})", self.verdict(), self.what, self.ours, self.paper)
-    }
-}
-
-fn goal_row(goal: &Goal) -> Row {
-    [goal.what.as_str(), &goal.ours, &goal.paper, goal.verdict()].map(|text| (text.to_owned(), false)).to_vec()
-}
 
 const BEAD_HEAD: [&str; 11] = [
     "part",

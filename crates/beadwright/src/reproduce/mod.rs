@@ -4,6 +4,7 @@ pub mod a_skeleton_hybrid;
 pub mod b_fdm_order;
 pub mod c_compound;
 pub mod d_thin_wall;
+pub mod goal;
 
 use crate::report::sheet::Sheet;
 use crate::task::Task;

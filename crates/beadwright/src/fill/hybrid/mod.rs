@@ -18,8 +18,9 @@
 //! The default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket is
 //! not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from
 //! the remaining contours, since it fills what lies outside their neighbourhood; narrow regions get a few beads along
-//! their medial axis instead of short strokes across; the ends of cut contours reach into the fill, and beads are linked to contours that end near them. It never takes
-//! more passes than contours alone: the smallest regions are left to the contours.
+//! their medial axis instead of short strokes across; the ends of cut contours reach into the fill, and beads are linked to
+//! contours that end near them. It never takes more passes than contours alone: the smallest regions are left to the
+//! contours.
 
 pub mod adapt;
 pub mod chain;
