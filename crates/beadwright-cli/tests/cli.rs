@@ -64,7 +64,7 @@ fn a_rapid_program_is_written_and_simulated() {
         let plan = ["plan", "cross.stl", "-p", "cmt-steel-abb", "--post", "rapid", "-o", variant, "--set", setting];
         ok(folder.path(), &[&plan[..], &["--no-deposit"]].concat());
         let written = files(&folder.path().join(variant));
-        assert!(["cross.mod", "cross.pgf", "cross_L014.mod"].iter().all(|name| written.contains_key(*name)));
+        assert!(["cross.mod", "cross.pgf", "cross_L012.mod"].iter().all(|name| written.contains_key(*name)));
         let metrics: serde_json::Value = serde_json::from_slice(&written["metrics.json"]).unwrap();
         let program = format!("{variant}/cross.mod");
         let json = ok(folder.path(), &["simulate", &program, "-p", "cmt-steel-abb", "--grid", "1", "--json"]);
@@ -151,7 +151,7 @@ fn wrong_usage_and_wrong_values_are_told_apart() {
     refused(folder.path(), &["plan", "cross.stl", "--units", "ell"], 2);
     for (arguments, part) in [
         (&["-p", "cmt-al2319-kuke"][..], "Did you mean \"cmt-al2319-kuka\"?"),
-        (&["--strategy", "spiral"], "raster, zigzag, contour, compound"),
+        (&["--strategy", "serpentine"], "raster, zigzag, contour, compound"),
         (&["--post", "kawasaki"], "The posts are krl, gcode, marlin, rapid, fanuc, inform, urscript."),
         (&["--post", "fanuc"], "cmt-steel-robots"),
         (&["--post", "rapid"], "cmt-steel-abb"),

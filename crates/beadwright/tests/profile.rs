@@ -346,8 +346,8 @@ fn impossible_counts_are_refused_with_line_and_key() {
 
 #[test]
 fn impossible_words_are_refused_with_line_and_key() {
-    impossible(KUKA, "fill.strategy", "spiral");
-    check(KUKA, "\"loop\"", "\"spiral\"", &["the strategies are loop, raster, zigzag, contour, compound"]);
+    impossible(KUKA, "fill.strategy", "serpentine");
+    check(KUKA, "\"loop\"", "\"serpentine\"", &["the strategies are loop, raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
     check(
         KUKA,

@@ -37,7 +37,7 @@ use crate::bead::{Bead, Law, Section};
 use crate::pass::Along;
 use glam::DVec2;
 use line::Line;
-use planar::{Bounds, Join, Polygon, Region};
+use planar::{Bounds, FillRule, Join, Polygon, Region};
 use room::Room;
 
 /// One loop per island.
@@ -99,8 +99,6 @@ pub struct LoopSettings<'a> {
 
 /// Points per stepover on lines that are being relaxed.
 const POINTS_PER_STEPOVER: f64 = 7.0;
-/// Rings by themselves keep this fraction of half the narrowest bead from the outline.
-const CLOSEST: f64 = 0.9;
 /// Coordinates are rounded to this, mm, so that an island is filled alike wherever it lies.
 const GRAIN_MM: f64 = 1e-6;
 
@@ -131,27 +129,32 @@ pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
 }
 
 /// The rings of an island by themselves, level by level from the outline inwards, each as wide as its cell. They stay where
-/// two of the narrowest beads have room side by side.
+/// two of the narrowest beads have room side by side, and half of one from the outline.
 pub(super) fn apart(island: &Polygon, settings: &FillSettings) -> Vec<Vec<Path>> {
-    let mut levels: Vec<Vec<Path>> = Vec::new();
     let (allowance, roomy) = (settings.machining_allowance, settings.double() / 2.0);
+    let mut levels: Vec<Vec<Path>> = Vec::new();
     for part in island.offset(allowance - roomy, Join::ROUND).offset(roomy, Join::ROUND).polygons() {
         let (part, middle) = about_origin(part);
         let settings = LoopSettings::of(settings, middle);
-        let room = Room::of(&part, &settings);
-        let rings = rings_of(&room, &settings);
-        let mut lines: Vec<Line> = rings.iter().map(|ring| Line::ring(ring.points.clone())).collect();
-        cells::set_widths(&mut lines, &room, &settings);
-        for (ring, line) in rings.iter().zip(&mut lines) {
-            line.fit_inside(&room, &settings);
-            // What is left of a ring in a corner may be tighter than a bead can turn.
-            let least = CLOSEST * settings.width_limits.0 / 2.0;
-            if line.points.iter().any(|p| room.at(*p) < least) {
-                continue;
-            }
+        let (room, inner) = (Room::of(&part, &settings), part.offset(-settings.width_limits.0 / 2.0, Join::ROUND));
+        let mut rings: Vec<Vec<planar::Ring>> = Vec::new();
+        for ring in rings_of(&room, &settings) {
             let level = ring.level as usize;
-            levels.resize_with(levels.len().max(level), Vec::new);
-            levels[level - 1].push(pass(finish::finished(line, &room, &settings), middle));
+            rings.resize_with(rings.len().max(level), Vec::new);
+            rings[level - 1].push(planar::Ring::new(ring.points));
+        }
+        let clipped = rings.iter().map(|rings| Region::from_rings(rings, FillRule::EvenOdd).intersection(&inner));
+        let step = settings.stepover / POINTS_PER_STEPOVER;
+        let line = |ring: &planar::Ring| Line::ring(rings::resampled(ring.points(), step));
+        let placed = clipped
+            .enumerate()
+            .flat_map(|(level, region)| region.rings().map(|r| (level, line(r))).collect::<Vec<_>>());
+        let (numbers, mut lines): (Vec<usize>, Vec<Line>) = placed.unzip();
+        cells::set_widths(&mut lines, &room, &settings);
+        for (level, mut line) in numbers.into_iter().zip(lines) {
+            line.fit_inside(&room, &settings);
+            levels.resize_with(levels.len().max(level + 1), Vec::new);
+            levels[level].push(pass(finish::finished(&line, &room, &settings), middle));
         }
     }
     levels
