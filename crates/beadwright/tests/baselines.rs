@@ -7,6 +7,7 @@ mod families;
 use beadwright::example;
 use beadwright::fill::{self, Fill, Path, sound};
 use beadwright::glam::DVec3;
+use beadwright::plan;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::slice::Slicer;
 use beadwright::task::Task;
@@ -172,5 +173,20 @@ fn baselines_seldom_need_to_be_replaced() {
             }
         }
         assert!(50 * faulty.len() <= islands, "{strategy}: {} of {islands}: {faulty:?}", faulty.len());
+    }
+}
+
+#[test]
+fn contours_in_place_of_walls_bring_the_metal_of_the_part() {
+    // Layers of walls are thinner than those of beads side by side.
+    for (name, turn) in [("propeller", 0.0), ("gear", 17.0)] {
+        let mut mesh = example::find(name).unwrap().mesh();
+        mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
+        let filled = |strategy: &str| {
+            let plan = plan::plan(name, &mesh, &profile_by("cmt-al2319-kuka", strategy), &Task::new()).unwrap();
+            plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.part_volume_mm3
+        };
+        let (wall, contour) = (filled("wall"), filled("contour"));
+        assert!((wall / contour - 1.0).abs() < 0.1, "{name}: {wall}, contours {contour}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Check, Finding, Subject};
 use crate::bead::MassBalance;
-use crate::pass::Segment;
+use crate::pass::{PassKind, Segment};
 use crate::process::Follow;
 
 pub(super) const CHECK: Check = Check {
@@ -19,9 +19,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (process, balance) = (&profile.process, profile.mass_balance());
     let nominal = balance.warning().map(|text| Finding::of_plan(&CHECK, text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
-        let pace = profile.pace_in(layer.index, layer.height);
+        let pace = profile.pace_in(layer.index, layer.height, pass.kind);
         // A wall takes the wire that fills its width over the rise of the layer.
-        let rise = profile.wall_rise(layer.index, layer.height);
+        let rise = profile.wall_rise(layer.index, layer.height).filter(|_| pass.kind == PassKind::Wall);
         let fitting = |width: f64| rise.map_or_else(|| pace(width), |rise| balance.wire / (width * rise));
         let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
         let s = pass.segments().find(off)?;

@@ -565,13 +565,12 @@ fn passes(
     profile: &Profile,
     torch: &mut Option<DVec2>,
 ) -> Vec<Pass> {
-    let pace = profile.pace_in(layer, thickness);
     let lift = |path: Path| Pass {
         kind: path.kind,
         closed: path.closed,
         points: path.points.into_iter().map(|p| p.extend(top)).collect(),
         // The wire feed stays the same: a wider bead is laid more slowly.
-        pace: path.width.map(&pace),
+        pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
         width: path.width,
     };
     order::order(fills, &profile.order_settings(layer), torch).into_iter().map(lift).collect()

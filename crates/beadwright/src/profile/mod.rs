@@ -36,6 +36,7 @@ use crate::fill::FillSettings;
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
+use crate::pass::PassKind;
 use crate::process::{Process, StartStop, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer};
 use crate::slice::{LayerFit, SliceOptions};
@@ -198,13 +199,18 @@ impl Profile {
     }
 
     /// Pace, mm/s, of a bead by its width, mm, in layer `index` (from 0) of that thickness (mm). In a wall the bead fills
-    /// its width over what the layer adds. Elsewhere the law of the bead holds, and layers fitted evenly to a part get
-    /// the metal that fills them.
-    pub fn pace_in(&self, index: usize, height: f64) -> impl Fn(f64) -> f64 + '_ {
+    /// its width over what the layer adds. Elsewhere the law of the bead holds, and layers fitted evenly to a part, or to
+    /// its walls, get the metal that fills them.
+    pub fn pace_in(&self, index: usize, height: f64, kind: PassKind) -> impl Fn(f64) -> f64 + '_ {
         let (bead, nominal, rise) = (self.bead(), self.process.deposition_speed, self.wall_rise(index, height));
         let fitted = self.layers.fit == LayerFit::Even && height > 0.0;
-        let thinner = if fitted { self.layers.height / height } else { 1.0 };
-        move |width| match rise {
+        let thinner = match rise {
+            Some(rise) => bead.rise(self.stepover()) / rise,
+            None if fitted => self.layers.height / height,
+            None => 1.0,
+        };
+        let wall = rise.filter(|_| kind == PassKind::Wall);
+        move |width| match wall {
             Some(rise) => nominal * bead.area() / (width * rise),
             None => nominal * thinner * self.bead.law.pace(&bead, width),
         }
