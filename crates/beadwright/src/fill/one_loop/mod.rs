@@ -154,10 +154,25 @@ pub(super) fn apart(island: &Polygon, settings: &FillSettings) -> Vec<Vec<Path>>
         for (level, mut line) in numbers.into_iter().zip(lines) {
             line.fit_inside(&room, &settings);
             levels.resize_with(levels.len().max(level + 1), Vec::new);
-            levels[level].push(pass(finish::finished(&line, &room, &settings), middle));
+            let mut line = finish::finished(&line, &room, &settings);
+            narrow(&mut line, &part);
+            levels[level].push(pass(line, middle));
         }
     }
     levels
+}
+
+/// Narrows the pieces of a line that would reach beyond an outline.
+fn narrow(line: &mut Line, outline: &Polygon) {
+    let edges: Vec<(DVec2, DVec2)> = outline.rings().flat_map(planar::Ring::edges).collect();
+    let room = |p: &DVec2| {
+        let squares = edges.iter().map(|(a, b)| planar::polyline::distance_squared_to_segment(*p, *a, *b));
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    };
+    let rooms: Vec<f64> = line.points.iter().map(room).collect();
+    for i in 0..line.count() {
+        line.widths[i] = line.widths[i].min(2.0 * rooms[i].min(rooms[line.behind(i)]));
+    }
 }
 
 /// The polygon moved so that the middle of its bounding box is the origin, and where that middle was.
