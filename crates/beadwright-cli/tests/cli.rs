@@ -289,7 +289,7 @@ fn strategies_are_compared_and_papers_reproduced() {
     assert!(page.contains("layer 4, z 8.00 mm") && !page.contains("layer 3,"));
     assert!(refused(folder.path(), &["compare", "star.stl", "--layers", "0"], 2).contains("counted from 1"));
     let said = ok(folder.path(), &["reproduce", "c-compound", "-o", "papers"]);
-    assert!(said.contains("void at 0.738 w over"));
+    assert!(said.contains("void at 0.738 w over void at 0.591 w, at least 5: 30.4"));
     assert!(folder.path().join("papers/reproduce-c-compound.html").is_file());
     let said = ok(folder.path(), &["reproduce", "a-skeleton-hybrid", "-o", "papers"]);
     assert!(said.contains("10.5 mm/s fits"), "{said}");

@@ -1,8 +1,10 @@
-//! The common table of all strategies: five parts, three angles, all layers, planned as `beadwright plan` does.
+//! The common table of all strategies: five parts, three angles, all layers, planned as `beadwright plan` does; and a page
+//! for each strategy with its picture and its figures.
 //!
-//! `cargo bench -p beadwright --bench strategies` writes it into docs/strategies.md between the two marks there, with the
-//! worst of the three angles in each cell. `-- --parts star --strategies mat` prints only these and writes nothing. plate_holes.stl is
-//! read from `BEADWRIGHT_MODELS` (default ../shared/models).
+//! `cargo bench -p beadwright --bench strategies` writes the table into docs/strategies.md, the figures into the pages of
+//! docs/strategies, both between the two marks there, and the pictures into docs/pictures/strategies. Each cell has the
+//! worst of the three angles. `-- --parts star --strategies mat` prints only these and writes nothing, `-- --pictures`
+//! draws only the pictures. plate_holes.stl is read from `BEADWRIGHT_MODELS` (default ../shared/models).
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use beadwright::fill::STRATEGIES;
@@ -10,49 +12,93 @@ use beadwright::glam::DVec3;
 use beadwright::model::{self, Mesh};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
-use beadwright::{compare, example, plan};
+use beadwright::{compare, example, plan, report};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const PARTS: [(&str, f64); 5] =
     [("cross", 1.0), ("star", 1.0), ("gear", 1.0), ("propeller", 1.0), ("plate_holes.stl", 0.7)];
 const TURNS: [f64; 3] = [0.0, 10.0, 37.0];
-const MARKS: [&str; 2] = ["<!-- table -->\n", "<!-- end of table -->\n"];
+const HEAD: &str = "void % | worst layer | overfill % | arc starts | bead m | turns | time min | refilled | left out |";
+/// Index of the layer that is drawn, from 0.
+const DRAWN: usize = 4;
 
 fn main() {
     let words: Vec<String> = std::env::args().collect();
     let given = |name: &str| words.iter().position(|word| word == name).and_then(|at| words.get(at + 1));
-    let chosen = given("--parts");
+    let chosen = |list: Option<&String>, name: &str| list.is_none_or(|list| list.split(',').any(|one| one == name));
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    let mut tables = String::new();
-    for (name, scale) in
-        PARTS.into_iter().filter(|part| chosen.is_none_or(|chosen| chosen.split(',').any(|c| c == part.0)))
-    {
+    if words.iter().any(|word| word == "--pictures") {
+        return pictures(&profile);
+    }
+    let mut rows: Vec<(String, &str, String)> = Vec::new();
+    for (name, scale) in PARTS.into_iter().filter(|part| chosen(given("--parts"), part.0)) {
         let mesh = mesh(name);
-        let head = "void % | worst layer | overfill % | arc starts | bead m | turns | time min | refilled | left out |";
-        let times = if scale == 1.0 { String::new() } else { format!(" × {scale}") };
-        writeln!(tables, "\n| {name}{times} | {head}\n| --- |{}", " ---: |".repeat(9)).unwrap();
-        for strategy in STRATEGIES
-            .into_iter()
-            .filter(|s| given("--strategies").is_none_or(|list| list.split(',').any(|name| name == s.name())))
-        {
-            let worst = TURNS.map(|turn| row(&mesh, scale, turn, strategy.name(), &profile)).into_iter();
+        let part = if scale == 1.0 { name.to_owned() } else { format!("{name} × {scale}") };
+        for strategy in STRATEGIES.map(|s| s.name()).into_iter().filter(|s| chosen(given("--strategies"), s)) {
+            let worst = TURNS.map(|turn| row(&mesh, scale, turn, strategy, &profile)).into_iter();
             let worst = worst.reduce(|a, b| std::array::from_fn(|k| a[k].max(b[k]))).unwrap();
             let [void, layer, over, starts, metres, turns, minutes, refilled, lost] = worst;
-            let line = format!(
-                "| {} | {void:.2} | {layer:.2} | {over:.2} | {starts:.1} | {metres:.2} | {turns:.0} | {minutes:.1} | {refilled:.0} | {lost:.0} |",
-                strategy.name()
+            let cells = format!(
+                "{void:.2} | {layer:.2} | {over:.2} | {starts:.1} | {metres:.2} | {turns:.0} | {minutes:.1} | {refilled:.0} | {lost:.0} |"
             );
-            println!("{name} {line}");
-            writeln!(tables, "{line}").unwrap();
+            println!("{part} | {strategy} | {cells}");
+            rows.push((part.clone(), strategy, cells));
         }
     }
-    if chosen.or(given("--strategies")).is_none() {
-        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/strategies.md");
-        let text = std::fs::read_to_string(&page).unwrap();
-        let (before, rest) = text.split_once(MARKS[0]).unwrap();
-        let (_, behind) = rest.split_once(MARKS[1]).unwrap();
-        std::fs::write(&page, format!("{before}{}{tables}{}{behind}", MARKS[0], MARKS[1])).unwrap();
+    if given("--parts").or(given("--strategies")).is_none() {
+        write(&rows);
+        pictures(&profile);
+    }
+}
+
+/// Writes the common table, and the figures of each strategy into its page.
+fn write(rows: &[(String, &str, String)]) {
+    let mut common = String::new();
+    for of_part in rows.chunk_by(|a, b| a.0 == b.0) {
+        let lines: Vec<_> = of_part
+            .iter()
+            .map(|(_, strategy, cells)| (format!("[{strategy}](strategies/{strategy}.md)"), cells))
+            .collect();
+        common += &table(&of_part[0].0, lines.iter().map(|(name, cells)| (name.as_str(), cells.as_str())));
+    }
+    fill("strategies.md", "table", &common);
+    for strategy in STRATEGIES.map(|s| s.name()) {
+        let own = rows.iter().filter(|row| row.1 == strategy);
+        let figures = table("part", own.map(|(part, _, cells)| (part.as_str(), cells.as_str())));
+        fill(&format!("strategies/{strategy}.md"), "figures", &figures);
+    }
+}
+
+fn table<'a>(corner: &str, rows: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    let mut table = format!("\n| {corner} | {HEAD}\n| --- |{}\n", " ---: |".repeat(9));
+    rows.for_each(|(name, cells)| writeln!(table, "| {name} | {cells}").unwrap());
+    table
+}
+
+fn docs(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
+}
+
+/// Puts text between the marks of a page.
+fn fill(page: &str, mark: &str, text: &str) {
+    let [begin, end] = [format!("<!-- {mark} -->\n"), format!("<!-- end of {mark} -->\n")];
+    let old = std::fs::read_to_string(docs(page)).unwrap();
+    let (before, rest) = old.split_once(&begin).unwrap();
+    let (_, behind) = rest.split_once(&end).unwrap();
+    std::fs::write(docs(page), format!("{before}{begin}{text}{end}{behind}")).unwrap();
+}
+
+/// A layer of the gear by each strategy, of the frame by `wall`.
+fn pictures(profile: &Profile) {
+    for strategy in STRATEGIES.map(|s| s.name()) {
+        let part = if strategy == "wall" { "tian" } else { "gear" };
+        let mut profile = profile.clone();
+        profile.fill.strategy = strategy.to_owned();
+        let plan = plan::plan(part, &mesh(part), &profile, &Task::new()).unwrap();
+        let title = format!("{strategy}: layer {} of the example {part}", DRAWN + 1);
+        let picture = report::svg::layer(&plan.layers[DRAWN], &title);
+        std::fs::write(docs(&format!("pictures/strategies/{strategy}.svg")), picture).unwrap();
     }
 }
 

@@ -31,12 +31,12 @@ impl Goal {
     }
 
     fn row(&self) -> Row {
-        [self.what.as_str(), &self.ours, &self.paper, self.verdict()].map(|text| (text.to_owned(), false)).to_vec()
+        [self.what.as_str(), self.verdict(), &self.ours, &self.paper].map(|text| (text.to_owned(), false)).to_vec()
     }
 }
 
 /// Puts goals on a page as a table.
 pub fn tabulate(page: &mut Sheet, goals: &[Goal]) {
     page.heading("Reached or not");
-    page.table(&["what", "ours", "the paper", ""], &goals.iter().map(Goal::row).collect::<Vec<_>>());
+    page.table(&["what", "", "ours", "the paper"], &goals.iter().map(Goal::row).collect::<Vec<_>>());
 }

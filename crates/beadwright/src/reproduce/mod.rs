@@ -43,7 +43,7 @@ pub const PAPERS: [Paper; 4] = [
     },
     Paper {
         name: "c-compound",
-        about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figure 7)",
+        about: "Liu et al. 2022: zigzag with a contour, and the distance between the two (figures 7 and 8), at twelve angles",
         run: c_compound::run,
     },
     Paper {
