@@ -96,11 +96,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut settings = arguments.set.clone();
     settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
     settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
-    let profile = profile::load(&arguments.profile, &settings)?;
+    let mut profile = profile::load(&arguments.profile, &settings)?;
     let part = arguments.model.part();
-    let names = if arguments.post.is_empty() { &profile.posts } else { &arguments.post };
+    if !arguments.post.is_empty() {
+        profile.posts.clone_from(&arguments.post);
+    }
     let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let programs = profile::programs(names, &programs.job(&part))?;
+    let programs = profile::programs(&profile.posts, &programs.job(&part))?;
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;

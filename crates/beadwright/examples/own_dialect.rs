@@ -16,17 +16,18 @@ impl Writer for Table {
     }
 
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
-        let row = |instruction: &Instruction| match instruction {
-            Instruction::Travel { to } => format!("{},{:.3},{:.3},{:.3},\n", program.index + 1, to.x, to.y, to.z),
-            Instruction::Weld { to, speed, .. } => {
-                format!("{},{:.3},{:.3},{:.3},{speed:.3}\n", program.index + 1, to.x, to.y, to.z)
-            }
-            _ => String::new(),
+        let row = |instruction: &Instruction| {
+            let Some(to) = instruction.target() else { return String::new() };
+            let speed = match instruction {
+                Instruction::Weld { speed, .. } => format!("{speed:.3}"),
+                _ => String::new(),
+            };
+            format!("{},{:.3},{:.3},{:.3},{speed}\n", program.index + 1, to.x, to.y, to.z)
         };
         vec![Chunk::new("moves.csv", program.instructions.iter().map(row).collect::<String>())]
     }
 
-    fn end(&mut self, _leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         Vec::new()
     }
 }

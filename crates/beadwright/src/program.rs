@@ -24,11 +24,22 @@ pub const RESOLUTION_MM: f64 = 1e-3;
 /// No two points of a pass lie closer together than this, mm.
 pub const MIN_MOVE_MM: f64 = 0.01;
 
-/// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next `Travel`.
+/// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next move with the arc off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instruction {
+    /// The first move, from wherever the machine stands to a point above the part: of the joints, not along a line.
+    Approach {
+        /// Tool point, mm.
+        to: DVec3,
+    },
     /// A straight move with the arc off, at travel speed; ends with an exact stop.
     Travel {
+        /// Tool point, mm.
+        to: DVec3,
+    },
+    /// A straight move up from the end of a pass, at travel speed; ends with an exact stop. A program may be cut behind
+    /// it.
+    Retract {
         /// Tool point, mm.
         to: DVec3,
     },
@@ -75,6 +86,16 @@ pub enum Instruction {
     },
 }
 
+impl Instruction {
+    /// Where it moves the torch, mm; `None` where it does not.
+    pub fn target(&self) -> Option<DVec3> {
+        match *self {
+            Self::Approach { to } | Self::Travel { to } | Self::Retract { to } | Self::Weld { to, .. } => Some(to),
+            _ => None,
+        }
+    }
+}
+
 /// A circular arc in a plane of constant height, from where the torch stands; less than half a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
@@ -115,7 +136,6 @@ pub struct LayerProgram {
 /// Turns layers into instructions, remembering where the torch stands.
 #[derive(Debug, Clone)]
 pub struct Programmer {
-    clearance: f64,
     torch: Torch,
     fit: Option<Fit>,
     speed_tolerance: f64,
@@ -131,7 +151,7 @@ impl Programmer {
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
         let (spread, feed) = (None, None);
-        Self { clearance, torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
+        Self { torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
     }
 
     /// Programs passes as they are welded; a dry run has the same moves and no arc.
@@ -159,7 +179,7 @@ impl Programmer {
         self
     }
 
-    /// The instructions of the next layer; the torch ends above its last pass.
+    /// The instructions of the next layer; the torch ends above its last pass, clear of it.
     pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
@@ -171,7 +191,7 @@ impl Programmer {
             self.pass(i + 1, pass, &mut instructions);
         }
         if self.dry {
-            instructions.retain(|i| matches!(i, Instruction::Travel { .. } | Instruction::Weld { .. }));
+            instructions.retain(|instruction| instruction.target().is_some());
         }
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
@@ -186,9 +206,11 @@ impl Programmer {
         level_paces(&mut moves, self.speed_tolerance);
         self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
         let [(start, _), (_, first), ..] = moves[..] else { return };
-        let approach = self.torch.approach(start);
+        let begins = self.torch.at().is_none();
+        let mut legs = self.torch.approach(start).legs.into_iter();
         self.set_feed(self.torch.feed_at(first), out);
-        out.extend(approach.legs.into_iter().map(|to| Instruction::Travel { to }));
+        out.extend(legs.by_ref().take(usize::from(begins)).map(|to| Instruction::Approach { to }));
+        out.extend(legs.map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
         let pieces = match &self.fit {
             Some(fit) => fitted(&moves, fit),
@@ -207,6 +229,7 @@ impl Programmer {
             out.push(Instruction::Crater { seconds, ratio });
         }
         out.push(Instruction::ArcOff { pass: number });
+        out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
     }
 
     /// Sets the wire feed, as a multiple of the nominal one, where it changes.
@@ -215,11 +238,6 @@ impl Programmer {
             self.feed = Some(ratio);
             out.push(Instruction::WireFeed { ratio });
         }
-    }
-
-    /// The move that takes the torch away at the end of the program.
-    pub fn leave(&self) -> Option<Instruction> {
-        self.torch.at().map(|at| Instruction::Travel { to: at.with_z(at.z + self.clearance) })
     }
 }
 

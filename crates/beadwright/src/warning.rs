@@ -35,6 +35,8 @@ pub enum WarningKind {
     Overhang,
     /// A pass is over before its arc is steady; the size is its length, mm.
     ShortArc,
+    /// A pass is longer than one program of a controller and was cut; the size is how often its arc is lit again.
+    Relit,
     /// A layer has more points than check.max_points; the size is their number.
     ManyPoints,
     /// A hole or an island too thin to be anything was left out; the size is its area, mm².
@@ -178,6 +180,12 @@ impl WarningSummary {
             ),
             WarningKind::ShortArc => format!(
                 "{layers}: {} over before the arc is steady (process.arc_start_delay), the longest {size:.1} mm {place}.",
+                times("pass is", "passes are")
+            ),
+            WarningKind::Relit => format!(
+                "{layers}: {} longer than one program of the controller (max_points of its section), cut between programs: \
+                 the arc is lit again {total:.0} times on the end of the bead, first {place}. Let straight moves and arcs be \
+                 fitted (program.chord_tolerance, program.arcs), and fewer are cut.",
                 times("pass is", "passes are")
             ),
             WarningKind::ManyPoints => format!(

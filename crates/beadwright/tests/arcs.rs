@@ -35,7 +35,7 @@ fn traced(instructions: &[Instruction]) -> Vec<Vec<DVec3>> {
     let (mut passes, mut at) = (Vec::new(), DVec3::ZERO);
     for instruction in instructions {
         match *instruction {
-            Instruction::Travel { to } => at = to,
+            Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => at = to,
             Instruction::ArcOn { .. } => passes.push(vec![at]),
             Instruction::Weld { to, circle, .. } => {
                 let pass = passes.last_mut().unwrap();
@@ -105,7 +105,7 @@ fn seconds(instructions: &[Instruction]) -> f64 {
     let (mut at, mut sum) = (DVec3::ZERO, 0.0);
     for instruction in instructions {
         match *instruction {
-            Instruction::Travel { to } => at = to,
+            Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => at = to,
             Instruction::Weld { to, circle, speed, .. } => {
                 sum += circle.map_or(at.distance(to), |c| c.length()) / speed;
                 at = to;
@@ -167,7 +167,7 @@ fn points_are_as_far_apart_as_the_controller_needs() {
         let (mut at, mut times) = (DVec3::ZERO, Vec::new());
         for instruction in programs.iter().flatten() {
             match *instruction {
-                Instruction::Travel { to } => at = to,
+                Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => at = to,
                 Instruction::Weld { to, speed, .. } => {
                     times.push(at.distance(to) / speed);
                     at = to;

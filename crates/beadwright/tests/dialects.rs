@@ -18,6 +18,7 @@ use beadwright::pass::{Along, Pass};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use beadwright::warning::WarningKind;
 use beadwright::{dialect, example};
 use glam::{DVec2, DVec3};
 use readers::{Motion, Point, Weld, distance};
@@ -278,7 +279,7 @@ fn long_layers_are_split_and_read_back_alike() {
     profile.dialects.inform.as_mut().unwrap().max_points = 20;
     for part in ["demo", &*"long ".repeat(20), "7-segment display", "Gr\u{fc}n", ""] {
         let split = long(part, &profile);
-        assert!(split.2 > whole.2 + 8 && split.3 > whole.3 + 8, "{} {}", split.2, split.3);
+        assert!(split.2 == whole.2 + 2 && split.3 == whole.3 + 2, "{} {}", split.2, split.3);
         assert_eq!((&split.0, &split.1), (&whole.0, &whole.1));
     }
     profile.dialects.fanuc.as_mut().unwrap().speed = FanucSpeed::CentimetresPerMinute;
@@ -332,6 +333,44 @@ fn the_test_readers_know_arcs() {
     let half = 10.0 * 0.5_f64.sqrt();
     machine.arc_to(at(half, half), at(0.0, 10.0), 1.0);
     machine.arc_off();
+    machine.move_to(DVec3::new(0.0, 10.0, 5.0).to_array(), 1.0);
     let length = machine.finish().weld_length();
     assert!((length - 2.5 * TAU).abs() < 1e-3, "{length}");
+}
+
+/// No program ends while the arc burns: a pass too long for one is cut, and lit again on the end of its bead.
+#[test]
+fn passes_too_long_for_a_program_are_lit_again() {
+    for part in ["gear", "star"] {
+        let mut profile = Profile::built_in("cmt-steel-robots").unwrap();
+        profile.posts = Vec::new();
+        profile.fill.strategy = "loop".to_owned();
+        let mut mesh = example::find(part).unwrap().mesh();
+        mesh.vertices.iter_mut().for_each(|v| v.z = v.z.min(2.0));
+        let whole = plan::plan(part, &mesh, &profile, &Task::new()).unwrap();
+        profile.posts = vec!["fanuc".to_owned(), "inform".to_owned()];
+        for max in [60, 150] {
+            profile.dialects.fanuc.as_mut().unwrap().max_points = max;
+            let cut = plan::plan(part, &mesh, &profile, &Task::new()).unwrap();
+            let programmer = || profile.programmer();
+            let again: usize = cut.layers.iter().map(|l| l.passes.len()).sum::<usize>()
+                - whole.layers.iter().map(|l| l.passes.len()).sum::<usize>();
+            assert!(again > 0, "{part} {max}");
+            let told = cut.summary.warnings.summaries().find(|w| w.kind == WarningKind::Relit).unwrap();
+            assert_eq!(told.total as usize, again);
+            for pass in cut.layers.iter().flat_map(|l| &l.passes) {
+                let alone = Layer { passes: vec![pass.clone()], ..Layer::default() };
+                assert!(programmer().layer(&alone).instructions.len() <= max);
+            }
+            // Each new start lies an overlap back, and a closed pass that is cut ends as far beyond its own start.
+            let overlap = profile.start_stop.end_overlap.max(profile.bead.width);
+            let length = |plan: &plan::Plan| plan.summary.metrics.deposited_length_mm;
+            let ends = told.count as f64 * (overlap - profile.start_stop.end_overlap);
+            let wanted = length(&whole) + again as f64 * overlap + ends;
+            assert!((length(&cut) / wanted - 1.0).abs() < 1e-6, "{part} {max}: {} mm for {wanted}", length(&cut));
+            let files = written("fanuc", part, &cut.layers, &profile);
+            let motion = readers::fanuc::run(&files, &part.to_uppercase());
+            assert!((motion.weld_length() / length(&cut) - 1.0).abs() < 1e-3);
+        }
+    }
 }

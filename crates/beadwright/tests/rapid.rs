@@ -68,7 +68,7 @@ fn written(part: &str, layers: &[Layer], count: usize, profile: &Profile) -> Fil
     for layer in layers {
         chunks.extend(post.layer(&programmer.layer(layer)));
     }
-    chunks.extend(post.end(programmer.leave()));
+    chunks.extend(post.end());
     for chunk in chunks {
         files.entry(chunk.file).or_default().push_str(&chunk.text);
     }

@@ -144,10 +144,10 @@ impl LayerBeads {
         let first = self.beads.len();
         let (travel_start, mut arrival, mut travel) = (self.seconds, self.seconds, Vec::new());
         if let Some(start) = pass.start() {
-            let from = torch.at();
-            let approach = torch.approach(start);
-            arrival += approach.moving;
-            travel = from.into_iter().chain(approach.legs.into_iter().filter(|_| from.is_some())).collect();
+            let (from, ways) = (torch.at(), [torch.retract(), torch.approach(start)]);
+            arrival += ways.iter().map(|way| way.moving).sum::<f64>();
+            let legs = ways.into_iter().flat_map(|way| way.legs).filter(|_| from.is_some());
+            travel = from.into_iter().chain(legs).collect();
         }
         let mut arc_start = arrival;
         // A pass without points only keeps its place in the numbering.

@@ -44,7 +44,7 @@ fn seconds(instructions: &[Instruction]) -> Vec<Vec<f64>> {
     let (mut times, mut at) = (Vec::<Vec<f64>>::new(), DVec3::ZERO);
     for instruction in instructions {
         match *instruction {
-            Instruction::Travel { to } => at = to,
+            Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => at = to,
             Instruction::ArcOn { .. } => times.push(Vec::new()),
             Instruction::Weld { to, circle, speed, .. } => {
                 let length = circle.map_or(at.distance(to), |c| c.length());

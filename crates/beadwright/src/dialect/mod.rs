@@ -54,6 +54,12 @@ pub trait Section {
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
 
+    /// The most instructions that a pass may have where no program may be longer; `None` where a pass that is too long
+    /// for the limit makes a longer program.
+    fn longest_pass(&self) -> Option<usize> {
+        None
+    }
+
     /// Removes, for a dry run, whatever would switch the arc, apart from the templates.
     fn dry_run(&mut self) {}
 

@@ -71,8 +71,7 @@ impl Programs {
     }
 
     fn end(&mut self) -> Vec<Chunk> {
-        let leave = self.programmer.leave();
-        self.each(|writer| writer.end(leave))
+        self.each(|writer| writer.end())
     }
 }
 

@@ -16,6 +16,7 @@ pub mod choice;
 mod filled;
 mod levels;
 mod preview;
+mod relight;
 mod scan_lines;
 
 pub use preview::preview;
@@ -520,6 +521,7 @@ impl<S: Sink> Emitter<'_, S> {
         }
         let passes = passes(fills, index, (z, height), self.profile, &mut self.torch);
         let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
+        relight::relight(&mut layer, self.profile);
         self.doubts(&mut layer);
         self.below = laid;
         layer.warnings.iter().for_each(|w| self.warnings.add(*w));

@@ -278,6 +278,11 @@ impl Profile {
         if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
     }
 
+    /// The most instructions that a pass may have, so that all posts can write it; `None` where it may have any number.
+    pub(crate) fn longest_pass(&self) -> Option<usize> {
+        self.posts.iter().filter_map(|post| self.dialects.get(post)?.longest_pass()).min()
+    }
+
     /// How the passes of a layer are put in order.
     pub fn order_settings(&self, layer: usize) -> OrderSettings {
         let OrderSection { method, seam, alternate } = self.order;

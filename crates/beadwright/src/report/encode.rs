@@ -173,6 +173,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::Overhang => format!("{size:.1} mm² hang over the layer below"),
         WarningKind::ShortArc => format!("pass of {size:.1} mm over before its arc is steady"),
+        WarningKind::Relit => format!("pass longer than a program: arc lit again {size:.0} times"),
         WarningKind::ManyPoints => format!("{size:.0} points, more than check.max_points"),
         WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),

@@ -42,9 +42,6 @@ impl Track {
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
         }
-        if let (Some(Instruction::Travel { to }), Some(last)) = (programmer.leave(), track.stops.last().copied()) {
-            track.go(Stop { at: to, seconds: travel_speed, arc: false, ..last });
-        }
         track
     }
 
@@ -57,7 +54,7 @@ impl Track {
         let (mut pass, mut point) = (0, 0);
         for instruction in &program.instructions {
             match *instruction {
-                Instruction::Travel { to } => {
+                Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
                     self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false });
                 }
                 Instruction::ArcOn { .. } => point = 0,

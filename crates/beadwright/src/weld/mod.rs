@@ -16,7 +16,7 @@ mod torch;
 
 pub use path::{path, welded};
 pub(crate) use torch::retract_time;
-pub use torch::{Approach, Pause, Torch, Welded};
+pub use torch::{Pause, Torch, Way, Welded};
 
 use crate::motion::Motion;
 use crate::process::{Process, StartStop, Travel};

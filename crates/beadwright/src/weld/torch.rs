@@ -36,9 +36,9 @@ pub struct Pause {
     pub moving: f64,
 }
 
-/// The travel to the start of a pass.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Approach {
+/// A travel with the arc off.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Way {
     /// Ends of its legs, mm.
     pub legs: Vec<DVec3>,
     /// Its length, mm; 0 for the travel to the first pass, which may come from anywhere.
@@ -113,7 +113,7 @@ impl Torch {
         let seconds = (missing.max(self.ends.interpass_time).max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
         self.seconds = 0.0;
         let from = self.at.filter(|_| seconds > 0.0)?;
-        let at = from.with_z(from.z + self.clearance + self.ends.dwell_height);
+        let at = from.with_z(from.z.max(self.low + self.clearance + self.ends.dwell_height));
         // The move up belongs to the wait: it counts for neither layer.
         let (length, moving) = self.travel(&[at]);
         self.at = Some(at);
@@ -122,16 +122,29 @@ impl Torch {
 
     /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
     /// place to rise from.
-    pub fn approach(&mut self, start: DVec3) -> Approach {
+    pub fn approach(&mut self, start: DVec3) -> Way {
         let high = self.at.map_or(start.z, |_| self.low.max(start.z)) + self.clearance;
         // After a wait the torch is already at this height or higher.
         let top = self.at.map_or(high, |at| at.z.max(high));
-        let rise = self.at.filter(|at| at.z < top || self.low == at.z).map(|at| at.with_z(top));
-        let legs: Vec<DVec3> = rise.into_iter().chain([start.with_z(top), start]).collect();
+        let rise = self.at.map(|at| at.with_z(top));
+        self.go(rise.into_iter().chain([start.with_z(top), start]))
+    }
+
+    /// The way up from the end of a pass: whatever comes between passes happens above the fresh bead.
+    pub fn retract(&mut self) -> Way {
+        let up = self.at.map(|at| at.with_z(at.z.max(self.low + self.clearance)));
+        self.go(up.into_iter())
+    }
+
+    /// Travels; legs without length are left out.
+    fn go(&mut self, legs: impl Iterator<Item = DVec3>) -> Way {
+        let mut ends: Vec<DVec3> = self.at.into_iter().chain(legs).collect();
+        ends.dedup();
+        let legs = ends.split_off(usize::from(self.at.is_some()));
         let (length, moving) = self.travel(&legs);
         self.seconds += moving;
-        self.at = Some(start);
-        Approach { legs, length, moving }
+        self.at = legs.last().copied().or(self.at);
+        Way { legs, length, moving }
     }
 
     /// Length and time of a travel from where the torch stands, mm and s; its legs begin and end at rest. The travel to

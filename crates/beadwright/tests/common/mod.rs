@@ -26,6 +26,8 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
     all.dialects = profile("cmt-steel-abb").dialects;
     all.dialects.krl = profile("cmt-al2319-kuka").dialects.krl;
     all.dialects.gcode = profile("plasma-304-cnc").dialects.gcode;
+    // The way in is as long as that of the robots.
+    all.dialects.gcode.as_mut().expect("just set").safe_z = 0.0;
     all.dialects.marlin = profile("fdm-abs-0.4").dialects.marlin;
     (all.dialects.fanuc, all.dialects.inform, all.dialects.urscript) = (robots.fanuc, robots.inform, robots.urscript);
     all

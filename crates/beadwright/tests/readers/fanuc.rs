@@ -55,9 +55,12 @@ impl Reader<'_> {
         match words[..] {
             ["CALL", name] => self.program(name),
             ["J", position, speed, "FINE"] => {
-                assert!(speed.ends_with('%') && matches!(next(position, positions, used), Position::Joints));
-                assert!(!self.machine.burns());
-                (self.homes, self.exact) = (self.homes + 1, true);
+                assert!(speed.ends_with('%') && !self.machine.burns());
+                self.exact = true;
+                match next(position, positions, used) {
+                    Position::Joints => self.homes += 1,
+                    Position::Pose(to) => self.machine.approach(*to),
+                }
             }
             ["L", position, speed, end] => {
                 let Position::Pose(to) = next(position, positions, used) else { panic!("{statement}") };

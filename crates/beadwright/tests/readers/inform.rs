@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Runs the job of that name (file names as keys).
 pub fn run(files: &BTreeMap<String, String>, main: &str) -> Motion {
-    let mut reader = Reader { files, machine: Machine::default(), exact: true, homes: 0 };
+    let mut reader = Reader { files, machine: Machine::default(), exact: true, arc_ended: false, homes: 0 };
     reader.job(main);
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
@@ -15,6 +15,8 @@ struct Reader<'a> {
     files: &'a BTreeMap<String, String>,
     machine: Machine,
     exact: bool,
+    /// Whether the last move was along an arc.
+    arc_ended: bool,
     homes: usize,
 }
 
@@ -57,7 +59,13 @@ impl Reader<'_> {
             assert_eq!(numbers.len(), 6);
             if words[0] == "MOVJ" {
                 assert!(words[2].starts_with("VJ=") && !self.machine.burns());
-                self.homes += 1;
+                match words.get(3) {
+                    Some(level) => {
+                        assert_eq!(*level, "PL=0");
+                        self.machine.approach([numbers[0], numbers[1], numbers[2]]);
+                    }
+                    None => self.homes += 1,
+                }
                 return;
             }
             let speed: f64 = words[2].strip_prefix("V=").unwrap().parse().unwrap();
@@ -91,8 +99,14 @@ impl Reader<'_> {
     /// Three MOVC make an arc; the robot goes straight to the first.
     fn motion(&mut self, word: &str, to: Point, speed: f64, circle: &mut Vec<Point>) {
         match (word, circle.len()) {
-            ("MOVL", 0) => self.machine.move_to(to, speed),
+            // What separates two arcs.
+            ("MOVL", 0) if self.arc_ended && self.machine.at == Some(to) => self.arc_ended = false,
+            ("MOVL", 0) => {
+                self.machine.move_to(to, speed);
+                self.arc_ended = false;
+            }
             ("MOVC", 0) => {
+                assert!(!self.arc_ended, "arcs in a row are one chain to the controller");
                 if self.machine.at.is_none_or(|at| distance(at, to) > 0.0) {
                     self.machine.move_to(to, speed);
                 }
@@ -102,6 +116,7 @@ impl Reader<'_> {
             ("MOVC", 2) => {
                 self.machine.arc_to(circle[1], to, speed);
                 circle.clear();
+                self.arc_ended = true;
             }
             _ => panic!("{word} within an arc"),
         }

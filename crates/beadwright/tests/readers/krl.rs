@@ -99,6 +99,8 @@ impl<'a> Reader<'a> {
                 self.machine.wait(seconds.parse().unwrap());
             } else if let Some(feed) = line.strip_prefix("$ANOUT[1] = ") {
                 self.machine.motion.feeds.push(feed.parse().unwrap());
+            } else if let Some(pose) = line.strip_prefix("PTP {") {
+                self.machine.approach(coordinates(pose.trim_end_matches('}')));
             } else if line == "PTP XHOME" {
                 assert!(!self.machine.burns());
                 self.homes += 1;

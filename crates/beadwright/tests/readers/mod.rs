@@ -71,6 +71,8 @@ pub struct Machine {
     pub motion: Motion,
     pub at: Option<Point>,
     weld: Option<Weld>,
+    /// Whether the torch stands over a bead that it has just laid, or comes from anywhere: the next way must be upright.
+    over: bool,
 }
 
 impl Machine {
@@ -82,6 +84,7 @@ impl Machine {
 
     pub fn arc_off(&mut self) {
         let weld = self.weld.take().expect("arc off while it is off");
+        self.over = true;
         assert!(weld.points.len() > 1, "arc on and off on one spot");
         self.motion.welds.push(weld);
     }
@@ -95,7 +98,17 @@ impl Machine {
         self.weld.is_some()
     }
 
+    /// A move of the joints to a place above the part.
+    pub fn approach(&mut self, to: Point) {
+        assert!(self.at.is_none() && self.weld.is_none(), "the joints move in the part");
+        (self.at, self.over) = (Some(to), true);
+    }
+
     pub fn move_to(&mut self, to: Point, speed: f64) {
+        if let Some(at) = self.at.filter(|_| self.over && self.weld.is_none()) {
+            assert!(at[..2] == to[..2], "the torch goes across to {to:?} where it should go up or down");
+            self.over = false;
+        }
         match (&mut self.weld, self.at) {
             (Some(weld), Some(at)) => {
                 assert!(distance(at, to) >= 0.0099, "a weld move of no length at {to:?}");
@@ -153,6 +166,7 @@ impl Machine {
 
     pub fn finish(self) -> Motion {
         assert!(self.weld.is_none(), "the program ends with the arc on");
+        assert!(!self.over, "the program ends on the bead");
         self.motion
     }
 }

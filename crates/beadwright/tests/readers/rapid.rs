@@ -230,7 +230,7 @@ impl Reader<'_> {
                 self.common(module, speed, zone, tool);
                 self.homes += 1;
             }
-            "MoveL" | "MoveC" | "ArcLStart" | "ArcL" | "ArcLEnd" | "ArcC" | "ArcCEnd" => {
+            "MoveL" | "MoveJ" | "MoveC" | "ArcLStart" | "ArcL" | "ArcLEnd" | "ArcC" | "ArcCEnd" => {
                 self.motion(module, word, rest)
             }
             "WaitTime" => {
@@ -287,6 +287,11 @@ impl Reader<'_> {
             Some(via) => machine.arc_to(via, to, speed),
             None => machine.move_to(to, speed),
         };
+        if word == "MoveJ" {
+            let [_, speed, zone, tool] = pieces[..] else { panic!("{rest}") };
+            self.common(module, speed, zone, tool);
+            return self.machine.approach(to);
+        }
         if matches!(word, "MoveL" | "MoveC") {
             let [_, speed, zone, tool] = pieces[..] else { panic!("{rest}") };
             assert!(!self.machine.burns() || !self.output.is_empty(), "a Move while the arc is on: {rest}");

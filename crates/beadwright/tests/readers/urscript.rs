@@ -44,6 +44,8 @@ impl Reader<'_> {
         if line.starts_with("movej([") {
             assert!(!self.machine.burns());
             self.homes += 1;
+        } else if let Some(to) = line.strip_prefix("movej(pose_trans(part_frame, p[") {
+            self.machine.approach(pose(to));
         } else if line.starts_with("movel(") || line.starts_with("movec(") {
             self.motion(line);
         } else if let Some(rest) = line.strip_prefix("set_standard_digital_out(") {

@@ -108,6 +108,10 @@ impl Section for Fanuc {
         }
     }
 
+    fn longest_pass(&self) -> Option<usize> {
+        Some(self.max_points)
+    }
+
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         needs::lines("fanuc", &self.templates(), "AO[1]={{wire_feed_ratio}}", job)?;
         let mut section = self.clone();

@@ -122,7 +122,11 @@ impl FanucTp {
 
     fn instruction(&mut self, program: &mut Program, instruction: Instruction) {
         match instruction {
-            Instruction::Travel { to } => {
+            Instruction::Approach { to } => {
+                let number = self.pose(program, to);
+                program.line(&format!("J P[{number}] {}% FINE", fixed(self.fanuc.home_speed, 0)));
+            }
+            Instruction::Travel { to } | Instruction::Retract { to } => {
                 let number = self.pose(program, to);
                 // L takes at most 2000 mm/sec.
                 program.line(&format!("L P[{number}] {}mm/sec FINE", fixed(self.travel_speed.clamp(0.1, 2000.0), 1)));
@@ -181,7 +185,7 @@ impl Writer for FanucTp {
         }
         self.values.set("layer", layer.index + 1);
         let mut chunks = Vec::new();
-        for (i, part) in split::parts(&layer.instructions, self.fanuc.max_points).into_iter().enumerate() {
+        for (i, part) in split::passes(&layer.instructions, self.fanuc.max_points).into_iter().enumerate() {
             let more = if i == 0 { String::new() } else { format!("_{}", i + 1) };
             let name = format!("{}_L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut program = Program::default();
@@ -200,11 +204,8 @@ impl Writer for FanucTp {
         chunks
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut main = std::mem::take(&mut self.main);
-        if let Some(leave) = leave {
-            self.instruction(&mut main, leave);
-        }
         self.lines(&mut main, &self.fanuc.end);
         self.home(&mut main);
         vec![Chunk { file: format!("{}.ls", self.name), text: main.text(&self.name, &self.comment) }]

@@ -25,6 +25,10 @@ pub struct Gcode {
     pub percent_signs: bool,
     /// O number of the program (Fanuc); default none.
     pub program_number: Option<u32>,
+    /// Height to which the torch goes before its first move across, in the part's coordinates, mm: above clamps, and
+    /// above the part where a program begins in its middle; default 100.
+    #[serde(default = "hundred")]
+    pub safe_z: f64,
     /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
     #[serde(default)]
     pub comments: GcodeComments,
@@ -68,6 +72,10 @@ fn seconds() -> Vec<String> {
     vec!["G4 P{{dwell}}".to_owned()]
 }
 
+fn hundred() -> f64 {
+    100.0
+}
+
 fn yes() -> bool {
     true
 }
@@ -77,6 +85,7 @@ impl Section for Gcode {
         let number = self.program_number.unwrap_or(1);
         limits! {
             "gcode.decimals": self.decimals as f64, 1.0, 4.0, "decimals", CONTROLLER;
+            "gcode.safe_z": self.safe_z, 0.0, 1e4, "mm", "below 0 it would go into the table";
             "gcode.program_number": number.into(), 1.0, 9999.0, "(O number)", CONTROLLER;
         }
     }

@@ -72,6 +72,18 @@ impl CncGcode {
         self.motion(text, word, to, None, feed);
     }
 
+    /// The machine may stand anywhere at first: to the safe height, across, and down.
+    fn approach(&mut self, text: &mut String, to: DVec3) {
+        let safe = self.gcode.safe_z.max(to.z);
+        self.begin_block(text);
+        text.push_str("G0 Z");
+        push_fixed(text, safe, self.gcode.decimals);
+        text.push('\n');
+        self.at = Some(DVec3::new(f64::NAN, f64::NAN, safe));
+        self.go(text, "G0", to.with_z(safe), None);
+        self.go(text, "G0", to, None);
+    }
+
     fn weld(&mut self, text: &mut String, to: DVec3, circle: Option<Circle>, speed: f64) {
         let word = circle.map_or("G1", |circle| circle.word());
         self.motion(text, word, to, circle, Some(speed));
@@ -103,16 +115,8 @@ impl CncGcode {
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
         match instruction {
-            // The machine may stand anywhere at first: rise before moving across.
-            Instruction::Travel { to } if self.at.is_none() => {
-                self.begin_block(text);
-                text.push_str("G0 Z");
-                push_fixed(text, to.z, self.gcode.decimals);
-                text.push('\n');
-                self.at = Some(DVec3::new(f64::NAN, f64::NAN, to.z));
-                self.go(text, "G0", to, None);
-            }
-            Instruction::Travel { to } => self.go(text, "G0", to, None),
+            Instruction::Approach { to } => self.approach(text, to),
+            Instruction::Travel { to } | Instruction::Retract { to } => self.go(text, "G0", to, None),
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
                 self.comment(text, &format!("PASS {pass} {}", kind.name()));
@@ -186,11 +190,8 @@ impl Writer for CncGcode {
         self.chunk(text)
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
-        if let Some(leave) = leave {
-            self.instruction(&mut text, leave);
-        }
         let footer = self.gcode.footer.clone();
         self.blocks(&mut text, &footer);
         if self.gcode.percent_signs {

@@ -113,6 +113,10 @@ impl Section for Inform {
         ]
     }
 
+    fn longest_pass(&self) -> Option<usize> {
+        Some(self.max_points)
+    }
+
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         needs::lines("inform", &self.templates(), "AOUT AO#(1) {{wire_feed_ratio}}", job)?;
         let mut section = self.clone();

@@ -1,8 +1,9 @@
 //! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; a long
-//! layer continues in `NAME-L001-2.jbi`, and `NAME-END.jbi` moves the torch away.
+//! layer continues in `NAME-L001-2.jbi`.
 //!
 //! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
-//! begins, so the robot does not move for it.
+//! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
+//! point separates an arc from the next.
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
@@ -32,6 +33,8 @@ pub(super) struct YaskawaInform {
     /// Instructions of the main job so far.
     main: String,
     at: DVec3,
+    /// Whether the last move was along an arc.
+    in_arc: bool,
 }
 
 /// Positions and instructions of one job.
@@ -65,6 +68,7 @@ impl YaskawaInform {
             digits: 3,
             main: String::new(),
             at: DVec3::ZERO,
+            in_arc: false,
         }
     }
 
@@ -96,12 +100,19 @@ impl YaskawaInform {
     fn motion(&mut self, job: &mut JobText, word: &str, to: DVec3, speed: f64, level: u32) {
         let pose = self.pose(job, to);
         job.line(&format!("{word} {pose} {} PL={level}", self.speed(speed)));
-        self.at = to;
+        (self.at, self.in_arc) = (to, word == "MOVC");
     }
 
     fn instruction(&mut self, job: &mut JobText, instruction: Instruction) {
         match instruction {
-            Instruction::Travel { to } => self.motion(job, "MOVL", to, self.travel_speed, 0),
+            Instruction::Approach { to } => {
+                let pose = self.pose(job, to);
+                job.line(&format!("MOVJ {pose} VJ={} PL=0", fixed(self.inform.home_speed, 2)));
+                (self.at, self.in_arc) = (to, false);
+            }
+            Instruction::Travel { to } | Instruction::Retract { to } => {
+                self.motion(job, "MOVL", to, self.travel_speed, 0);
+            }
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
                 job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
@@ -110,6 +121,9 @@ impl YaskawaInform {
             Instruction::Weld { to, circle, speed, last } => {
                 let level = if last { 0 } else { self.inform.position_level };
                 let Some(circle) = circle else { return self.motion(job, "MOVL", to, speed, level) };
+                if self.in_arc {
+                    self.motion(job, "MOVL", self.at, speed, self.inform.position_level);
+                }
                 for (to, level) in
                     [(self.at, self.inform.position_level), (circle.via, self.inform.position_level), (to, level)]
                 {
@@ -175,7 +189,7 @@ impl Writer for YaskawaInform {
         }
         self.values.set("layer", layer.index + 1);
         let mut chunks = Vec::new();
-        for (i, part) in split::parts(&layer.instructions, self.inform.max_points).into_iter().enumerate() {
+        for (i, part) in split::passes(&layer.instructions, self.inform.max_points).into_iter().enumerate() {
             let more = if i == 0 { String::new() } else { format!("-{}", i + 1) };
             let name = format!("{}-L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut job = JobText::default();
@@ -189,14 +203,7 @@ impl Writer for YaskawaInform {
         chunks
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
-        let mut chunks = Vec::new();
-        if let Some(leave) = leave {
-            let (name, mut job) = (format!("{}-END", self.name), JobText::default());
-            self.instruction(&mut job, leave);
-            self.main.push_str(&format!("CALL JOB:{name}\r\n"));
-            chunks.push(self.relative(&name, "TORCH AWAY", &job));
-        }
+    fn end(&mut self) -> Vec<Chunk> {
         let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
         let go = |number: usize| format!("MOVJ C{number:05} VJ={}\r\n", fixed(self.inform.home_speed, 2));
         let mut instructions = go(0) + &self.main;
@@ -205,7 +212,6 @@ impl Writer for YaskawaInform {
         let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
         let main = JobText { positions, count: 2, instructions };
         let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
-        chunks.push(self.file(&self.name, &self.comment, &head, "SC,RW", &main));
-        chunks
+        vec![self.file(&self.name, &self.comment, &head, "SC,RW", &main)]
     }
 }

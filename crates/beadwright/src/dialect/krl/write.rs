@@ -121,7 +121,7 @@ impl KukaKrl {
             (Instruction::ArcOn { pass, kind }, Some(speed)) => {
                 self.values.set("pass", pass);
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
-                if let Some(&Instruction::Travel { to }) = i.checked_sub(1).and_then(|before| all.get(before)) {
+                if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
                     forms.on(text, &self.aggregate(to), speed);
                 }
                 self.go_on(text, speed);
@@ -194,7 +194,12 @@ impl KukaKrl {
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
         match instruction {
-            Instruction::Travel { to } => {
+            Instruction::Approach { to } => {
+                text.push_str("PTP ");
+                self.pose(text, to);
+                self.end_move(text, false);
+            }
+            Instruction::Travel { to } | Instruction::Retract { to } => {
                 self.set_speed(text, self.travel_speed);
                 self.lin(text, to, false);
             }
@@ -261,12 +266,8 @@ impl Writer for KukaKrl {
         parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
-        self.speed = 0.0;
-        if let Some(leave) = leave {
-            self.instruction(&mut text, leave);
-        }
         self.lines(&mut text, &self.krl.end);
         text.push_str("PTP XHOME\r\nEND\r\n");
         vec![Chunk { file: format!("{}.src", self.name), text }]

@@ -158,7 +158,7 @@ impl MarlinGcode {
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
         match instruction {
-            Instruction::Travel { to } => {
+            Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
                 let far = self.at.is_none_or(|at| at.distance(to) >= self.marlin.retract_from);
                 if far && self.at.is_some() {
                     self.retract(text, true);
@@ -233,12 +233,9 @@ impl Writer for MarlinGcode {
         self.chunk(text)
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
         self.retract(&mut text, true);
-        if let Some(leave) = leave {
-            self.instruction(&mut text, leave);
-        }
         self.lines(&mut text, &self.marlin.footer);
         self.chunk(text)
     }

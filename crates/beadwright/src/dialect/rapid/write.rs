@@ -177,7 +177,8 @@ impl AbbRapid {
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself moves there.
                 (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
-                (Instruction::Travel { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
+                (Instruction::Approach { to }, _) => self.motion(text, "MoveJ", to, "vHome", false),
+                (Instruction::Travel { to } | Instruction::Retract { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
                 (Instruction::ArcOn { pass, kind }, next) => {
                     self.values.set("pass", pass);
                     statement(text, &format!("! pass {pass} {}", kind.name()));
@@ -214,7 +215,7 @@ impl AbbRapid {
     fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
         if !self.with_arc() {
             self.switch(text, &self.rapid.arc_on);
-        } else if let (Some(&Instruction::Travel { to }), Some(number)) = (before, first) {
+        } else if let (Some(to), Some(number)) = (before.and_then(Instruction::target), first) {
             let between = format!("vTravel,smBead,wd{number}");
             self.motion(text, "ArcLStart", to, &between, false);
         }
@@ -302,11 +303,8 @@ impl Writer for AbbRapid {
         parts.into_iter().enumerate().flat_map(module).collect()
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
-        if let Some(Instruction::Travel { to }) = leave {
-            self.motion(&mut text, "MoveL", to, "vTravel", false);
-        }
         self.lines(&mut text, &self.rapid.end);
         self.home(&mut text);
         text.push_str("  ENDPROC\r\nENDMODULE\r\n");

@@ -119,7 +119,13 @@ impl UniversalScript {
 
     fn instruction(&mut self, text: &mut String, indent: &str, instruction: Instruction, next: Option<&Instruction>) {
         match instruction {
-            Instruction::Travel { to } => {
+            Instruction::Approach { to } => {
+                text.push_str(&format!("{indent}movej("));
+                self.pose(text, to);
+                text.push_str(&format!(", a=1.400000, v={})\n", fixed(self.urscript.home_speed.to_radians(), 6)));
+                self.at = Some(to);
+            }
+            Instruction::Travel { to } | Instruction::Retract { to } => {
                 self.motion(text, indent, None, to, self.travel_speed, 0.0);
                 self.at = Some(to);
             }
@@ -184,14 +190,11 @@ impl Writer for UniversalScript {
         self.chunk(text)
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
         self.home(&mut text);
         self.lines(&mut text, "  ", &self.urscript.start);
         self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
-        if let Some(leave) = leave {
-            self.instruction(&mut text, "  ", leave, None);
-        }
         self.lines(&mut text, "  ", &self.urscript.end);
         self.home(&mut text);
         // A program file runs what it defines.

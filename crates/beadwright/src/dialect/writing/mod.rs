@@ -13,7 +13,7 @@ pub(super) use placeholders::Values;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
 use crate::layer::Layer;
-use crate::program::{Instruction, LayerProgram, ProgramSettings, Programmer};
+use crate::program::{LayerProgram, ProgramSettings, Programmer};
 use crate::weld::WeldSettings;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
@@ -42,8 +42,8 @@ pub trait Writer: Send {
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
-    /// What comes after the last layer; `leave` moves the torch away.
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
+    /// What comes after the last layer; the torch stands clear of the part.
+    fn end(&mut self) -> Vec<Chunk>;
 }
 
 /// What is to be written: all that a dialect needs to know besides the layers.
@@ -170,7 +170,7 @@ pub fn write<L: Borrow<Layer>>(
     let mut programmer = job.programmer();
     let mut chunks = writer.begin(layers.len());
     layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
-    chunks.extend(writer.end(programmer.leave()));
+    chunks.extend(writer.end());
     let mut files = BTreeMap::<String, String>::new();
     for chunk in chunks {
         files.entry(chunk.file).or_default().push_str(&chunk.text);

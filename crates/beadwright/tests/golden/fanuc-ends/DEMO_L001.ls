@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 1";
-LINE_COUNT = 45;
+LINE_COUNT = 46;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -10,7 +10,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
    2:  UTOOL_NUM=1 ;
    3:  !layer 1, z 1.419 mm ;
    4:  AO[1]=1.0000 ;
-   5:L P[1] 100.0mm/sec FINE ;
+   5:J P[1] 20% FINE ;
    6:L P[2] 100.0mm/sec FINE ;
    7:  !pass 1 contour ;
    8:  DO[1]=ON ;
@@ -31,8 +31,8 @@ DEFAULT_GROUP = 1,*,*,*,*;
   23:  WAIT 1(sec) ;
   24:  DO[1]=OFF ;
   25:  WAIT 0.05(sec) ;
-  26:  AO[1]=1.0000 ;
-  27:L P[10] 100.0mm/sec FINE ;
+  26:L P[10] 100.0mm/sec FINE ;
+  27:  AO[1]=1.0000 ;
   28:L P[11] 100.0mm/sec FINE ;
   29:L P[12] 100.0mm/sec FINE ;
   30:  !pass 2 infill ;
@@ -51,6 +51,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
   43:  WAIT 1(sec) ;
   44:  DO[1]=OFF ;
   45:  WAIT 0.05(sec) ;
+  46:L P[17] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:
@@ -146,6 +147,12 @@ P[16]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
     X =    90.000 mm, Y =     0.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[17]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    90.000 mm, Y =     0.000 mm, Z =    21.419 mm,
     W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 /END

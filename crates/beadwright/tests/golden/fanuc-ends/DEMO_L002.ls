@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 2";
-LINE_COUNT = 49;
+LINE_COUNT = 50;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -12,7 +12,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
    4:L P[1] 100.0mm/sec FINE ;
    5:  WAIT 300.00(sec) ;
    6:  WAIT 300.00(sec) ;
-   7:  WAIT 72.20(sec) ;
+   7:  WAIT 72.00(sec) ;
    8:  AO[1]=1.0000 ;
    9:L P[2] 100.0mm/sec FINE ;
   10:L P[3] 100.0mm/sec FINE ;
@@ -35,8 +35,8 @@ DEFAULT_GROUP = 1,*,*,*,*;
   27:  WAIT 1(sec) ;
   28:  DO[1]=OFF ;
   29:  WAIT 0.05(sec) ;
-  30:  AO[1]=1.0000 ;
-  31:L P[11] 100.0mm/sec FINE ;
+  30:L P[11] 100.0mm/sec FINE ;
+  31:  AO[1]=1.0000 ;
   32:L P[12] 100.0mm/sec FINE ;
   33:L P[13] 100.0mm/sec FINE ;
   34:  !pass 2 infill ;
@@ -55,6 +55,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
   47:  WAIT 1(sec) ;
   48:  DO[1]=OFF ;
   49:  WAIT 0.05(sec) ;
+  50:L P[18] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:
@@ -156,6 +157,12 @@ P[17]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
     X =    90.000 mm, Y =     0.000 mm, Z =     2.837 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[18]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    90.000 mm, Y =     0.000 mm, Z =    22.837 mm,
     W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 /END

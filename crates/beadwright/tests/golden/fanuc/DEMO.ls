@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "demo";
-LINE_COUNT = 7;
+LINE_COUNT = 6;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -11,8 +11,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
    3:J P[1] 20% FINE ;
    4:  CALL DEMO_L001 ;
    5:  CALL DEMO_L002 ;
-   6:L P[2] 100.0mm/sec FINE ;
-   7:J P[3] 20% FINE ;
+   6:J P[2] 20% FINE ;
 /POS
 P[1]{
    GP1:
@@ -21,12 +20,6 @@ P[1]{
     J4 =     0.000 deg, J5 =   -90.000 deg, J6 =     0.000 deg
 };
 P[2]{
-   GP1:
-    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
-    X =    70.000 mm, Y =    30.000 mm, Z =    22.837 mm,
-    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
-};
-P[3]{
    GP1:
     UF : 1, UT : 1,
     J1 =     0.000 deg, J2 =     0.000 deg, J3 =     0.000 deg,

@@ -2,14 +2,14 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 1";
-LINE_COUNT = 32;
+LINE_COUNT = 33;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
    1:  UFRAME_NUM=1 ;
    2:  UTOOL_NUM=1 ;
    3:  !layer 1, z 1.419 mm ;
-   4:L P[1] 100.0mm/sec FINE ;
+   4:J P[1] 20% FINE ;
    5:L P[2] 100.0mm/sec FINE ;
    6:  !pass 1 contour ;
    7:  DO[1]=ON ;
@@ -42,6 +42,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
   30:  WAIT 0.5(sec) ;
   31:  WAIT 1(sec) ;
   32:  DO[1]=OFF ;
+  33:L P[16] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:
@@ -131,6 +132,12 @@ P[15]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
     X =    70.000 mm, Y =    30.000 mm, Z =     1.419 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[16]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    70.000 mm, Y =    30.000 mm, Z =    21.419 mm,
     W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 /END

@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 2";
-LINE_COUNT = 33;
+LINE_COUNT = 34;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -43,6 +43,7 @@ DEFAULT_GROUP = 1,*,*,*,*;
   31:  WAIT 0.5(sec) ;
   32:  WAIT 1(sec) ;
   33:  DO[1]=OFF ;
+  34:L P[17] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:
@@ -138,6 +139,12 @@ P[16]{
    GP1:
     UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
     X =    70.000 mm, Y =    30.000 mm, Z =     2.837 mm,
+    W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
+};
+P[17]{
+   GP1:
+    UF : 1, UT : 1, CONFIG : 'N U T, 0, 0, 0',
+    X =    70.000 mm, Y =    30.000 mm, Z =    22.837 mm,
     W =  180.0000 deg, P =    0.0000 deg, R =    0.0000 deg
 };
 /END

@@ -17,7 +17,6 @@ MODULE demo
     Load \Dynamic,"HOME:/part/demo_L002.mod";
     %"demo_L002:Layer002"%;
     UnLoad "HOME:/part/demo_L002.mod";
-    MoveL [[90.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -8,7 +8,7 @@ MODULE demo_L002
   PROC Layer002()
     ! layer 2, z 2.837 mm
     MoveL [[90.000,0.000,36.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
-    WaitTime \InPos,672.200;
+    WaitTime \InPos,672.000;
     MoveL [[0.000,0.000,36.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     ArcLStart [[0.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead,wd1,fine,tTorch\WObj:=wPart;
@@ -29,5 +29,6 @@ MODULE demo_L002
     ArcL [[86.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead,wd4,zBead,tTorch\WObj:=wPart;
     ArcLEnd [[90.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead,wd5,fine,tTorch\WObj:=wPart;
     WaitTime \InPos,0.500;
+    MoveL [[90.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

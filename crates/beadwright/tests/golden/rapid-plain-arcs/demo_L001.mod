@@ -4,7 +4,7 @@ MODULE demo_L001
   LOCAL CONST speeddata vd2:=[6.000,500.000,5000,1000];
   PROC Layer001()
     ! layer 1, z 1.419 mm
-    MoveL [[35.000,20.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    MoveJ [[35.000,20.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vHome,fine,tTorch\WObj:=wPart;
     MoveL [[35.000,20.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
@@ -37,5 +37,6 @@ MODULE demo_L001
     WaitTime \InPos,0.5;
     WaitTime \InPos,1;
     SetDO doGas,0;
+    MoveL [[70.000,30.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -8,7 +8,7 @@ MODULE demo_L001
   PROC Layer001()
     ! layer 1, z 1.419 mm
     SetAO aoWire,1.0000;
-    MoveL [[0.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    MoveJ [[0.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vHome,fine,tTorch\WObj:=wPart;
     MoveL [[0.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
@@ -32,8 +32,8 @@ MODULE demo_L001
     WaitTime \InPos,1;
     SetDO doGas,0;
     WaitTime \InPos,0.05;
-    SetAO aoWire,1.0000;
     MoveL [[6.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    SetAO aoWire,1.0000;
     MoveL [[50.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveL [[50.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 2 infill
@@ -55,5 +55,6 @@ MODULE demo_L001
     WaitTime \InPos,1;
     SetDO doGas,0;
     WaitTime \InPos,0.05;
+    MoveL [[90.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

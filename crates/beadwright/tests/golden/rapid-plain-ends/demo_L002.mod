@@ -8,7 +8,7 @@ MODULE demo_L002
   PROC Layer002()
     ! layer 2, z 2.837 mm
     MoveL [[90.000,0.000,36.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
-    WaitTime \InPos,672.200;
+    WaitTime \InPos,672.000;
     SetAO aoWire,1.0000;
     MoveL [[0.000,0.000,36.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveL [[0.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
@@ -34,8 +34,8 @@ MODULE demo_L002
     WaitTime \InPos,1;
     SetDO doGas,0;
     WaitTime \InPos,0.05;
-    SetAO aoWire,1.0000;
     MoveL [[6.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    SetAO aoWire,1.0000;
     MoveL [[50.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveL [[50.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 2 infill
@@ -57,5 +57,6 @@ MODULE demo_L002
     WaitTime \InPos,1;
     SetDO doGas,0;
     WaitTime \InPos,0.05;
+    MoveL [[90.000,0.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -12,7 +12,6 @@ MODULE frame
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
     %"frame_L001:Layer001"%;
     %"frame_L002:Layer002"%;
-    MoveL [[25.000,10.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -6,7 +6,7 @@ MODULE frame_L001
   LOCAL CONST speeddata vd4:=[6.200,500.000,5000,1000];
   PROC Layer001()
     ! layer 1, z 1.419 mm
-    MoveL [[0.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    MoveJ [[0.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vHome,fine,tTorch\WObj:=wPart;
     MoveL [[0.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
@@ -41,5 +41,6 @@ MODULE frame_L001
     WaitTime \InPos,0.5;
     WaitTime \InPos,1;
     SetDO doGas,0;
+    MoveL [[25.000,10.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

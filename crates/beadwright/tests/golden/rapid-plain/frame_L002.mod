@@ -42,5 +42,6 @@ MODULE frame_L002
     WaitTime \InPos,0.5;
     WaitTime \InPos,1;
     SetDO doGas,0;
+    MoveL [[25.000,10.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

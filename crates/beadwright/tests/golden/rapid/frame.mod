@@ -17,7 +17,6 @@ MODULE frame
     Load \Dynamic,"HOME:/part/frame_L002.mod";
     %"frame_L002:Layer002"%;
     UnLoad "HOME:/part/frame_L002.mod";
-    MoveL [[25.000,10.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -24,5 +24,6 @@ MODULE frame_L002
     ArcL [[20.000,10.500,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead,wd3,zBead,tTorch\WObj:=wPart;
     ArcLEnd [[25.000,10.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead,wd4,fine,tTorch\WObj:=wPart;
     WaitTime \InPos,0.500;
+    MoveL [[25.000,10.000,22.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
   ENDPROC
 ENDMODULE

@@ -1,0 +1,75 @@
+//! Passes too long for one program of a controller. No program may end while the arc burns, so the arc ends, the crater is
+//! filled, and the next program lights it again on the end of the bead.
+
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, Segment};
+use crate::profile::Profile;
+use crate::warning::{Warning, WarningKind};
+use glam::DVec3;
+
+/// Passes shorter than this are never cut, moves: their number is not even counted.
+const LEAST: usize = 10;
+
+/// Cuts the passes of a layer that have more moves than a program holds, and tells of each.
+pub(super) fn relight(layer: &mut Layer, profile: &Profile) {
+    let Some(most) = profile.longest_pass() else { return };
+    let cut = |pass: Pass| if pass.points.len() + LEAST <= most { vec![pass] } else { pieces(pass, most, profile) };
+    for pieces in std::mem::take(&mut layer.passes).into_iter().map(cut) {
+        if let Some(again) = pieces.get(1) {
+            let (kind, place) = (WarningKind::Relit, again.start().unwrap_or_default().truncate());
+            let size = (pieces.len() - 1) as f64;
+            layer.warnings.push(Warning { kind, layer: layer.index, place, size });
+        }
+        layer.passes.extend(pieces);
+    }
+}
+
+/// A pass in as few pieces of equal length as the programs need.
+fn pieces(pass: Pass, most: usize, profile: &Profile) -> Vec<Pass> {
+    let fits = |pass: &Pass| instructions(pass, profile) <= most;
+    if fits(&pass) {
+        return vec![pass];
+    }
+    let overlap = profile.start_stop.end_overlap.max(profile.bead.width);
+    let most_pieces = pass.points.len();
+    (2..most_pieces)
+        .map(|count| equal_pieces(&pass, count, overlap))
+        .find(|pieces| pieces.iter().all(fits))
+        .unwrap_or_else(|| vec![pass])
+}
+
+/// How many instructions a program needs for a pass.
+fn instructions(pass: &Pass, profile: &Profile) -> usize {
+    let layer = Layer { passes: vec![pass.clone()], ..Layer::default() };
+    profile.programmer().layer(&layer).instructions.len()
+}
+
+/// A pass cut into open pieces of equal length, each of which begins `overlap` (mm) before the end of the one before; what
+/// was closed ends as far beyond its start.
+fn equal_pieces(pass: &Pass, count: usize, overlap: f64) -> Vec<Pass> {
+    let (length, around) = (pass.length(), if pass.closed { overlap } else { 0.0 });
+    let at = |k: usize| length * k as f64 / count as f64;
+    let begin = |k: usize| if k == 0 { 0.0 } else { (at(k) - overlap).max(0.0) };
+    let end = |k: usize| if k == count { length + around } else { at(k) };
+    (0..count).map(|k| stretch(pass, begin(k), end(k + 1))).collect()
+}
+
+/// The part of a pass from one distance along it to another, mm; a closed one goes around again.
+fn stretch(pass: &Pass, from: f64, to: f64) -> Pass {
+    let mut along = 0.0;
+    let again = if pass.closed { 2 } else { 1 };
+    let mut kept: Vec<Segment> = Vec::new();
+    for segment in (0..again).flat_map(|_| pass.segments()) {
+        let length = segment.length();
+        let part = |distance: f64| segment.from.lerp(segment.to, ((distance - along) / length).clamp(0.0, 1.0));
+        if length > 0.0 && along + length > from && along < to {
+            kept.push(Segment { from: part(from), to: part(to), ..segment });
+        }
+        along += length;
+    }
+    let points: Vec<DVec3> = kept.first().map(|s| s.from).into_iter().chain(kept.iter().map(|s| s.to)).collect();
+    // A value applies from its point to the next.
+    let values = |value: fn(&Segment) -> f64| Along::Each(kept.iter().chain(kept.last()).map(value).collect());
+    let (width, pace) = (values(|s| s.width), values(|s| s.pace));
+    Pass { kind: pass.kind, closed: false, points, width, pace }
+}
