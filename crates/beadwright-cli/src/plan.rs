@@ -137,7 +137,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         return Err(Refused(summary.forbidden).into());
     }
-    summary.notes.splice(0..0, note);
+    let volumes = files.files.iter().flat_map(PlanFiles::notes);
+    summary.notes.splice(0..0, note.into_iter().chain(volumes));
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let written = files.finish(&summary, &model.repair())?;
 

@@ -21,6 +21,7 @@ pub use writing::{Chunk, DialectError, Job, PLACEHOLDERS, Writer, write, writer}
 use crate::limit::{Broken, Limit};
 use crate::program::ProgramSettings;
 use crate::template;
+use crate::weld::WeldSettings;
 use reading::{ArcCodes, FindModule, Options, ReadError, ReadProgram};
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,12 @@ pub trait Section {
 
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
+
+    /// How long the torch stands at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of the
+    /// section determine it and not `process.arc_end_delay`.
+    fn arc_end_time(&self, _weld: &WeldSettings) -> Option<f64> {
+        None
+    }
 
     /// The most instructions that a pass may have where no program may be longer; `None` where a pass that is too long
     /// for the limit makes a longer program.

@@ -106,6 +106,11 @@ impl PlanFiles {
         chunks
     }
 
+    /// What people must know about the programs, once all layers are written: sentences.
+    pub fn notes(&self) -> Vec<String> {
+        self.programs.writers.iter().flat_map(|writer| writer.notes()).collect()
+    }
+
     /// The last text of all files; `total` is what the deposit model says of all layers.
     pub fn end(mut self, summary: &Summary, repair: &RepairReport, total: Option<&Figures>) -> Vec<Chunk> {
         let mut chunks = self.programs.end();

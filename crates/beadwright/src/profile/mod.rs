@@ -292,7 +292,9 @@ impl Profile {
     /// Settings for welding.
     pub fn weld_settings(&self) -> WeldSettings {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
-        WeldSettings { process, ends, travel: self.travel.clone(), motion: self.motion }
+        let weld = WeldSettings { process, ends, travel: self.travel.clone(), motion: self.motion, arc_end_time: None };
+        let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
+        WeldSettings { arc_end_time, ..weld }
     }
 
     /// The programmer that makes the instructions of layers.

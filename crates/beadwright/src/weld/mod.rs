@@ -32,4 +32,7 @@ pub struct WeldSettings {
     pub travel: Travel,
     /// How the machine accelerates, where that is known.
     pub motion: Option<Motion>,
+    /// How long the torch stands at the end of a pass after its crater is filled, s; by default the time for arc end, gas
+    /// postflow and drawing the wire back.
+    pub arc_end_time: Option<f64>,
 }

@@ -14,6 +14,7 @@ pub struct Torch {
     process: Option<Process>,
     ends: StartStop,
     motion: Option<Motion>,
+    arc_end_time: Option<f64>,
     travel_speed: f64,
     clearance: f64,
     at: Option<DVec3>,
@@ -73,6 +74,7 @@ impl Torch {
             process: None,
             ends: StartStop::default(),
             motion: None,
+            arc_end_time: None,
             travel_speed: f64::INFINITY,
             clearance,
             at: None,
@@ -83,8 +85,15 @@ impl Torch {
 
     /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
-        let WeldSettings { process, ends, travel, motion } = settings.clone();
-        Self { process: Some(process), ends, motion, travel_speed: travel.speed, ..Self::new(travel.clearance) }
+        let WeldSettings { process, ends, travel, motion, arc_end_time } = settings.clone();
+        Self {
+            process: Some(process),
+            ends,
+            motion,
+            arc_end_time,
+            travel_speed: travel.speed,
+            ..Self::new(travel.clearance)
+        }
     }
 
     /// How passes begin and end.
@@ -193,8 +202,8 @@ impl Torch {
     /// speed, s per pass.
     fn delays(&self) -> [f64; 2] {
         let Some(process) = &self.process else { return [0.0; 2] };
-        let end = process.arc_end_delay + process.gas_postflow + retract_time(&self.ends, process);
-        [process.gas_preflow + process.arc_start_delay, end]
+        let end = || process.arc_end_delay + process.gas_postflow + retract_time(&self.ends, process);
+        [process.gas_preflow + process.arc_start_delay, self.arc_end_time.unwrap_or_else(end)]
     }
 }
 

@@ -120,7 +120,6 @@ impl<'a> Reader<'a> {
         let speed: f64 = value.parse().unwrap();
         assert!(speed > 0.0 && speed <= 2.0, "$VEL.CP = {speed}");
         self.speed = Some(speed * 1000.0);
-        assert!(self.seam.is_none() || self.seam == self.speed, "another speed than that of the seam: {value}");
     }
 
     fn motion(&mut self, line: &str, data: &BTreeMap<String, String>) {

@@ -24,8 +24,16 @@ pub fn run(files: &BTreeMap<String, String>, main: &str, output: &str) -> Motion
     let listed = files.get(&format!("{main}.pgf")).map(|text| pgf(text)).unwrap_or_default();
     assert!(listed.is_empty() || listed.contains(main), "the .pgf does not list {main}");
     let loaded = if listed.is_empty() { BTreeSet::from([main.to_owned()]) } else { listed };
-    let mut reader =
-        Reader { modules: &modules, loaded, main, output, machine: Machine::default(), exact: true, homes: 0 };
+    let mut reader = Reader {
+        modules: &modules,
+        loaded,
+        erased: None,
+        main,
+        output,
+        machine: Machine::default(),
+        exact: true,
+        homes: 0,
+    };
     reader.check_names();
     let body = &modules[main].routines["main"];
     assert_eq!((&*body[0], &*body[1]), ("ConfL \\Off", "SingArea \\Wrist"));
@@ -187,6 +195,8 @@ fn check(kind: &str, value: &Literal) {
 struct Reader<'a> {
     modules: &'a BTreeMap<String, Module>,
     loaded: BTreeSet<String>,
+    /// The module that was just erased where it was loaded already.
+    erased: Option<String>,
     main: &'a str,
     output: &'a str,
     machine: Machine,
@@ -239,8 +249,14 @@ impl Reader<'_> {
             }
             "SetDO" => self.set(rest),
             "SetAO" => self.machine.motion.feeds.push(rest.strip_prefix("aoWire,").unwrap().parse().unwrap()),
+            "IF" => {
+                let name = rest.strip_prefix("ModExist(\"").and_then(|r| r.split_once("\") EraseModule \"")).unwrap();
+                assert_eq!(name.1, format!("{}\"", name.0));
+                self.erased = Some(name.0.to_owned());
+            }
             "Load" => {
                 let name = self.file(rest.strip_prefix("\\Dynamic,").unwrap());
+                assert_eq!(self.erased.take().as_ref(), Some(&name), "after a stop {name} may be loaded already");
                 assert!(self.loaded.insert(name.clone()), "{name} is loaded already");
             }
             "UnLoad" => {

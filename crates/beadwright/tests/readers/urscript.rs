@@ -8,9 +8,10 @@ pub fn run(text: &str, arc: u32) -> Motion {
     assert!(text.is_ascii() && !text.contains(['\t', '\r']));
     let lines: Vec<&str> = text.lines().collect();
     let name = lines[0].strip_prefix("def ").and_then(|l| l.strip_suffix("():")).unwrap();
-    assert_eq!(lines[lines.len() - 2..], ["end", &format!("{name}()")], "the program runs what it defines");
+    assert!(name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_'), "{name}");
+    assert_eq!(lines.last(), Some(&"end"), "nothing comes behind the program");
     let (mut functions, mut body, mut open) = (BTreeMap::new(), Vec::new(), None);
-    for line in lines[1..lines.len() - 2].iter().map(|l| l.trim()).filter(|l| !l.starts_with('#')) {
+    for line in lines[1..lines.len() - 1].iter().map(|l| l.trim()).filter(|l| !l.starts_with('#')) {
         match (line.strip_prefix("def ").and_then(|l| l.strip_suffix("():")), &mut open) {
             (Some(function), None) => open = Some((function.to_owned(), Vec::new())),
             (None, Some(_)) if line == "end" => {

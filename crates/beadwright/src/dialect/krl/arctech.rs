@@ -1,9 +1,9 @@
-//! Inline forms of KUKA ArcTech Basic 3.x: ARCON, ARCSWI and ARCOFF as the pendant folds them, and their data.
+//! Inline forms of KUKA ArcTech Basic 3.x: ARCON and ARCOFF as the pendant folds them, and their data.
 //!
-//! A form moves to its point and switches there: ARCON moves to the start, ignites, and sets the speed of the seam;
-//! ARCSWI moves at the current speed and sets the speed of what follows; ARCOFF moves to the end and fills the crater.
-//! One ARCSWI takes about 1.5 kB, so points in between are plain motions, and forms are written only where the speed
-//! changes. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form,
+//! A form moves to its point and switches there: ARCON moves to the start and ignites, ARCOFF moves to the end and fills the
+//! crater. What lies between are plain motions with their own `$VEL.CP`: an ARCSWI is for other channels of the power
+//! source, takes about 1.5 kB, and cannot be run every few tenths of a millimetre. ARCOFF moves at the speed of the seam
+//! that ARCON has set: that of the last piece. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form,
 //! and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, weaving, and the
 //! package ArcTech Advanced.
 
@@ -18,7 +18,6 @@ use std::fmt::Write as _;
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     On,
-    Switch,
     Off,
 }
 
@@ -26,7 +25,6 @@ impl Form {
     fn word(self) -> &'static str {
         match self {
             Self::On => "ARCON",
-            Self::Switch => "ARCSWI",
             Self::Off => "ARCOFF",
         }
     }
@@ -109,7 +107,7 @@ impl Forms {
         }
     }
 
-    /// Moves to the start of a pass and lights the arc; the seam continues at `speed`, mm/s.
+    /// Moves to the start of a pass and lights the arc; the seam ends at `speed`, mm/s.
     pub(super) fn on(&mut self, text: &mut String, to: &str, speed: f64) {
         let ArcTech { strike, .. } = &self.arctech;
         let set = format!(
@@ -123,12 +121,6 @@ impl Forms {
             self.weld_set(speed)
         );
         self.form(text, Form::On, Target { via: None, to }, set);
-    }
-
-    /// Moves on at the current speed; after the point the seam continues at `speed`, mm/s.
-    pub(super) fn switch(&mut self, text: &mut String, target: Target<'_>, speed: f64) {
-        let set = self.weld_set(speed);
-        self.form(text, Form::Switch, target, set);
     }
 
     /// Moves to the end of a pass and ends the arc.
@@ -205,21 +197,13 @@ impl Forms {
         triggers(text, form, set, &of);
         let name = match form {
             Form::On => "ArcOn",
-            Form::Switch => "ArcSwi",
             Form::Off => "ArcOff",
         };
         let (motion, to) = (placed.motion(), via.map_or(format!("XP{point}"), |via| format!("XP{via}, XP{point}")));
-        let blend = if self.is_blended(form) { " C_DIS" } else { "" };
         let _ = write!(
             text,
-            "ArcMainNG(#{name}BeforeMoveStd, {of})\r\n{motion} {to}{blend}\r\nArcMainNG(#{name}AfterMoveStd, {of})\r\n;ENDFOLD\r\n"
+            "ArcMainNG(#{name}BeforeMoveStd, {of})\r\n{motion} {to}\r\nArcMainNG(#{name}AfterMoveStd, {of})\r\n;ENDFOLD\r\n"
         );
-    }
-
-    /// Whether the point is passed without a stop: never where the arc is lit or ends. `BAS` takes the blending
-    /// distance from the motion's data.
-    fn is_blended(&self, form: Form) -> bool {
-        form == Form::Switch && self.blend > 0.0
     }
 
     fn title(&self, text: &mut String, placed: &Placed) {
@@ -228,12 +212,13 @@ impl Forms {
         let help = via.map_or(String::new(), |via| format!("P{via} "));
         let parameter = via.map_or(String::new(), |via| format!(" Kuka.HelpPointName=P{via};"));
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
-        let blending = if self.is_blended(form) { "True" } else { "False" };
+        // The way to the start has a speed of its own; the seam has that of its data.
+        let speed = if form == Form::On { format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.')) } else { String::new() };
         let _ = write!(
             text,
-            ";FOLD {word} WDAT{set} {motion} {help}P{point} CPDAT1 Tool[{}] Base[{}];%{{PE}}\r\n;FOLD Parameters ;%{{h}}\r\n\
+            ";FOLD {word} WDAT{set} {motion} {help}P{point} {speed}CPDAT1 Tool[{}] Base[{}] ;%{{PE}}\r\n;FOLD Parameters ;%{{h}}\r\n\
              ;Params IlfProvider=kukaroboter.arctech.{provider}; Kuka.IsGlobalPoint=False; Kuka.PointName=P{point};{parameter} \
-             Kuka.BlendingEnabled={blending}; Kuka.MoveDataName=CPDAT1; Kuka.VelocityPath={}; Kuka.CurrentCDSetIndex=0; \
+             Kuka.BlendingEnabled=False; Kuka.MoveDataName=CPDAT1; Kuka.VelocityPath={}; Kuka.CurrentCDSetIndex=0; \
              Kuka.MovementParameterFieldEnabled=True; ArcTech.WdatVarName=WDAT{set}; ArcTech.Basic={}\r\n;ENDFOLD\r\n",
             self.tool, self.base, self.travel, self.arctech.version
         );
@@ -268,7 +253,6 @@ fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
             trigger(&path("OnTheFlyArcOn"), &delay("GasPreflow"), "GasPreflow");
             trigger(&path("OnTheFlyArcOn"), "0", "ArcOnMoveStd");
         }
-        Form::Switch => trigger("DISTANCE = 1", "0", "ArcSwiMoveStd"),
         Form::Off => {
             trigger(&path("ArcOffBefore"), "0", "ArcOffBeforeOffStd");
             trigger(&path("OnTheFlyArcOff"), "0", "ArcOffMoveStd");

@@ -7,6 +7,7 @@ use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::weld::WeldSettings;
 use serde::{Deserialize, Serialize};
 
 /// KUKA KRL. Templates are lines of KRL with `{{placeholders}}`.
@@ -29,6 +30,10 @@ pub struct Krl {
     /// Maximum number of moves in one module; longer layers are cut between passes; default 2000.
     #[serde(default = "two_thousand")]
     pub max_points: usize,
+    /// Most that one program with its layers may take of the controller's memory, MB; larger ones come in volumes, each
+    /// with a main program of its own, which are loaded and run one after another; default 4.
+    #[serde(default = "four")]
+    pub max_megabytes: f64,
     /// What switches the arc: `outputs` (the lines `arc_on` and `arc_off`) or `arctech` (the inline forms of ArcTech
     /// Basic); default outputs.
     #[serde(default)]
@@ -57,6 +62,10 @@ pub struct Krl {
     pub end: Vec<String>,
 }
 
+fn four() -> f64 {
+    4.0
+}
+
 fn two_thousand() -> usize {
     2000
 }
@@ -68,6 +77,7 @@ impl Section for Krl {
             "krl.base": self.base.into(), 1.0, 32.0, "(index into BASE_DATA)", CONTROLLER;
             "krl.ptp_speed": self.ptp_speed, 1.0, 100.0, "%", CONTROLLER;
             "krl.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
+            "krl.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "a controller has some megabytes for programs";
             "krl.max_points": self.max_points as f64, 10.0, 50_000.0, "moves per module",
                 "the pendant cannot show longer modules";
         };
@@ -98,6 +108,11 @@ impl Section for Krl {
             ("krl.crater", &self.crater),
             ("krl.end", &self.end),
         ]
+    }
+
+    fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
+        let crater = &self.arctech.as_ref().filter(|_| self.arc == KrlArc::Arctech)?.crater;
+        Some(crater.time + crater.burnback_time + weld.process.gas_postflow)
     }
 
     fn dry_run(&mut self) {

@@ -5,7 +5,8 @@
 //! forms of ArcTech Basic switch the arc; their data are in a `.dat` beside each layer's module.
 
 use super::arctech::{Forms, Target};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
+use crate::dialect::writing::volumes::{Volumes, from_anywhere};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
 use super::section::Krl;
@@ -18,10 +19,6 @@ const MAX_NAME: usize = 24;
 
 /// Room for the number of a part of a layer: `_999`.
 const PART: usize = 4;
-
-/// Words that no module may be called.
-const RESERVED: [&str; 12] =
-    ["DEF", "DEFDAT", "DEFFCT", "END", "LOOP", "FOR", "WHILE", "REPEAT", "SWITCH", "WAIT", "HALT", "EXIT"];
 
 /// Writes KRL.
 pub(super) struct KukaKrl {
@@ -36,17 +33,21 @@ pub(super) struct KukaKrl {
     digits: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
+    volumes: Volumes,
+    /// Name of the main program of the present volume.
+    main: String,
 }
 
 impl KukaKrl {
     /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, krl: Krl) -> Self {
-        let name = module_name(&job.part);
+        let name = upper_name(&job.part);
         let comment = job.comment();
         let values = Values::new(&name, job);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let table = job.program.table_angle;
-        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0 }
+        let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
+        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0, volumes, main }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -80,7 +81,7 @@ impl KukaKrl {
                 forms.declarations()
             ),
         });
-        let main = Chunk { file: format!("{}.src", self.name), text: format!("{module}( )\r\n") };
+        let main = Chunk { file: format!("{}.src", self.main), text: format!("{module}( )\r\n") };
         [main, Chunk { file: format!("{module}.src"), text }].into_iter().chain(data).collect()
     }
 
@@ -111,42 +112,29 @@ impl KukaKrl {
 
     /// Writes one instruction of a layer when ArcTech forms switch the arc; a form includes the move to its point.
     fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
-        let next_speed = all[i + 1..].iter().find_map(|next| match next {
-            Instruction::Weld { speed, .. } => Some(*speed),
-            _ => None,
-        });
-        match (all[i], next_speed) {
+        match all[i] {
             // ARCON itself moves there.
-            (Instruction::Travel { .. }, Some(_)) if matches!(all[i + 1], Instruction::ArcOn { .. }) => {}
-            (Instruction::ArcOn { pass, kind }, Some(speed)) => {
+            Instruction::Travel { .. } if matches!(all.get(i + 1), Some(Instruction::ArcOn { .. })) => {}
+            Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
-                    forms.on(text, &self.aggregate(to), speed);
+                    let speed = all[i..].iter().find_map(|next| match next {
+                        Instruction::Weld { speed, last: true, .. } => Some(*speed),
+                        _ => None,
+                    });
+                    forms.on(text, &self.aggregate(to), speed.unwrap_or(self.process.deposition_speed));
                 }
-                self.go_on(text, speed);
+                // A form leaves its own speed behind.
+                self.speed = 0.0;
             }
-            (Instruction::Weld { to, circle, speed, last }, next) => {
+            Instruction::Weld { to, circle, last: true, .. } => {
                 let (via, to) = (circle.map(|c| self.aggregate(c.via)), self.aggregate(to));
-                let target = Target { via: via.as_deref(), to: &to };
-                match next.filter(|_| !last) {
-                    None => forms.off(text, target),
-                    Some(next) if krl_speed(next) != krl_speed(speed) => {
-                        forms.switch(text, target, next);
-                        self.go_on(text, next);
-                    }
-                    Some(_) => self.instruction(text, all[i]),
-                }
+                forms.off(text, Target { via: via.as_deref(), to: &to });
             }
-            (Instruction::ArcOff { .. }, _) => self.speed = 0.0,
-            (other, _) => self.instruction(text, other),
+            Instruction::ArcOff { .. } => self.speed = 0.0,
+            other => self.instruction(text, other),
         }
-    }
-
-    /// Sets the speed of the plain motions after a form, since a form sets it for forms only.
-    fn go_on(&mut self, text: &mut String, speed: f64) {
-        self.speed = 0.0;
-        self.set_speed(text, speed);
     }
 
     fn aggregate(&self, to: DVec3) -> String {
@@ -232,12 +220,11 @@ impl KukaKrl {
     }
 }
 
-impl Writer for KukaKrl {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
-        // Room for "_L" and the number, and for that of a part.
-        self.name.truncate(MAX_NAME - 2 - self.digits - PART);
-        let (name, krl) = (&self.name, &self.krl);
+impl KukaKrl {
+    /// The head of a volume's main program, and its data.
+    fn begin_volume(&mut self) -> Vec<Chunk> {
+        self.main = self.volumes.begin(&self.name);
+        let (name, krl) = (&self.main, &self.krl);
         let data = format!(
             "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}\r\nDECL E6AXIS XHOME={{{}}}\r\nENDDAT\r\n",
             self.comment, krl.home
@@ -251,10 +238,29 @@ impl Writer for KukaKrl {
         text.push_str(&format!("$VEL.CP = {}\r\n", fixed(self.travel_speed / 1000.0, 6)));
         self.lines(&mut text, &self.krl.start);
         text.push_str("PTP XHOME\r\n");
-        vec![
-            Chunk { file: format!("{}.dat", self.name), text: data },
-            Chunk { file: format!("{}.src", self.name), text },
-        ]
+        vec![Chunk::new(format!("{name}.dat"), data), Chunk::new(format!("{name}.src"), text)]
+    }
+
+    fn end_volume(&self) -> Vec<Chunk> {
+        let mut text = String::new();
+        self.lines(&mut text, &self.krl.end);
+        text.push_str("PTP XHOME\r\nEND\r\n");
+        vec![Chunk::new(format!("{}.src", self.main), text)]
+    }
+
+    /// The modules of a layer, and their calls.
+    fn modules(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        let parts = split::passes(&program.instructions, self.krl.max_points);
+        parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
+    }
+}
+
+impl Writer for KukaKrl {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        // Room for "_L" and the number, and for that of a part.
+        self.name.truncate(MAX_NAME - 2 - self.digits - PART);
+        self.begin_volume()
     }
 
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
@@ -262,34 +268,34 @@ impl Writer for KukaKrl {
             return Vec::new();
         }
         self.values.set("layer", program.index + 1);
-        let parts = split::passes(&program.instructions, self.krl.max_points);
-        parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
+        let mut chunks = self.modules(program);
+        if !self.volumes.has_room(size(&chunks)) {
+            let before = self.end_volume();
+            chunks = [before, self.begin_volume()].concat();
+            let instructions = from_anywhere(&program.instructions);
+            let first = self.modules(&LayerProgram { instructions, ..program.clone() });
+            self.volumes.add(size(&first));
+            chunks.extend(first);
+            return chunks;
+        }
+        self.volumes.add(size(&chunks));
+        chunks
     }
 
     fn end(&mut self) -> Vec<Chunk> {
-        let mut text = String::new();
-        self.lines(&mut text, &self.krl.end);
-        text.push_str("PTP XHOME\r\nEND\r\n");
-        vec![Chunk { file: format!("{}.src", self.name), text }]
+        self.end_volume()
     }
+
+    fn notes(&self) -> Vec<String> {
+        self.volumes.note("KRL", "src").into_iter().collect()
+    }
+}
+
+/// Bytes of some files.
+fn size(chunks: &[Chunk]) -> usize {
+    chunks.iter().map(|chunk| chunk.text.len()).sum()
 }
 
 fn wait(text: &mut String, seconds: f64) {
     text.push_str(&format!("WAIT SEC {}\r\n", fixed(seconds, 3)));
-}
-
-/// A speed as it is written, millionths of a m/s.
-fn krl_speed(speed: f64) -> i64 {
-    (speed * 1000.0).round() as i64
-}
-
-/// A legal module name: letters, digits and `_`, not beginning with a digit, no keyword, at most 24 characters.
-fn module_name(part: &str) -> String {
-    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
-    let mut name: String = part.chars().map(legal).collect();
-    if name.is_empty() || name.starts_with(|c: char| c.is_ascii_digit()) || RESERVED.contains(&name.as_str()) {
-        name.insert_str(0, "P_");
-    }
-    name.truncate(MAX_NAME);
-    name
 }

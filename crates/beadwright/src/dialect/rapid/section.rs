@@ -6,6 +6,7 @@ use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use super::names;
+use crate::weld::{WeldSettings, retract_time};
 use serde::{Deserialize, Serialize};
 
 /// How the arc is switched.
@@ -216,6 +217,14 @@ impl Section for Rapid {
             ("rapid.crater", &self.crater),
             ("rapid.end", &self.end),
         ]
+    }
+
+    fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
+        let (seam, ends, process) = (&self.seam, &weld.ends, &weld.process);
+        let filling = if ends.crater_fill_time > 0.0 { 0.0 } else { seam.fill_time };
+        let back = if ends.wire_retract > 0.0 { retract_time(ends, process) } else { seam.rollback_time };
+        let time = filling + seam.burnback_time + back + process.gas_postflow + process.arc_end_delay;
+        (self.arc == RapidArc::Instructions).then_some(time)
     }
 
     fn dry_run(&mut self) {

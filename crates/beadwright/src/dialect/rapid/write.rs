@@ -261,6 +261,8 @@ impl AbbRapid {
         let file = format!("{}/{module}.mod", self.rapid.folder);
         let load = self.rapid.modules == RapidModules::Load;
         if load {
+            // After a stop the module may still be there, and Load would refuse (ERR_LOADED).
+            statement(&mut text, &format!("IF ModExist(\"{module}\") EraseModule \"{module}\";"));
             statement(&mut text, &format!("Load \\Dynamic,\"{file}\";"));
         }
         statement(&mut text, &format!("%\"{module}:{routine}\"%;"));

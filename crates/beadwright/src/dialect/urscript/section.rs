@@ -28,6 +28,14 @@ pub struct Urscript {
     /// Blending radius along a pass, mm; reduced where points are closer together than twice the radius; 0 for exact
     /// stops.
     pub blend: f64,
+    /// Most that one script may hold, MB; longer programs come in several scripts, run one after another; default 2.
+    #[serde(default = "two")]
+    pub max_megabytes: f64,
+    /// Whether the script ends with a call of its program. A script that is sent to the controller's socket or loaded in a
+    /// Script node must have nothing behind its last `end`; a file that is inserted into a program needs the call. Default
+    /// false.
+    #[serde(default)]
+    pub call: bool,
     /// Statements at the beginning of the program.
     pub start: Vec<String>,
     /// Statements at the beginning of every layer.
@@ -49,11 +57,16 @@ pub struct Urscript {
     pub end: Vec<String>,
 }
 
+fn two() -> f64 {
+    2.0
+}
+
 impl Section for Urscript {
     fn limits(&self) -> Vec<Limit> {
         let mut limits = limits! {
             "urscript.home_speed": self.home_speed, 0.1, 180.0, "°/s", CONTROLLER;
             "urscript.acceleration": self.acceleration, 1.0, 20_000.0, "mm/s²", CONTROLLER;
+            "urscript.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "the controller reads a script as a whole";
             "urscript.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
         };
         limits.extend(self.home.map(|axis| limit("urscript.home", axis, (-363.0, 363.0), "°", CONTROLLER)));

@@ -4,35 +4,19 @@
 //! robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but not
 //! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
+use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::section::Urscript;
 use crate::program::{Instruction, LayerProgram};
 use glam::DVec3;
 
-/// Words that no program may be called.
-const RESERVED: [&str; 20] = [
-    "and",
-    "break",
-    "continue",
-    "def",
-    "elif",
-    "else",
-    "end",
-    "false",
-    "global",
-    "halt",
-    "if",
-    "local",
-    "not",
-    "or",
-    "return",
-    "sec",
-    "thread",
-    "true",
-    "while",
-    "part_frame",
-];
+/// Words of the language and names of its functions that a part might happen to be called.
+const RESERVED: &str = "\
+    and break continue def elif else end false global halt if local not or pass return sec self thread true while xor acos \
+    asin atan ceil cos d2r exp fail floor force freedrive_mode get_inverse_kin join kill length log movec movej movel movep \
+    norm ones part_frame pause popup pow r2d random rotvec2rpy servoj set_tcp set_payload sin size sleep speedj speedl sqrt \
+    stopj stopl sync tan textmsg wrench zeros";
 
 /// Greatest blend between two moves, as a fraction of the length of the shorter one.
 const BLEND_PART: f64 = 0.45;
@@ -52,20 +36,23 @@ pub(super) struct UniversalScript {
     /// Names of the layers' functions.
     layers: Vec<String>,
     at: Option<DVec3>,
+    volumes: Volumes,
+    /// Name of the present volume.
+    main: String,
 }
 
 impl UniversalScript {
     /// Begins the program of a part and names it after the part.
     pub(super) fn new(job: &Job<'_>, urscript: Urscript) -> Self {
         let mut name = upper_name(&job.part).to_lowercase();
-        if RESERVED.contains(&name.as_str()) || name.starts_with("layer_") {
+        if RESERVED.split(' ').any(|word| word == name) || name.starts_with("layer_") {
             name.insert_str(0, "p_");
         }
         let comment = job.comment();
         let values = Values::new(&name, job);
         let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
-        let layers = Vec::new();
-        Self { name, comment, urscript, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None }
+        let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
+        Self { name, comment, urscript, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None, volumes, main }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
@@ -155,28 +142,38 @@ impl UniversalScript {
         }
     }
 
-    fn chunk(&self, text: String) -> Vec<Chunk> {
-        vec![Chunk { file: format!("{}.script", self.name), text }]
+    fn chunk(&self, text: String) -> Chunk {
+        Chunk::new(format!("{}.script", self.main), text)
     }
 }
 
-impl Writer for UniversalScript {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
-        let mut text = format!("def {}():\n  # {}\n", self.name, self.comment);
+impl UniversalScript {
+    fn begin_volume(&mut self) -> Vec<Chunk> {
+        self.main = self.volumes.begin(&self.name);
+        self.layers.clear();
+        let mut text = format!("def {}():\n  # {}\n", self.main, self.comment);
         if let Some(frame) = &self.urscript.tool_frame {
             text.push_str(&format!("  set_tcp({})\n", frame_text(frame)));
         }
         text.push_str(&format!("  global part_frame = {}\n", frame_text(&self.urscript.part_frame)));
-        self.chunk(text)
+        vec![self.chunk(text)]
     }
 
-    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
-        if program.instructions.is_empty() {
-            return Vec::new();
+    fn end_volume(&mut self) -> Vec<Chunk> {
+        let mut text = String::new();
+        self.home(&mut text);
+        self.lines(&mut text, "  ", &self.urscript.start);
+        self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
+        self.lines(&mut text, "  ", &self.urscript.end);
+        self.home(&mut text);
+        text.push_str("end\n");
+        if self.urscript.call {
+            text.push_str(&format!("{}()\n", self.main));
         }
-        let name = format!("layer_{:0digits$}", program.index + 1, digits = self.digits);
-        self.values.set("layer", program.index + 1);
+        vec![self.chunk(text)]
+    }
+
+    fn function(&mut self, name: &str, program: &LayerProgram) -> String {
         let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
         text.reserve(program.instructions.len() * 120);
         self.lines(&mut text, "    ", &self.urscript.layer_start);
@@ -185,21 +182,41 @@ impl Writer for UniversalScript {
             let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
             self.instruction(&mut text, "    ", instruction, next);
         }
-        text.push_str("  end\n");
+        text + "  end\n"
+    }
+}
+
+impl Writer for UniversalScript {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+        self.digits = layers.to_string().len().max(3);
+        self.begin_volume()
+    }
+
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
+        if program.instructions.is_empty() {
+            return Vec::new();
+        }
+        let name = format!("layer_{:0digits$}", program.index + 1, digits = self.digits);
+        self.values.set("layer", program.index + 1);
+        let (mut chunks, mut text) = (Vec::new(), self.function(&name, program));
+        if !self.volumes.has_room(text.len()) {
+            chunks = self.end_volume();
+            chunks.extend(self.begin_volume());
+            let instructions = from_anywhere(&program.instructions);
+            text = self.function(&name, &LayerProgram { instructions, ..program.clone() });
+        }
+        self.volumes.add(text.len());
         self.layers.push(name);
-        self.chunk(text)
+        chunks.push(self.chunk(text));
+        chunks
     }
 
     fn end(&mut self) -> Vec<Chunk> {
-        let mut text = String::new();
-        self.home(&mut text);
-        self.lines(&mut text, "  ", &self.urscript.start);
-        self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
-        self.lines(&mut text, "  ", &self.urscript.end);
-        self.home(&mut text);
-        // A program file runs what it defines.
-        text.push_str(&format!("end\n{}()\n", self.name));
-        self.chunk(text)
+        self.end_volume()
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.volumes.note("URScript", "script").into_iter().collect()
     }
 }
 

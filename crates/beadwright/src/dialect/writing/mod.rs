@@ -2,11 +2,14 @@
 //!
 //! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
+mod names;
 pub(super) mod needs;
 pub(super) mod orientation;
 mod placeholders;
 pub(super) mod split;
+pub(super) mod volumes;
 
+pub(super) use names::upper_name;
 pub use placeholders::PLACEHOLDERS;
 pub(super) use placeholders::Values;
 
@@ -44,6 +47,11 @@ pub trait Writer: Send {
 
     /// What comes after the last layer; the torch stands clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
+
+    /// What people must know about the finished program: sentences.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// What is to be written: all that a dialect needs to know besides the layers.
@@ -192,16 +200,6 @@ pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
 /// Printable ASCII for comments; other characters become `_`.
 pub(super) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect()
-}
-
-/// A name of upper-case letters, digits and `_`, a letter first.
-pub(super) fn upper_name(part: &str) -> String {
-    let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
-    let mut name: String = part.chars().map(legal).collect();
-    if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        name.insert_str(0, "P_");
-    }
-    name
 }
 
 /// Whether a text can be the extension of a file's name.

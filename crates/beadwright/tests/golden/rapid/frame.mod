@@ -11,9 +11,11 @@ MODULE frame
     ConfL \Off;
     SingArea \Wrist;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+    IF ModExist("frame_L001") EraseModule "frame_L001";
     Load \Dynamic,"HOME:/part/frame_L001.mod";
     %"frame_L001:Layer001"%;
     UnLoad "HOME:/part/frame_L001.mod";
+    IF ModExist("frame_L002") EraseModule "frame_L002";
     Load \Dynamic,"HOME:/part/frame_L002.mod";
     %"frame_L002:Layer002"%;
     UnLoad "HOME:/part/frame_L002.mod";
