@@ -17,6 +17,7 @@ use beadwright::profile::{BUILT_IN, Profile};
 use beadwright::simulate;
 use beadwright::task::Task;
 use beadwright::text;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -151,11 +152,13 @@ impl Source {
             Content::Program(text) => text,
         };
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
-        let mut module = |name: &str| find_module(&folder, name);
+        let main =
+            Main { folder, extension: path.extension().map(|e| e.to_ascii_lowercase()), dialect: recognised(&text) };
+        let mut module = |name: &str| main.module(name);
         let inform_cm_per_min =
             profile.dialects.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
         let options = reading::Options { arc: reading.codes(profile), filament_diameter: None, inform_cm_per_min };
-        let program = reading::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
+        let mut program = reading::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
         let (told, printer) = (told_profile(&text), program.moves.iter().any(|m| matches!(m.metal, Metal::Volume(_))));
         anyhow::ensure!(
             !printer || told.is_some() || wanted.profile.is_some(),
@@ -169,6 +172,15 @@ impl Source {
         if wanted.profile.is_none() {
             let source = if told.is_some() { "the program names it" } else { "--profile tells another" };
             notes.insert(0, format!("Read with the profile {} ({source}).", profile.name));
+        }
+        let (rapids, length) = program.take_rapids_at(profile.travel.speed);
+        if rapids > 0 {
+            notes.push(format!(
+                "Rapid and joint moves tell no speed: {rapids} of them, {:.2} m, were timed at the profile's travel.speed, {} \
+                 mm/s.",
+                length / 1e3,
+                profile.travel.speed
+            ));
         }
         if let Some(part) = part {
             if let Some(by) = simulate::shift(&layers, &part.mesh, &settings) {
@@ -220,18 +232,37 @@ fn layers_of(name: String, plan: PlanFile, profile: &Profile) -> Loaded {
     Loaded { name, language: "plan", layers: plan.layers, totals, settings, notes }
 }
 
-/// A module beside the program, whatever its case and extension.
-fn find_module(folder: &Path, name: &str) -> Option<String> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let wanted = name.to_ascii_lowercase();
-    let fits = |path: &PathBuf| {
-        let file = path.file_name().map(|f| f.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        file == wanted || ["src", "mod", "sub", "ls", "jbi"].iter().any(|ext| file == format!("{wanted}.{ext}"))
-    };
-    let mut files: Vec<PathBuf> =
-        fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.path())).filter(fits).collect();
-    files.sort();
-    text::of(&file::read(files.first()?).ok()?).ok()
+/// The main file of a program, whose modules lie beside it.
+struct Main {
+    folder: PathBuf,
+    /// Its extension, in lower case.
+    extension: Option<OsString>,
+    dialect: Option<&'static str>,
+}
+
+impl Main {
+    /// A module by name, whatever its case and extension. A folder may hold the same part in several languages: a
+    /// module in another language than the main file's is none of it, and the main file's extension comes first.
+    fn module(&self, name: &str) -> Option<String> {
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
+        let wanted = name.to_ascii_lowercase();
+        let fits = |path: &PathBuf| {
+            let file = path.file_name().map(|f| f.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+            file == wanted || ["src", "mod", "sub", "ls", "jbi"].iter().any(|ext| file == format!("{wanted}.{ext}"))
+        };
+        let mut files: Vec<PathBuf> =
+            fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.path())).filter(fits).collect();
+        let other = |path: &Path| path.extension().map(|e| e.to_ascii_lowercase()) != self.extension;
+        files.sort_by_cached_key(|path| (other(path), path.clone()));
+        let text = |path: PathBuf| text::of(&file::read(&path).ok()?).ok();
+        let own = |text: &String| recognised(text).is_none_or(|dialect| self.dialect.is_none_or(|own| own == dialect));
+        files.into_iter().filter_map(text).find(own)
+    }
+}
+
+/// The language of a program, if a line of it tells.
+fn recognised(text: &str) -> Option<&'static str> {
+    reading::recognise(text).map(|dialect| dialect.language)
 }
 
 /// The profile of a plan or program, and the part it was made for.

@@ -483,6 +483,43 @@ fn programs_of_every_robot_are_simulated_and_inspected() {
     assert!(ok(folder.path(), &["inspect", "out/plan.json"]).contains("deposited length"));
 }
 
+/// Layers have one name in KRL and FANUC TP: each program reads its own.
+#[test]
+fn programs_of_several_robots_in_one_folder_do_not_mix() {
+    let folder = folder_with("cross");
+    let all = folder.path().join("all");
+    fs::create_dir(&all).unwrap();
+    let mut alone = Vec::new();
+    for (profile, post, main) in [("cmt-al2319-kuka", "krl", "CROSS.src"), ("cmt-steel-robots", "fanuc", "CROSS.ls")] {
+        ok(folder.path(), &["plan", "cross.stl", "-p", profile, "--post", post, "-o", post, "--no-deposit"]);
+        let own = files(&folder.path().join(post));
+        let programs = own.iter().filter(|(name, _)| [".src", ".dat", ".ls"].iter().any(|end| name.ends_with(end)));
+        programs.for_each(|(name, bytes)| fs::write(all.join(name), bytes).unwrap());
+        let inspect = |file: &str| -> serde_json::Value {
+            serde_json::from_str(&ok(folder.path(), &["inspect", file, "-p", profile, "--json"])).unwrap()
+        };
+        alone.push((format!("all/{main}"), inspect(&format!("{post}/{main}")), profile));
+    }
+    // Names of files may be in any case.
+    fs::write(all.join("cross_l002.ls.bak"), "not a program").unwrap();
+    for (file, alone, profile) in alone {
+        let together = ok(folder.path(), &["inspect", &file, "-p", profile, "--json"]);
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&together).unwrap(), alone, "{file}");
+    }
+}
+
+#[test]
+fn rapids_count_in_the_time() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("a.nc"), "G1 X0 Y0 Z0 F600\nM3\nG1 X60\nM5\nG0 X6060\nM3\nG1 X6120\nM5\n").unwrap();
+    let said = ok(folder.path(), &["inspect", "a.nc", "-p", "plasma-304-cnc", "--set", "travel.speed=50", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let time = said["totals"]["total_time_s"].as_f64().unwrap();
+    // Twice 60 mm at 10 mm/s, 6 m at 50 mm/s.
+    assert!((time - 12.0 - 120.0).abs() < 1.0, "{said}");
+    assert!(said["notes"].to_string().contains("1 of them, 6.00 m, were timed at"), "{said}");
+}
+
 /// The command alone in a folder, on the file system of the build, so that nothing is copied: a program that was just
 /// written may be refused as busy.
 fn alone() -> (TempDir, PathBuf) {

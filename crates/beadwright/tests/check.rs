@@ -182,6 +182,211 @@ fn every_seeded_fault_is_found() {
     }
 }
 
+/// A fault that is told with its place: what it is, how it comes in, and the check, layer and pass (from 0) that tell it.
+type Placed = (&'static str, fn(&mut Vec<Layer>, &mut Profile), &'static str, Option<usize>, Option<usize>);
+
+/// Passes that run through these places beside the first point of a pass, mm.
+fn detour(pass: &mut beadwright::pass::Pass, by: &[(f64, f64)]) {
+    let from = pass.points[0];
+    let through: Vec<DVec3> = by.iter().map(|&(x, y)| from + DVec3::new(x, y, 0.0)).collect();
+    pass.points.splice(1..1, through);
+    (pass.width, pass.pace) = (Along::Same(7.54), Along::Same(10.5));
+}
+
+const PLACED: [Placed; 20] = [
+    ("a spike", |l, _| detour(&mut l[1].passes[0], &[(30.0, 0.0), (0.0, 0.0)]), "retraced", Some(1), Some(0)),
+    (
+        "a hairpin",
+        |l, _| detour(&mut l[2].passes[1], &[(0.0, 40.0), (1.5, 40.0), (1.5, 0.0)]),
+        "retraced",
+        Some(2),
+        Some(1),
+    ),
+    (
+        "a pass that comes back on its way out",
+        |l, _| {
+            let pass = &mut l[3].passes[0];
+            let back: Vec<DVec3> = pass.points.iter().rev().skip(1).copied().collect();
+            (pass.closed, pass.width, pass.pace) = (false, Along::Same(7.54), Along::Same(10.5));
+            pass.points.extend(back);
+        },
+        "retraced",
+        Some(3),
+        Some(0),
+    ),
+    ("the first layer last", |l, p| (l.rotate_left(1), p.travel.clearance = 4.0).1, "low-travel", Some(0), Some(1)),
+    (
+        "a post in the way",
+        |l, _| {
+            // It stands before the other passes come.
+            let (at, mut post) = (l[0].passes[1].points[0], l[0].passes[0].clone());
+            (post.closed, post.points) =
+                (false, vec![at + DVec3::new(0.0, 0.0, 40.0), at + DVec3::new(20.0, 0.0, 40.0)]);
+            l[0].passes.insert(1, post);
+        },
+        "low-travel",
+        Some(0),
+        // The travel to the pass after it leaves from its top.
+        Some(3),
+    ),
+    ("a layer of one short pass", |l, _| l[2].passes = vec![stub(&l[2], 60.0)], "cooling", Some(2), None),
+    (
+        "a layer too quick for its limit",
+        |l, p| (l[1].passes.truncate(1), p.check.min_layer_time = Some(40.0)).1,
+        "heat-input",
+        Some(1),
+        None,
+    ),
+    (
+        "an arc over before it burns",
+        |l, _| {
+            let pass = stub(&l[1], 8.0);
+            l[1].passes.push(pass)
+        },
+        "short-arc",
+        Some(1),
+        None,
+    ),
+    ("a speed that is no number", |l, _| l[2].passes[0].pace = Along::Same(f64::NAN), "speed-window", Some(2), Some(0)),
+    ("a bead of a millimetre", |l, _| l[3].passes[1].width = Along::Same(1.0), "bead-width", Some(3), Some(1)),
+    ("a bead of no known width", |l, _| l[0].passes[0].width = Along::Same(f64::NAN), "bead-width", Some(0), Some(0)),
+    (
+        "a pass that crosses itself",
+        |l, _| detour(&mut l[1].passes[0], &[(30.0, 20.0), (0.0, 20.0), (30.0, -10.0)]),
+        "crossing",
+        Some(1),
+        Some(0),
+    ),
+    (
+        "a pass of the layer below",
+        |l, _| {
+            let low = l[0].passes[1].clone();
+            l[2].passes.insert(0, low)
+        },
+        "points",
+        Some(2),
+        Some(0),
+    ),
+    ("a point far above its layer", |l, _| l[0].passes[1].points[0].z += 5.0, "points", Some(0), Some(1)),
+    ("a pass without points", |l, _| l[1].passes[1].points.clear(), "points", Some(1), Some(1)),
+    ("a travel that is never lifted", |_, p| p.travel.clearance = 0.0, "clearance", None, None),
+    (
+        "a part cut in the middle",
+        |l, _| {
+            l.iter_mut().skip(2).for_each(|l| {
+                l.z += 5.0;
+                l.passes.iter_mut().flat_map(|p| &mut p.points).for_each(|p| p.z += 5.0);
+            })
+        },
+        "layers",
+        Some(2),
+        None,
+    ),
+    ("a controller too small for a layer", |_, p| p.check.max_points = 20, "program-size", Some(0), None),
+    ("a controller too small for the plan", |_, p| p.check.max_plan_points = Some(100), "program-size", None, None),
+    (
+        "the arc on beside the part",
+        |l, _| detour(&mut l[3].passes[1], &[(0.0, 300.0), (9.0, 300.0)]),
+        "air",
+        Some(3),
+        Some(1),
+    ),
+];
+
+/// A pass of this length where the first pass of a layer begins.
+fn stub(layer: &Layer, length: f64) -> beadwright::pass::Pass {
+    let mut pass = layer.passes[0].clone();
+    let start = pass.points[0];
+    (pass.closed, pass.points) = (false, vec![start, start + DVec3::new(length, 0.0, 0.0)]);
+    (pass.width, pass.pace) = (Along::Same(7.54), Along::Same(10.5));
+    pass
+}
+
+#[test]
+fn every_seeded_fault_is_found_at_its_place() {
+    let profile = profile_by("cmt-al2319-kuka", "contour");
+    let clean = planned("cross", &profile, 4);
+    let all = |layers: &[Layer], profile: &Profile| {
+        check::check(layers, profile, plan::deposit_settings(profile), &Task::new()).unwrap()
+    };
+    let before = all(&clean, &profile);
+    for (what, seed, check, layer, pass) in PLACED {
+        let (mut layers, mut profile) = (clean.clone(), profile.clone());
+        seed(&mut layers, &mut profile);
+        let findings = all(&layers, &profile);
+        let own: Vec<_> = findings.iter().filter(|f| f.check == check).collect();
+        let there = |f: &&&check::Finding| f.layer == layer && (pass.is_none() || f.pass == pass);
+        assert!(own.iter().any(|f| there(&f)), "{what}: {own:?}");
+        assert!(!before.iter().any(|f| f.check == check), "{what}: {check} finds something in the clean plan");
+    }
+}
+
+/// Lines end to end and layer on layer, each where the one before has ended.
+#[test]
+fn arcs_struck_on_craters_are_found() {
+    let profile = profile_by("cmt-al2319-kuka", "contour");
+    let layer = planned("cross", &profile, 1).remove(0);
+    let wall = |count: usize, shift: f64| -> Vec<Layer> {
+        let line = |k: usize| {
+            let (mut layer, z) = (layer.clone(), layer.height * (k + 1) as f64);
+            let x = shift * (k % 3) as f64;
+            let mut points = vec![DVec3::new(x, 0.0, z), DVec3::new(60.0 + x, 0.0, z)];
+            points.rotate_left(k % 2);
+            (layer.index, layer.z, layer.islands) = (k, z, Vec::new());
+            layer.passes.truncate(1);
+            (layer.passes[0].closed, layer.passes[0].points) = (false, points);
+            (layer.passes[0].width, layer.passes[0].pace) = (Along::Same(7.54), Along::Same(10.5));
+            layer
+        };
+        (0..count).map(line).collect()
+    };
+    let named = |layers: &[Layer]| found(layers, &profile).contains(&"alternating-ends");
+    assert!(named(&wall(25, 0.0)));
+    // The first layer meets nothing below.
+    assert!(!named(&wall(24, 0.0)));
+    assert!(!named(&wall(30, 8.0)), "ends moved by more than a bead width");
+    let findings = check::check(&wall(26, 0.0), &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
+    let of = findings.iter().filter(|f| f.check == "alternating-ends");
+    // Both ends of the wall, once each.
+    assert_eq!(of.map(|f| (f.layer, f.place.unwrap().x)).collect::<Vec<_>>(), [(Some(24), 0.0), (Some(24), 60.0)]);
+}
+
+#[test]
+fn the_reminder_to_cool_is_for_torches_that_wait_nowhere() {
+    let mut profile = profile_by("cmt-al2319-kuka", "contour");
+    let layers: Vec<Layer> = {
+        let mut layers = planned("cross", &profile, 3);
+        layers.iter_mut().for_each(|layer| layer.passes = vec![stub(layer, 60.0)]);
+        layers
+    };
+    let reminded = |profile: &Profile| found(&layers, profile).contains(&"cooling");
+    // 60 mm at 10.5 mm/s.
+    assert!(reminded(&profile));
+    profile.check.cooling_time = 5.0;
+    assert!(!reminded(&profile));
+    profile.check.cooling_time = 15.0;
+    profile.start_stop.interpass_time = 30.0;
+    assert!(!reminded(&profile));
+    profile.start_stop.interpass_time = 0.0;
+    profile.process.ctwd = 0.0;
+    assert!(!reminded(&profile), "a printer");
+}
+
+/// The checks that look at how passes lie to each other stay silent on what is planned, over all layers.
+#[test]
+fn whole_plans_are_clean_of_spikes_craters_and_low_travels() {
+    for part in ["cross", "star", "gear", "propeller", "plate"] {
+        for strategy in ["contour", "zigzag", "loop", "hybrid"] {
+            let profile = profile_by("cmt-al2319-kuka", strategy);
+            let layers = planned(part, &profile, usize::MAX);
+            let findings = check::check(&layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
+            let ways = ["retraced", "alternating-ends", "low-travel", "cooling"];
+            let told: Vec<String> = findings.iter().filter(|f| ways.contains(&f.check)).map(|f| f.sentence()).collect();
+            assert_eq!(told, [""; 0], "{part} {strategy}");
+        }
+    }
+}
+
 #[test]
 fn towers_stacked_starts_and_large_layers_are_found() {
     let mut profile = profile_by("cmt-al2319-kuka", "contour");

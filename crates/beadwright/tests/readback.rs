@@ -367,6 +367,159 @@ END
 }
 
 #[test]
+fn krl_splines_and_whole_circles() {
+    let text = "\
+DEF S( )
+LIN {X 0,Y 0,Z 0}
+$VEL.CP = 0.1
+ARC_ON( )
+SPLINE WITH $VEL.CP = 0.01
+  SLIN {X 10}
+  SCIRC {X 20,Y 10},{X 10,Y 20} WITH $VEL.CP = 0.02
+ENDSPLINE C_SPL
+ARC_OFF( )
+LIN {X 0,Y 0}
+ARC_ON( )
+CIRC {X 10,Y 10},{X 20,Y 0}, CA 360 C_DIS
+ARC_OFF( )
+CIRC {X 10,Y 10},{X 20,Y 0}, CA -90
+END
+";
+    let program = of(text);
+    let (half, whole) = (10.0 * PI, 20.0 * PI);
+    let totals = program.totals();
+    assert!((totals.deposited_length_mm - 10.0 - half - whole).abs() < 2.0 * chord_loss(half + whole, 10.0));
+    let layer = &program.layers()[0];
+    assert_eq!((layer.passes[0].speed[0], layer.passes[0].speed[1]), (10.0, 20.0));
+    assert_eq!(layer.passes[1].speed[0], 100.0, "the speed of a block ends with it");
+    let (start, end) = (layer.passes[1].points[0], *layer.passes[1].points.last().unwrap());
+    assert!(start.distance(end) < 1e-9, "{end}");
+    // A quarter against the order of the points, about (10, 0): down to (10, -10).
+    let last = program.moves.last().unwrap().to;
+    assert!(last.distance(DVec3::new(10.0, -10.0, 0.0)) < 1e-9, "{last}");
+    assert!(program.notes.is_empty(), "{:?}", program.notes);
+    let error =
+        |from: &str, to: &str| try_read(&text.replacen(from, to, 1), &Options::default()).unwrap_err().to_string();
+    let curve = error("SLIN {X 10}", "SPL {X 10}");
+    assert!(curve.starts_with("line 6: SPL ") && curve.contains("SLIN and SCIRC"), "{curve}");
+    let spot = error("{X 20,Y 0}, CA 360", "{X 0,Y 0}, CA 360");
+    assert!(spot.starts_with("line 12: no circle") && spot.contains("two half circles"), "{spot}");
+    assert!(error("CA 360", "CA ANGLE").starts_with("line 12: \"ANGLE"), "{}", error("CA 360", "CA ANGLE"));
+    // Without arc, how it curves does not matter much.
+    let travel = of(&text.replace("CIRC {X 10,Y 10},{X 20,Y 0}, CA -90", "SPL {X 5}"));
+    assert!(travel.notes[0].starts_with("SPL runs on a curve"), "{:?}", travel.notes);
+}
+
+/// `inside` a loop of every language that has them, behind a start at the origin, arc on.
+fn looped(inside: [&str; 3]) -> [String; 3] {
+    let [krl, rapid, script] = inside;
+    [
+        format!("DEF P( )\nLIN {{X 0,Y 0,Z 0}}\nARC_ON( )\n{krl}\nARC_OFF( )\nEND\n"),
+        format!(
+            "MODULE M\nPROC main()\nMoveL [[0,0,0]],v10,fine,t;\nSetDO doArc,1;\n{rapid}\nSetDO doArc,0;\nENDPROC\nENDMODULE\n"
+        ),
+        format!(
+            "def p():\nmovel(p[0,0,0,0,0,0], v=0.1)\nset_digital_out(1, True)\n{script}\nset_digital_out(1, False)\nend\n"
+        ),
+    ]
+}
+
+fn read_looped(text: &str) -> Result<ReadProgram, ReadError> {
+    let mut options = arc_codes("SetDO doArc,1", "SetDO doArc,0");
+    options.arc.on.push("set_digital_out(1, True)".to_owned());
+    options.arc.off.push("set_digital_out(1, False)".to_owned());
+    try_read(text, &options)
+}
+
+#[test]
+fn loops_turn_as_often_as_they_say() {
+    const THERE_AND_BACK: [&str; 3] = [
+        "LIN {X 10}\nLIN {X 0}",
+        "MoveL [[10,0,0]],v10,fine,t;\nMoveL [[0,0,0]],v10,fine,t;",
+        "movel(p[0.01,0,0,0,0,0], v=0.1)\nmovel(p[0,0,0,0,0,0], v=0.1)",
+    ];
+    let [krl, rapid, script] = THERE_AND_BACK;
+    // Head and end of a loop in each language, and how often it turns.
+    let loops: [(&str, &str, f64); 13] = [
+        ("FOR I=1 TO 4", "ENDFOR", 4.0),
+        ("for i = 10 to 1 step -3 ;down", "endfor", 4.0),
+        ("FOR I=2 TO 1", "LIN {Y 7}\nENDFOR\nLIN {X 10}\nLIN {X 0}", 1.0),
+        ("FOR I=1 TO 3\nFOR J=0 TO 4", "ENDFOR\nENDFOR", 15.0),
+        ("FOR i FROM 1 TO 4 DO", "ENDFOR", 4.0),
+        ("FOR i FROM 4 TO 1 DO", "ENDFOR", 4.0),
+        ("FOR i FROM 0 TO 10 STEP 5 DO", "ENDFOR", 3.0),
+        ("i = 0\nwhile i < 4:", "i = i + 1\nend", 4.0),
+        ("i = 4\nwhile (i >= 1):", "i = i - 1\nend", 4.0),
+        ("i = 0\nwhile i < 3:\nj = 0\nwhile j <= 1:", "j = j + 1\nend\ni = i + 1\nend", 6.0),
+        ("FOR R[1]=1 TO 4", "ENDFOR", 4.0),
+        ("FOR R[1]=4 DOWNTO 1", "ENDFOR", 4.0),
+        ("FOR R[1]=1 TO 2 ;\n   6:  FOR R[2]=1 TO 3", "ENDFOR ;\n   9:  ENDFOR", 6.0),
+    ];
+    for (k, (head, end, turns)) in loops.into_iter().enumerate() {
+        let inside = [krl, rapid, script].map(|motion| format!("{head}\n{motion}\n{end}"));
+        let texts = looped([&inside[0], &inside[1], &inside[2]]);
+        let program = match k {
+            0..4 => read_looped(&texts[0]),
+            4..7 => read_looped(&texts[1]),
+            7..10 => read_looped(&texts[2]),
+            _ => read_looped(&fanuc_loop(head, end)),
+        };
+        let program = program.unwrap();
+        near(program.totals().deposited_length_mm, 20.0 * turns);
+        assert_eq!(program.totals().arc_starts, 1, "{head}");
+        assert!(program.notes.iter().all(|n| !n.contains("not followed")), "{head}: {:?}", program.notes);
+    }
+}
+
+fn fanuc_loop(head: &str, end: &str) -> String {
+    let place = |n: usize, x: f64| {
+        format!("P[{n}]{{\n   GP1:\n\tUF : 1, UT : 1,\n\tX = {x:.3} mm, Y = 0.000 mm, Z = 0.000 mm\n}};\n")
+    };
+    format!(
+        "/PROG  A\n/MN\n   1:L P[1] 10mm/sec FINE Weld Start[1,1] ;\n   2:  {head} ;\n   3:L P[2] 10mm/sec FINE ;\n   4:L P[1] \
+         10mm/sec FINE ;\n   5:  {end} ;\n   6:  Weld End[1,1] ;\n/POS\n{}{}/END\n",
+        place(1, 0.0),
+        place(2, 10.0)
+    )
+}
+
+#[test]
+fn loops_that_cannot_be_counted_are_told_and_endless_ones_refused() {
+    let once = [
+        "FOR I=1 TO N\nLIN {X 10}\nENDFOR",
+        "FOR i FROM 1 TO n DO\nMoveL [[10,0,0]],v10,fine,t;\nENDFOR",
+        "i = 0\nwhile i < 5:\nif x > 1:\ni = i + 1\nend\nmovel(p[0.01,0,0,0,0,0], v=0.1)\nend",
+    ];
+    for text in looped(once) {
+        let program = read_looped(&text).unwrap();
+        near(program.totals().deposited_length_mm, 10.0);
+        assert!(program.notes.iter().any(|n| n.contains("read once")), "{:?}", program.notes);
+    }
+    let many = [
+        "FOR I=1 TO 1000\nFOR J=1 TO 1000\nLIN {X 10}\nENDFOR\nENDFOR",
+        "FOR i FROM 1 TO 1e9 DO\nMoveL [[10,0,0]],v10,fine,t;\nENDFOR",
+        "i = 0\nwhile i < 1e9:\nmovel(p[0.01,0,0,0,0,0], v=0.1)\ni = i + 1\nend",
+    ];
+    for (text, line) in looped(many).iter().zip([7, 7, 8]) {
+        let error = read_looped(text).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("line {line}: the loops")) && error.contains("100000 times"), "{error}");
+    }
+}
+
+#[test]
+fn rapids_take_the_speed_that_is_given() {
+    let text = "G1 X0 Y0 Z0 F600\nM3\nG1 X10\nM5\nG0 Z50\nG0 X110\nG1 Z0\nM3\nG1 X120\nM5\n";
+    let mut program = of(text);
+    near(program.totals().time_s, 1.0 + 5.0 + 1.0);
+    assert_eq!(program.take_rapids_at(75.0), (2, 150.0));
+    near(program.totals().time_s, 1.0 + 2.0 + 5.0 + 1.0);
+    // What has a speed keeps it.
+    assert_eq!(program.take_rapids_at(1.0), (0, 0.0));
+    let motion = beadwright::motion::Motion { acceleration: 1e6, corner_speed: 1000.0 };
+    assert!((program.seconds(&motion) - 9.0).abs() < 0.01, "{}", program.seconds(&motion));
+}
+
+#[test]
 fn krl_outputs_need_to_be_named() {
     let text = "DEF P( )\nLIN {X 0,Y 0,Z 0}\n$OUT[2] = TRUE\nLIN {X 10}\n$OUT[2]=FALSE\nLIN_REL {Y 5}\nEND\n";
     totals_are(&try_read(text, &arc_codes("$out[2]=true", "$OUT[2] = FALSE")).unwrap(), 1, 10.0, 5.0);

@@ -253,7 +253,7 @@ MOVL C00001 V=100.0
 ARCON ASF#(1)
 MOVC C00002 V=10.0
 MOVC C00003 V=10.0
-MOVC C00004 V=10.0
+MOVC C00004 V=10.0 FPT
 MOVC C00005 V=10.0
 MOVC C00006 V=10.0
 ARCOF AEF#(1)
@@ -275,6 +275,17 @@ fn an_inform_job_of_another_hand() {
     for note in ["JUMP is not followed", "LAMP", "unknown here"] {
         assert!(program.notes.iter().any(|n| n.contains(note)), "{note}: {:?}", program.notes);
     }
+    // A MOVL to the shared point separates the arcs as well, and adds nothing.
+    let separated = INFORM.replace("V=10.0 FPT\n", "V=10.0\nMOVL C00004 V=10.0\nMOVC C00004 V=10.0\n");
+    let separated = try_read(&separated).unwrap();
+    assert_eq!(separated.totals(), totals);
+    assert_eq!(separated.notes.len(), program.notes.len(), "{:?}", separated.notes);
+    // Without either the controller sees one chain: behind the half circle to (30, 20), the next point lies on the line
+    // through its last two.
+    let chained = try_read(&INFORM.replace(" FPT", "")).unwrap();
+    let left = chained.notes.iter().find(|n| n.contains("another circle with neither FPT nor a MOVL"));
+    assert!(left.is_some_and(|n| n.contains("line 31")), "{:?}", chained.notes);
+    assert!((chained.totals().deposited_length_mm - totals.deposited_length_mm).abs() > 1.0);
     // The last arc lacks its end.
     let short = try_read(&INFORM.replace("MOVC C00006 V=10.0\n", "")).unwrap();
     assert!(short.notes.iter().any(|n| n.contains("no end point")), "{:?}", short.notes);
@@ -282,6 +293,30 @@ fn an_inform_job_of_another_hand() {
     assert!(error("C00003=40.000", "C00003=4O.000").starts_with("line 14: \"4O.000\""));
     assert!(error("T=1.50", "T=D000").starts_with("line 33"));
     assert!(error("LAMP ON", "CALL JOB:GONE-1").contains("line 36 calls GONE-1"));
+}
+
+/// A whole circle as it is taught by hand: four quarters and the start again, all in one chain.
+#[test]
+fn a_chain_of_movc_on_one_circle_is_that_circle() {
+    let points = [(0, 0), (10, 10), (20, 0), (10, -10), (0, 0)];
+    let positions: String = (1..).zip(points).map(|(n, (x, y))| format!("C{n:05}={x},{y},2,180,0,0\n")).collect();
+    let moves: String = (1..=5).map(|n| format!("MOVC C{n:05} V=10.0\n")).collect();
+    let text = format!("/JOB\n//POS\n///RECTAN\n{positions}//INST\nMOVL C00001 V=10.0\nARCON\n{moves}ARCOF\nEND\n");
+    let program = try_read(&text).unwrap();
+    let whole = 20.0 * std::f64::consts::PI;
+    assert!((program.totals().deposited_length_mm - whole).abs() < 0.1, "{:?}", program.totals());
+    assert!(program.notes.is_empty(), "{:?}", program.notes);
+    // Every chord lies on the circle.
+    let off = |m: &beadwright::dialect::reading::Move| (m.to.distance(DVec3::new(10.0, 0.0, 2.0)) - 10.0).abs();
+    assert!(program.moves.iter().all(|m| off(m) < 1e-9), "{:?}", program.moves.iter().map(off).fold(0.0, f64::max));
+}
+
+#[test]
+fn welds_to_pulses_are_refused() {
+    let error = try_read(&INFORM.replace("///POSTYPE ROBOT\n///RECTAN\n", "///POSTYPE PULSE\n///PULSE\n"))
+        .unwrap_err()
+        .to_string();
+    assert!(error.starts_with("line 25: C00001 is given in motor pulses") && error.contains("relative job"), "{error}");
 }
 
 const URSCRIPT: &str = "\

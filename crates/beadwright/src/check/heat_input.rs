@@ -25,10 +25,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let hot: Vec<Finding> = everywhere.clone().into_iter().chain(wide).collect();
     let least = limits.min_layer_time.unwrap_or(0.0);
     let waits = &profile.start_stop;
-    let time = |layer: &crate::layer::Layer| {
-        let welded = layer.passes.iter().map(|pass| pass.seconds(process)).sum::<f64>();
-        (welded + waits.interpass_time).max(waits.min_layer_time)
-    };
+    let time = |layer: &crate::layer::Layer| (subject.seconds(layer) + waits.interpass_time).max(waits.min_layer_time);
     let short = subject.layers.iter().filter(|layer| !layer.passes.is_empty() && time(layer) < least);
     let short = short.map(|layer| {
         let text = format!("it takes {:.0} s; at least {least:.0} s are needed to cool.", time(layer));

@@ -4,17 +4,21 @@
 //! Its limits are in the profile's section `[check]`.
 
 mod air;
+mod alternating_ends;
 mod bead_width;
 mod clearance;
+mod cooling;
 mod crossing;
 mod dense_points;
 mod heat_input;
 mod layers;
+mod low_travel;
 mod outside;
 mod overfill;
 mod overhang;
 mod points;
 mod program_size;
+mod retraced;
 mod short_arc;
 mod short_pass;
 mod speed_window;
@@ -34,24 +38,28 @@ use serde::Serialize;
 use std::borrow::Borrow;
 
 /// The checks.
-pub const CHECKS: [Check; 19] = [
+pub const CHECKS: [Check; 23] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
     crossing::CHECK,
+    retraced::CHECK,
     clearance::CHECK,
+    low_travel::CHECK,
     short_pass::CHECK,
     short_arc::CHECK,
     speed_window::CHECK,
     bead_width::CHECK,
     wire_balance::CHECK,
     heat_input::CHECK,
+    cooling::CHECK,
     void::CHECK,
     overfill::CHECK,
     outside::CHECK,
     overhang::CHECK,
     towers::CHECK,
     stacked_starts::CHECK,
+    alternating_ends::CHECK,
     program_size::CHECK,
     dense_points::CHECK,
 ];
@@ -193,6 +201,11 @@ impl Subject<'_> {
     /// Every pass with its layer and its index in it.
     fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+    }
+
+    /// Time for which the torch welds a layer, s.
+    fn seconds(&self, layer: &Layer) -> f64 {
+        layer.passes.iter().map(|pass| pass.seconds(&self.profile.process)).sum()
     }
 
     /// A finding for each layer whose figure is above the limit.

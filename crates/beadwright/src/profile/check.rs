@@ -24,6 +24,8 @@ pub struct CheckLimits {
     pub max_heat_input: Option<f64>,
     /// Minimum time of a layer, s; not checked if left out.
     pub min_layer_time: Option<f64>,
+    /// Layers that are over sooner need a wait to cool, s, where the program has none; 0 for no reminder; default 15.
+    pub cooling_time: f64,
     /// Number of consecutive layers on which arcs must not all start in the same place; default 12.
     pub stacked_starts: u32,
     /// Maximum number of points in a layer; default 20000.
@@ -44,6 +46,7 @@ impl Default for CheckLimits {
             max_speed: None,
             max_heat_input: None,
             min_layer_time: None,
+            cooling_time: 15.0,
             stacked_starts: 12,
             max_points: 20_000,
             max_plan_points: None,
@@ -71,6 +74,8 @@ impl CheckLimits {
                 "outside this range the check would never find anything";
             "check.min_layer_time": self.min_layer_time.unwrap_or(1.0), 0.0, 1e6, "s",
                 "outside this range the check would never find anything";
+            "check.cooling_time": self.cooling_time, 0.0, 36_000.0, "s",
+                "ten hours cool any part";
             "check.stacked_starts": self.stacked_starts.into(), 2.0, 1e6, "layers",
                 "one start over another is not yet a tower";
             "check.max_points": self.max_points.into(), 10.0, 1e8, "points",

@@ -3,6 +3,7 @@
 //! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
 //! them, on lines of their own or after a motion, or by the codes in the options.
 
+use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -11,7 +12,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal, by their first words.
-const HARMLESS: [&str; 24] = [
+const HARMLESS: [&str; 23] = [
     "END",
     "ABORT",
     "PAUSE",
@@ -30,7 +31,6 @@ const HARMLESS: [&str; 24] = [
     "RESUME_PROG",
     "MAINT_PROG",
     "ENDIF",
-    "ENDFOR",
     "UFRAME_NUM",
     "UTOOL_NUM",
     "LOCK",
@@ -39,7 +39,7 @@ const HARMLESS: [&str; 24] = [
 ];
 
 /// Branches and loops.
-const CONTROL: [&str; 6] = ["IF", "ELSE", "FOR", "SELECT", "JMP", "WHILE"];
+const CONTROL: [&str; 5] = ["IF", "ELSE", "SELECT", "JMP", "WHILE"];
 
 /// Where a position lies.
 #[derive(Clone, Copy)]
@@ -114,9 +114,18 @@ impl Reader<'_> {
 
     fn run(&mut self, listing: &Rc<Listing>, depth: usize) -> Result<(), ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, listing.module.clone());
-        for (line, text) in &listing.statements {
-            self.statement(text, *line, listing, depth)?;
-        }
+        let statements = &listing.statements;
+        unrolled(statements.len(), |i| mark(&statements[i].1), |i| {
+            let (line, text) = &statements[i];
+            match mark(text) {
+                Some(Mark::Begin) => Ok(turns(text, "=", Counting::Up).unwrap_or_else(|| {
+                    self.trace.note("FOR", "is not followed: its lines were read once", *line);
+                    1
+                })),
+                Some(Mark::End) => self.trace.turn(*line).map(|()| 0),
+                None => self.statement(text, *line, listing, depth).map(|()| 0),
+            }
+        })?;
         self.trace.module = caller;
         Ok(())
     }
@@ -230,6 +239,12 @@ impl Reader<'_> {
         }
         Some(if relative { self.trace.at + place } else { place })
     }
+}
+
+/// Where a loop begins or ends.
+fn mark(text: &str) -> Option<Mark> {
+    let begins = name(text).0.eq_ignore_ascii_case("FOR").then_some(Mark::Begin);
+    begins.or_else(|| name(text).0.eq_ignore_ascii_case("ENDFOR").then_some(Mark::End))
 }
 
 /// Adds a line: the start of a statement, or the continuation of the one before.

@@ -1,8 +1,10 @@
 //! Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
 //!
 //! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options.
-//! Consecutive MOVC form a chain of arcs: start, via point and end; then either a new start at the same position, or
-//! the next via point and end.
+//! Consecutive MOVC are one chain to the controller. Three of them are an arc; `FPT` on the last, or a MOVL to it, ends
+//! that arc and lets the next one begin there, which Yaskawa's manuals ask for where the circle changes. Without either,
+//! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
+//! circle, so a chain that leaves its circle is noted).
 
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
@@ -22,6 +24,9 @@ const CONTROL: [&str; 8] = ["JUMP", "IF", "IFTHENEXP", "ELSE", "FOR", "WHILE", "
 
 /// A MOVC this close to the torch's position begins a new arc, mm.
 const ON_THE_SPOT_MM: f64 = 0.005;
+
+/// A chain that goes on this far from its circle has left it, mm.
+const OFF_CIRCLE_MM: f64 = 0.1;
 
 /// A job: instructions with their lines, and positions by name; `None` for positions in pulses.
 struct Job {
@@ -59,10 +64,12 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
 enum Circle {
     /// No chain.
     None,
-    /// The torch stands where an arc begins or ends.
+    /// The torch stands where an arc begins.
     At,
     /// A point on the way is known.
     Via(DVec3, Step),
+    /// The torch stands on an arc, behind these two points of its chain.
+    On([DVec3; 2]),
 }
 
 struct Reader<'a> {
@@ -123,8 +130,7 @@ impl Reader<'_> {
             return Ok(());
         }
         if let Some(kind) = word.strip_prefix("MOV") {
-            self.motion(kind, &words.collect::<Vec<_>>(), line, job);
-            return Ok(());
+            return self.motion(kind, &words.collect::<Vec<_>>(), line, job);
         }
         let flat = compact(text);
         let (on, off) = (word == "ARCON" || self.on.matches(&flat), word == "ARCOF" || self.off.matches(&flat));
@@ -164,20 +170,26 @@ impl Reader<'_> {
     }
 
     /// `MOVL C00001 V=8.0 PL=0`, `kind` being `L`.
-    fn motion(&mut self, kind: &str, words: &[&str], line: usize, job: &Job) {
-        let place = words.first().and_then(|name| job.positions.get(*name)).copied().flatten();
+    fn motion(&mut self, kind: &str, words: &[&str], line: usize, job: &Job) -> Result<(), ReadError> {
+        let name = words.first().copied().unwrap_or_default();
+        let position = job.positions.get(name).copied();
+        // Home positions may be in pulses: torch and arc are then off, and joints move.
+        if position == Some(None) && (kind != "J" || self.trace.arc) {
+            return Err(ReadError::Pulses { place: self.trace.place(line), name: name.to_owned() });
+        }
         let speed = words.iter().find_map(|w| w.strip_prefix("V=")).and_then(number).map(|v| v * self.unit);
         if speed.is_none() && kind != "J" {
             self.trace.note("a speed", "is no plain V= and was read as unknown", line);
         }
         let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
-        let Some(to) = place else {
+        let Some(to) = position.flatten() else {
             self.trace.note("a motion to a place that is unknown here", "was left out", line);
             self.circle = Circle::None;
-            return self.trace.forget();
+            self.trace.forget();
+            return Ok(());
         };
         match kind {
-            "C" => self.arc(to, step),
+            "C" => self.arc(to, step, words.contains(&"FPT")),
             "L" | "J" => {
                 self.end_circle();
                 self.trace.line(to.to_array().map(Some), step);
@@ -188,10 +200,11 @@ impl Reader<'_> {
                 self.trace.line(to.to_array().map(Some), step);
             }
         }
+        Ok(())
     }
 
-    /// The next point of a chain of arcs.
-    fn arc(&mut self, to: DVec3, step: Step) {
+    /// The next point of a chain of arcs; an arc ends where `last`.
+    fn arc(&mut self, to: DVec3, step: Step, last: bool) {
         self.circle = match self.circle {
             Circle::None => {
                 self.trace.line(to.to_array().map(Some), step);
@@ -200,10 +213,29 @@ impl Reader<'_> {
             Circle::At if self.trace.at.distance(to) < ON_THE_SPOT_MM => Circle::At,
             Circle::At => Circle::Via(to, step),
             Circle::Via(via, _) => {
+                let start = self.trace.at;
                 self.trace.arc_over(via, to, None, step);
+                Circle::On([start, via])
+            }
+            Circle::On(_) if self.trace.at.distance(to) < ON_THE_SPOT_MM => {
+                let fate = "was read as the start of a new arc; a controller needs FPT there, or a MOVL between";
+                self.trace.note("a MOVC on the spot of the one before it", fate, step.line);
                 Circle::At
             }
+            Circle::On(points) => {
+                if self.trace.off_circle(points, to) > OFF_CIRCLE_MM {
+                    let fate = "goes on to another circle with neither FPT nor a MOVL between: each further point was read on \
+                                the circle through it and the two before, which your controller may do otherwise";
+                    self.trace.note("a chain of MOVC", fate, step.line);
+                }
+                let at = self.trace.at;
+                self.trace.arc_on(points[1], to, step);
+                Circle::On([points[1], at])
+            }
         };
+        if last && matches!(self.circle, Circle::On(_)) {
+            self.circle = Circle::At;
+        }
     }
 
     /// A chain without its end point runs straight to its last point.

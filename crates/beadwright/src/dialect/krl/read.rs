@@ -1,8 +1,10 @@
 //! KUKA KRL: motions to Cartesian positions, named or written out, and the subprograms that a program calls.
 //!
 //! Positions are in `$BASE`. The arc is lit by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes in the
-//! options; a trigger at the end of a motion takes effect after that motion.
+//! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read as
+//! they are; how SPL curves only the controller knows, so it is refused where it welds.
 
+use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
@@ -11,7 +13,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Statements that affect neither position nor metal.
-const HARMLESS: [&str; 26] = [
+const HARMLESS: [&str; 25] = [
     "DECL",
     "INT",
     "REAL",
@@ -30,8 +32,7 @@ const HARMLESS: [&str; 26] = [
     "INTERRUPT",
     "GLOBAL",
     "CONTINUE",
-    "SPLINE",
-    "ENDSPLINE",
+    "PTP_SPLINE",
     "WAIT",
     "BAS",
     "BRAKE",
@@ -44,9 +45,9 @@ const HARMLESS: [&str; 26] = [
 const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
 
 /// Branches and loops, by their first words.
-const CONTROL: [&str; 11] =
-    ["IF", "ELSE", "FOR", "WHILE", "LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
-const CONTROL_REST: [&str; 8] = ["ENDIF", "ENDFOR", "ENDWHILE", "ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
+const CONTROL: [&str; 10] =
+    ["IF", "ELSE", "WHILE", "LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
+const CONTROL_REST: [&str; 7] = ["ENDIF", "ENDWHILE", "ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
 
 /// Motions with (circular, relative, point to point).
 const MOTIONS: [(&str, Motion); 14] = [
@@ -56,10 +57,10 @@ const MOTIONS: [(&str, Motion); 14] = [
     ("SPTP", Motion::PTP),
     ("CIRC", Motion::CIRC),
     ("SCIRC", Motion::CIRC),
-    ("SPL", Motion::LIN),
+    ("SPL", Motion::SPL),
     ("LIN_REL", Motion::LIN.relative()),
     ("SLIN_REL", Motion::LIN.relative()),
-    ("SPL_REL", Motion::LIN.relative()),
+    ("SPL_REL", Motion::SPL.relative()),
     ("PTP_REL", Motion::PTP.relative()),
     ("SPTP_REL", Motion::PTP.relative()),
     ("CIRC_REL", Motion::CIRC.relative()),
@@ -71,12 +72,15 @@ struct Motion {
     circular: bool,
     joint: bool,
     relative: bool,
+    /// A curve through the points of a spline block.
+    free: bool,
 }
 
 impl Motion {
-    const LIN: Self = Self { circular: false, joint: false, relative: false };
-    const PTP: Self = Self { circular: false, joint: true, relative: false };
-    const CIRC: Self = Self { circular: true, joint: false, relative: false };
+    const LIN: Self = Self { circular: false, joint: false, relative: false, free: false };
+    const PTP: Self = Self { joint: true, ..Self::LIN };
+    const CIRC: Self = Self { circular: true, ..Self::LIN };
+    const SPL: Self = Self { free: true, ..Self::LIN };
 
     const fn relative(self) -> Self {
         Self { relative: true, ..self }
@@ -122,6 +126,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         off: Patterns::new(&options.arc.off),
         speed: 0.0,
         weld_speed: None,
+        block_speed: None,
         later: None,
     };
     let main = reader.load(None, text.into())?;
@@ -147,6 +152,8 @@ struct Reader<'a> {
     speed: f64,
     /// mm/s, of the ArcTech data in use
     weld_speed: Option<f64>,
+    /// mm/s, of the spline block
+    block_speed: Option<f64>,
     /// Whether the arc is on after the next motion; `None` if nothing switches it there.
     later: Option<bool>,
 }
@@ -190,23 +197,38 @@ impl Reader<'_> {
     fn run(&mut self, source: usize, start: (usize, usize), depth: usize) -> Result<(), ReadError> {
         let text = Rc::clone(&self.sources[source].text);
         let caller = std::mem::replace(&mut self.trace.module, self.sources[source].module.clone());
-        for (i, raw) in text[start.0..].lines().enumerate() {
-            let line = before_comment(raw, ';').trim();
-            if strip_word(line, "END").is_some() || is_head(line).is_some() {
-                break;
-            }
-            if !line.is_empty() && !line.starts_with('&') {
-                self.statement(line, start.1 + i, source, depth)?;
-            }
-        }
+        let lines = text[start.0..].lines().map(|raw| before_comment(raw, ';').trim());
+        let ends = |line: &&str| strip_word(line, "END").is_some() || is_head(line).is_some();
+        let lines: Vec<&str> = lines.take_while(|line| !ends(line)).collect();
+        unrolled(lines.len(), |i| mark(lines[i]), |i| match lines[i] {
+            "" => Ok(0),
+            line if line.starts_with('&') => Ok(0),
+            line => self.line(line, start.1 + i, source, depth),
+        })?;
         self.trace.module = caller;
         Ok(())
+    }
+
+    /// A line; where a loop begins, how often it turns.
+    fn line(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<u64, ReadError> {
+        match mark(line) {
+            Some(Mark::Begin) => Ok(turns(line, "=", Counting::Up).unwrap_or_else(|| {
+                self.trace.note("FOR", "is not followed: its lines were read once", number);
+                1
+            })),
+            Some(Mark::End) => self.trace.turn(number).map(|()| 0),
+            None => self.statement(line, number, source, depth).map(|()| 0),
+        }
     }
 
     fn statement(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
         let (word, rest) = name(line);
         if let Some((_, motion)) = MOTIONS.iter().find(|(m, _)| m.eq_ignore_ascii_case(word)) {
             return self.motion(*motion, rest, number, source);
+        }
+        if ["SPLINE", "ENDSPLINE"].iter().any(|w| w.eq_ignore_ascii_case(word)) {
+            self.block_speed = with_speed(rest);
+            return Ok(());
         }
         let flat = compact(line);
         if self.arc(&flat, line, number, source)? {
@@ -289,6 +311,13 @@ impl Reader<'_> {
     fn motion(&mut self, motion: Motion, rest: &str, number: usize, source: usize) -> Result<(), ReadError> {
         let pieces = arguments(rest);
         let at = |i: usize| pieces.get(i).copied().unwrap_or_default();
+        if motion.free && self.trace.arc {
+            let place = self.trace.place(number);
+            return Err(ReadError::UnknownCurve { place, word: "SPL", instead: "SLIN and SCIRC" });
+        }
+        if motion.free {
+            self.trace.note("SPL", "runs on a curve that only the controller knows and was read as a straight move", number);
+        }
         let mut targets = [None; 2];
         for (i, target) in targets.iter_mut().enumerate().take(if motion.circular { 2 } else { 1 }) {
             let Some(found) = self.target(at(i), number, source)? else {
@@ -298,10 +327,10 @@ impl Reader<'_> {
             };
             *target = Some(found);
         }
-        let speed = with_speed(rest).unwrap_or(if motion.joint { 0.0 } else { self.speed });
+        let speed = with_speed(rest).unwrap_or(if motion.joint { 0.0 } else { self.block_speed.unwrap_or(self.speed) });
         let step = Step { speed, metal: self.trace.metal(), width: None, line: number };
         match targets {
-            [Some(Target::Place(aux)), Some(Target::Place(end))] => self.circle(motion, [aux, end], &pieces, step),
+            [Some(Target::Place(aux)), Some(Target::Place(end))] => self.circle(motion, [aux, end], &pieces, step)?,
             [Some(Target::Place(to)), None] => self.trace.line(self.absolute(motion, to), step),
             _ => {
                 let what = "a motion to axis angles";
@@ -315,18 +344,20 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn circle(&mut self, motion: Motion, ends: [[Option<f64>; 3]; 2], pieces: &[&str], step: Step) {
+    fn circle(&mut self, motion: Motion, ends: [[Option<f64>; 3]; 2], pieces: &[&str], step: Step) -> Result<(), ReadError> {
         let start = self.trace.at;
         let whole = |target: [Option<f64>; 3]| {
             let target = self.absolute(motion, target);
             DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(start[i])))
         };
         let [aux, end] = ends.map(whole);
-        let angle = pieces.iter().find_map(|p| strip_word(p, "CA")).and_then(number_before);
-        if angle.is_some_and(|a| a <= 0.0) {
-            self.trace.note("CA", "below 0 is not understood: the arc was read up to its end point", step.line);
-        }
-        self.trace.arc_over(aux, end, angle.filter(|a| *a > 0.0).map(f64::to_radians), step);
+        let angle = pieces.iter().find_map(|p| strip_word(p, "CA"));
+        let angle = match angle {
+            Some(text) => Some(number_before(text).ok_or_else(|| self.trace.number_error(step.line, text))?),
+            None => None,
+        };
+        self.trace.arc_over(aux, end, angle.map(f64::to_radians), step);
+        Ok(())
     }
 
     fn absolute(&self, motion: Motion, target: [Option<f64>; 3]) -> [Option<f64>; 3] {
@@ -392,6 +423,12 @@ impl Reader<'_> {
         let start = find(found).or(found.programs.first().map(|p| (p.1, p.2)));
         self.run(target, start.unwrap_or((0, 1)), depth + 1)
     }
+}
+
+/// Where a loop begins or ends.
+fn mark(line: &str) -> Option<Mark> {
+    let begins = strip_word(line, "FOR").map(|_| Mark::Begin);
+    begins.or_else(|| strip_word(line, "ENDFOR").map(|_| Mark::End))
 }
 
 /// The name in a line `DEF NAME( )` or `GLOBAL DEF ..`.

@@ -4,6 +4,7 @@
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Value};
+use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
 use super::module;
@@ -12,7 +13,7 @@ use glam::DVec3;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal.
-const HARMLESS: [&str; 50] = [
+const HARMLESS: [&str; 49] = [
     "ConfL",
     "ConfJ",
     "SingArea",
@@ -52,7 +53,6 @@ const HARMLESS: [&str; 50] = [
     "TASK",
     "LOCAL",
     "ENDIF",
-    "ENDFOR",
     "ENDWHILE",
     "ENDTEST",
     "CASE",
@@ -66,7 +66,7 @@ const HARMLESS: [&str; 50] = [
 ];
 
 /// Branches and loops.
-const CONTROL: [&str; 9] = ["IF", "ELSEIF", "ELSE", "FOR", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
+const CONTROL: [&str; 8] = ["IF", "ELSEIF", "ELSE", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
 
 /// Where handlers begin: they run on errors only.
 const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
@@ -155,15 +155,23 @@ impl Reader<'_> {
 
     fn run(&mut self, module: &Rc<Module>, proc: usize, depth: usize) -> Result<(), ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, module.name.clone());
-        for (text, line) in module.body(proc) {
-            let (word, _) = name(text);
-            if HANDLERS.iter().any(|h| h.eq_ignore_ascii_case(word)) {
-                break;
-            }
-            self.statement(text, line, module, depth)?;
-        }
+        let handler = |text: &str| HANDLERS.iter().any(|h| h.eq_ignore_ascii_case(name(text).0));
+        let body: Vec<(&str, usize)> = module.body(proc).take_while(|(text, _)| !handler(text)).collect();
+        unrolled(body.len(), |i| mark(body[i].0), |i| self.line(body[i].0, body[i].1, module, depth))?;
         self.trace.module = caller;
         Ok(())
+    }
+
+    /// A statement; where a loop begins, how often it turns.
+    fn line(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<u64, ReadError> {
+        match mark(text) {
+            Some(Mark::Begin) => Ok(turns(text, "FROM", Counting::Towards).unwrap_or_else(|| {
+                self.trace.note("FOR", "is not followed: its lines were read once", line);
+                1
+            })),
+            Some(Mark::End) => self.trace.turn(line).map(|()| 0),
+            None => self.statement(text, line, module, depth).map(|()| 0),
+        }
     }
 
     fn statement(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
@@ -381,6 +389,12 @@ impl Reader<'_> {
             Some(Value::Speed(_) | Value::Seam(_)) | None => Ok(None),
         }
     }
+}
+
+/// Where a loop begins or ends.
+fn mark(text: &str) -> Option<Mark> {
+    let begins = strip_word(text, "FOR").map(|_| Mark::Begin);
+    begins.or_else(|| strip_word(text, "ENDFOR").map(|_| Mark::End))
 }
 
 /// An argument without the optional ones behind it, as in `weld1\Weave:=wv`.

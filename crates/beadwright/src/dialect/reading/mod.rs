@@ -5,12 +5,14 @@
 //! | --- | --- |
 //! | `words` | numbers, names and patterns of the robots' languages |
 //! | `trace` | the moves as they come: places, flattened arcs, notes |
+//! | `loops` | loops with constant bounds |
 //! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
 //!
-//! Programs are read from top to bottom and calls are followed, but nothing is computed: branches and loops are read
-//! once, variables and expressions are not evaluated. Whatever is not understood is listed in [`ReadProgram::notes`].
+//! Programs are read from top to bottom; calls are followed, and loops with constant bounds turn as often as they say.
+//! Nothing is computed: branches and other loops are read once, variables and expressions are not evaluated. Whatever is not understood is listed in [`ReadProgram::notes`].
 
 mod layers;
+pub(super) mod loops;
 pub(super) mod trace;
 pub(super) mod words;
 
@@ -80,6 +82,24 @@ pub struct ArcCodes {
     pub off: Vec<String>,
 }
 
+impl ReadProgram {
+    /// Takes a speed, mm/s, for every move without metal of which the program tells none: rapids (G0), and joint moves
+    /// along the chord of their way. Returns how many there are, and their length, mm.
+    pub fn take_rapids_at(&mut self, speed: f64) -> (usize, f64) {
+        let (mut count, mut length) = (0, 0.0);
+        for i in 1..self.moves.len() {
+            let from = self.moves[i - 1].to;
+            let step = &mut self.moves[i];
+            if !step.metal.is_laid() && step.speed <= 0.0 && step.to != from {
+                step.speed = speed;
+                count += 1;
+                length += from.distance(step.to);
+            }
+        }
+        (count, length)
+    }
+}
+
 /// How to read a program.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
@@ -147,6 +167,45 @@ pub enum ReadError {
         /// Where it is called.
         place: Place,
         /// What is called.
+        name: String,
+    },
+    /// Loops that turn too often.
+    #[error(
+        "{place}: the loops up to here turn more than {most} times in all, and no more are read. Give a part of the program, or fewer turns.",
+        most = trace::MAX_TURNS
+    )]
+    TooManyTurns {
+        /// Where the last of them ends.
+        place: Place,
+    },
+    /// A bead on a curve that only the controller can compute.
+    #[error(
+        "{place}: {word} welds along a curve that only the controller can compute, so that its place and length are unknown here. Write its way as {instead}."
+    )]
+    UnknownCurve {
+        /// Where.
+        place: Place,
+        /// The motion.
+        word: &'static str,
+        /// What can be read.
+        instead: &'static str,
+    },
+    /// A circle whose three points lie on one line or on one spot.
+    #[error(
+        "{place}: no circle runs through the start, the auxiliary point and the end of this arc, because they lie on one line or on one spot. For a full circle, give two other points of it and CA 360, or write two half circles."
+    )]
+    NoCircle {
+        /// Where.
+        place: Place,
+    },
+    /// A weld to a position in motor pulses.
+    #[error(
+        "{place}: {name} is given in motor pulses (///POSTYPE PULSE), and only the robot's controller knows which place that is. Convert the job into a relative job on the pendant (JOB, UTILITY, RELATIVE JOB), or export it with POSTYPE BASE or USER, and read it again."
+    )]
+    Pulses {
+        /// Where it is moved to.
+        place: Place,
+        /// The position.
         name: String,
     },
     /// A coordinate that no machine reaches.

@@ -14,6 +14,9 @@ pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 /// Most calls in a program.
 const MAX_CALLS: usize = 100_000;
 
+/// Most turns of all loops.
+pub(super) const MAX_TURNS: usize = 100_000;
+
 /// Most moves, arcs in chords.
 pub(super) const MAX_MOVES: usize = 10_000_000;
 
@@ -63,6 +66,21 @@ impl Curve {
         Some(Self { centre, u, v, sweep, rise: DVec3::ZERO })
     }
 
+    /// The rest of the arc behind one of its points.
+    fn behind(&self, point: DVec3) -> Self {
+        let u = point - self.centre;
+        let passed = u.dot(self.v).atan2(u.dot(self.u)).rem_euclid(TAU);
+        let v = self.u.cross(self.v).normalize_or_zero().cross(u);
+        Self { centre: self.centre, u, v, sweep: self.sweep - passed, rise: DVec3::ZERO }
+    }
+
+    /// How far a point lies from the whole circle, mm.
+    fn off(&self, point: DVec3) -> f64 {
+        let arm = point - self.centre;
+        let height = arm.dot(self.u.cross(self.v).normalize_or_zero());
+        height.hypot((arm.length_squared() - height * height).max(0.0).sqrt() - self.u.length())
+    }
+
     pub(in crate::dialect) fn point(&self, part: f64) -> DVec3 {
         let (sin, cos) = (self.sweep * part).sin_cos();
         self.centre + self.u * cos + self.v * sin + self.rise * part
@@ -94,6 +112,7 @@ pub(in crate::dialect) struct Trace {
     notes: Vec<Note>,
     seen: Vec<String>,
     calls: usize,
+    turns: usize,
     /// Why nothing more is taken in.
     fault: Option<ReadError>,
 }
@@ -110,6 +129,7 @@ impl Trace {
             notes: Vec::new(),
             seen: Vec::new(),
             calls: 0,
+            turns: 0,
             fault: None,
         }
     }
@@ -194,7 +214,8 @@ impl Trace {
         }
     }
 
-    /// An arc through `aux` to `end`; it turns through `angle`, radians, if that is given.
+    /// An arc through `aux` to `end`; it turns through `angle`, radians, if that is given: against the order of the
+    /// points if it is below 0.
     pub(in crate::dialect) fn arc_over(&mut self, aux: DVec3, end: DVec3, angle: Option<f64>, step: Step) {
         if self.known != [true; 3] {
             self.line(end.to_array().map(Some), step);
@@ -202,15 +223,33 @@ impl Trace {
         }
         match Curve::through(self.at, aux, end) {
             Some(mut curve) => {
-                curve.sweep = angle.unwrap_or(curve.sweep);
+                curve.sweep = angle.map_or(curve.sweep, f64::abs);
+                if angle.is_some_and(|angle| angle < 0.0) {
+                    curve.v = -curve.v;
+                }
                 let end = if angle.is_some() { curve.point(1.0) } else { end };
                 self.curve(&curve, end, step);
             }
+            None if angle.is_some() => self.fail(ReadError::NoCircle { place: self.place(step.line) }),
             None => {
+                self.note("an arc whose points lie on one line", "was read as straight moves", step.line);
                 self.line(aux.to_array().map(Some), step);
                 self.line(end.to_array().map(Some), step);
             }
         }
+    }
+
+    /// The arc from the current position to `end` on the circle through both and the point `before` them.
+    pub(in crate::dialect) fn arc_on(&mut self, before: DVec3, end: DVec3, step: Step) {
+        match Curve::through(before, self.at, end).filter(|_| self.known == [true; 3]) {
+            Some(curve) => self.curve(&curve.behind(self.at), end, step),
+            None => self.line(end.to_array().map(Some), step),
+        }
+    }
+
+    /// How far a point lies from the circle through two points and the current position, mm.
+    pub(in crate::dialect) fn off_circle(&self, [first, second]: [DVec3; 2], point: DVec3) -> f64 {
+        Curve::through(first, second, self.at).map_or(0.0, |circle| circle.off(point))
     }
 
     /// An arc from the current position in chords; the last one ends at `end`. The volume is spread evenly.
@@ -235,10 +274,24 @@ impl Trace {
         let near = to.abs().max_element() <= MAX_REACH_MM && to.is_finite();
         if !near || self.moves.len() >= MAX_MOVES {
             let place = self.place(line);
-            self.fault = Some(if near { ReadError::TooLong { place } } else { ReadError::TooFar { place } });
-            return;
+            return self.fail(if near { ReadError::TooLong { place } } else { ReadError::TooFar { place } });
         }
         self.moves.push(Move { to, speed, metal, width: width.filter(|_| metal.is_laid()), line });
+    }
+
+    /// Takes in nothing more; the first fault counts.
+    fn fail(&mut self, fault: ReadError) {
+        self.fault.get_or_insert(fault);
+    }
+
+    /// Counts a turn of a loop.
+    pub(in crate::dialect) fn turn(&mut self, line: usize) -> Result<(), ReadError> {
+        self.turns += 1;
+        match &self.fault {
+            Some(fault) => Err(fault.clone()),
+            None if self.turns > MAX_TURNS => Err(ReadError::TooManyTurns { place: self.place(line) }),
+            None => Ok(()),
+        }
     }
 
     /// Counts a call; `depth` is that of the caller.

@@ -4,6 +4,7 @@
 //! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; if a file only defines a
 //! program, that program runs.
 
+use crate::dialect::reading::loops::{Mark, stepped, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -91,11 +92,14 @@ fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
             continue;
         }
         if let Some((_, _, blocks)) = open.last_mut() {
-            *blocks += usize::from(BLOCKS.iter().any(|b| strip_word(line, b).is_some()));
-            *blocks -= usize::from(line == "end");
+            match mark(line) {
+                Some(Mark::Begin) => *blocks += 1,
+                Some(Mark::End) => *blocks -= 1,
+                None => {}
+            }
         }
         let body = open.last_mut().map_or(&mut top, |(_, body, _)| body);
-        if !line.is_empty() && line != "end" {
+        if !line.is_empty() {
             body.push((i + 1, line.to_owned()));
         }
     }
@@ -116,7 +120,36 @@ struct Reader {
 
 impl Reader {
     fn run(&mut self, body: &Body, depth: usize) -> Result<(), ReadError> {
-        body.iter().try_for_each(|(line, text)| self.statement(text, *line, depth))
+        unrolled(body.len(), |i| mark(&body[i].1), |i| {
+            let (line, text) = &body[i];
+            match mark(text) {
+                Some(Mark::Begin) => Ok(self.turns(&body[i..]).unwrap_or_else(|| {
+                    self.trace.note(name(text).0, "is not followed: its lines were read once", *line);
+                    1
+                })),
+                Some(Mark::End) => self.trace.turn(*line).map(|()| 0),
+                None => self.statement(text, *line, depth).map(|()| 0),
+            }
+        })
+    }
+
+    /// How often `while i < 5:` turns, at the start of these lines, where `i` is known and changes once a turn by a plain
+    /// number.
+    fn turns(&self, lines: &[(usize, String)]) -> Option<u64> {
+        let condition = strip_word(&lines.first()?.1, "while")?.trim_end_matches(':').trim();
+        let condition = condition.strip_prefix('(').and_then(|c| c.strip_suffix(')')).unwrap_or(condition);
+        let (variable, bound) = condition.split_once(['<', '>'])?;
+        let (bound, ends) = bound.strip_prefix('=').map_or((bound, false), |bound| (bound, true));
+        let (variable, below) = (variable.trim(), condition.contains('<'));
+        let (from, to, step) = (self.number(variable)?, self.number(bound)?, step(lines, variable)?);
+        let holds = if below { from < to } else { from > to } || (ends && from == to);
+        // Just short of a bound that does not count.
+        let to = if ends { to } else { to - 1e-6 * step };
+        match holds {
+            false => Some(0),
+            true if below == (step > 0.0) => stepped(from, to, step),
+            true => None,
+        }
     }
 
     fn call(&mut self, function: &str, line: usize, depth: usize) -> Result<(), ReadError> {
@@ -141,7 +174,7 @@ impl Reader {
             let seconds = inside(rest);
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
             self.trace.dwell += wait.max(0.0);
-        } else if ["if", "elif", "else", "while", "thread", "sec", "run", "join", "kill"].contains(&word) {
+        } else if ["elif", "else", "run", "join", "kill"].contains(&word) {
             self.trace.note(word, "is not followed: its lines were read once", line);
         } else if rest.starts_with('(') && self.functions.contains_key(word) {
             return self.call(word, line, depth);
@@ -234,6 +267,36 @@ impl Reader {
         let named = pieces.iter().find_map(|p| Some(p.strip_prefix('v')?.trim_start().strip_prefix('=')?.trim()));
         self.number(named.or_else(|| pieces.get(poses + 1).copied().filter(|p| !p.contains('=')))?)
     }
+}
+
+/// Where a block begins or ends.
+fn mark(line: &str) -> Option<Mark> {
+    let begins = BLOCKS.iter().any(|block| strip_word(line, block).is_some());
+    begins.then_some(Mark::Begin).or((line == "end").then_some(Mark::End))
+}
+
+/// By how much the block at the start of these lines changes a variable; `None` where it does so in any other way than
+/// by one `i = i + 1`, not in an inner block.
+fn step(lines: &[(usize, String)], variable: &str) -> Option<f64> {
+    let (mut depth, mut found) = (0, None);
+    for (_, line) in lines {
+        match mark(line) {
+            Some(Mark::Begin) => depth += 1,
+            Some(Mark::End) if depth == 1 => return found,
+            Some(Mark::End) => depth -= 1,
+            None => {}
+        }
+        let assigned = line.split_once('=').filter(|(left, _)| left.split_whitespace().next_back() == Some(variable));
+        if let Some((_, value)) = assigned.filter(|_| mark(line).is_none()) {
+            let by = value.trim().strip_prefix(variable)?.replace(' ', "");
+            // A second change, or one in an inner block.
+            if found.is_some() || depth != 1 || !by.starts_with(['+', '-']) {
+                return None;
+            }
+            found = Some(number(&by)?);
+        }
+    }
+    found
 }
 
 /// The text between the first bracket and the last.

@@ -1,0 +1,58 @@
+//! Arcs that always start where another has ended.
+
+use super::{Check, Finding, Subject};
+use crate::layer::Layer;
+use glam::DVec2;
+
+pub(super) const CHECK: Check = Check {
+    name: "alternating-ends",
+    what: "places where starts and ends of passes meet in twice check.stacked_starts layers, one after another",
+    why: "every arc is struck on a crater: pores and cracks gather in one line up the part",
+    example: "layer 25, pass 1, x 0.0 y 3.0 z 50.00 mm: starts and ends of passes meet at this place on 24 layers, one after another.",
+    remedy: "move the ends from layer to layer by more than a bead width, or lay passes that close",
+    find,
+};
+
+/// Ends closer than this lie on one spot, in bead widths.
+const NEAR: f64 = 0.5;
+
+/// A high start and a low end level each other, so it takes more of them than of starts alone.
+const LONGER: usize = 2;
+
+/// An end of an open pass: its place, whether the pass starts there, and on how many layers in a row, down from here,
+/// starts and ends have met there.
+struct End {
+    at: DVec2,
+    starts: bool,
+    met: usize,
+}
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let (near, most) = (NEAR * subject.profile.bead.width, LONGER * subject.profile.check.stacked_starts as usize);
+    let (mut below, mut findings): (Vec<End>, Vec<Finding>) = (Vec::new(), Vec::new());
+    for layer in &subject.layers {
+        let mut here = Vec::new();
+        for (pass, at, starts) in ends(layer) {
+            let on = |end: &&End| end.at.distance(at) < near;
+            let meets = |end: &&End| on(end) && end.starts != starts;
+            let under = below.iter().filter(on).map(|end| end.met).max().unwrap_or(0);
+            // A start in this layer, before this end was laid, is no crater.
+            let met = below.iter().any(|end| meets(&end)) || (starts && here.iter().any(|end| meets(&end)));
+            let met = if met { under + 1 } else { 0 };
+            if met == most {
+                let text = format!("starts and ends of passes meet at this place on {met} layers, one after another.");
+                findings.push(Finding::of_pass(&CHECK, layer, pass, Some(at.extend(layer.z)), text));
+            }
+            here.push(End { at, starts, met });
+        }
+        below = here;
+    }
+    findings
+}
+
+/// Ends of the open passes, in order: the pass, the place, and whether the pass starts there.
+fn ends(layer: &Layer) -> impl Iterator<Item = (usize, DVec2, bool)> + '_ {
+    let open = layer.passes.iter().enumerate().filter(|(_, pass)| !pass.closed);
+    let both = open.flat_map(|(i, pass)| [(i, pass.start(), true), (i, pass.end(), false)]);
+    both.filter_map(|(i, at, starts)| Some((i, at.filter(|p| p.is_finite())?.truncate(), starts)))
+}

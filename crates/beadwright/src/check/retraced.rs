@@ -1,0 +1,79 @@
+//! Passes laid over themselves.
+
+use super::{Check, Finding, Subject};
+use crate::pass::Pass;
+use glam::DVec3;
+use std::collections::HashMap;
+
+pub(super) const CHECK: Check = Check {
+    name: "retraced",
+    what: "passes that run over themselves: out and back along the same line, less than a quarter of a bead apart",
+    why: "metal is laid twice there; the ridge grows from layer to layer until the torch hits it",
+    example: "layer 3, pass 2, x 10.0 y 4.0 z 6.00 mm: it runs over itself for 21.5 mm.",
+    remedy: "end the pass at the tip, or let it come back a whole bead beside its way out",
+    find,
+};
+
+/// Samples along a pass, a bead width.
+const SAMPLES: f64 = 4.0;
+/// Nearer than this share of the narrower bead, one lies on the other. In sharp corners beads of good fills lie half a
+/// width apart, over up to two widths; a quarter they keep everywhere.
+const NEAR: f64 = 0.25;
+/// Places on a pass are compared if this many bead widths of it lie between them: beads at a corner always touch.
+const APART: f64 = 1.0;
+/// Length that counts, in bead widths: crossings are found by another check.
+const LENGTH: f64 = 1.0;
+
+/// A place on a pass, and the width of the bead there.
+type Sample = (DVec3, f64);
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let width = subject.profile.bead.width;
+    let found = subject.passes().filter_map(|(layer, i, pass)| {
+        let (place, length) = retraced(&samples(pass, width / SAMPLES), width, pass.closed)?;
+        let text = format!("it runs over itself for {length:.1} mm.");
+        Some(Finding::of_pass(&CHECK, layer, i, Some(place), text))
+    });
+    found.collect()
+}
+
+/// Where a pass first runs over what it has laid, and the length of the longest such run, mm.
+fn retraced(samples: &[Sample], width: f64, closed: bool) -> Option<(DVec3, f64)> {
+    let apart = (APART * SAMPLES) as usize;
+    let cell = |p: DVec3| (p.truncate() / width).floor().as_i64vec2().to_array();
+    let mut laid: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
+    // Beginning and length of the run so far, and of the longest, in samples.
+    let (mut run, mut longest) = ((0, 0), (0, 0));
+    for (k, &(place, own)) in samples.iter().enumerate() {
+        let [x, y] = cell(place);
+        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x + i, y + j]));
+        let over = |&j: &usize| {
+            let far = k - j > apart && (!closed || samples.len() - (k - j) > apart);
+            far && place.distance(samples[j].0) < NEAR * own.min(samples[j].1)
+        };
+        let over = around.filter_map(|cell| laid.get(&cell)).flatten().any(over);
+        run = match over {
+            true if run.1 > 0 => (run.0, run.1 + 1),
+            true => (k, 1),
+            false => (0, 0),
+        };
+        longest = if run.1 > longest.1 { run } else { longest };
+        laid.entry([x, y]).or_default().push(k);
+    }
+    let length = longest.1 as f64 * width / SAMPLES;
+    (length >= LENGTH * width).then(|| (samples[longest.0].0, length))
+}
+
+/// Places at even distances along a pass.
+fn samples(pass: &Pass, step: f64) -> Vec<Sample> {
+    let (mut samples, mut rest) = (Vec::new(), 0.0);
+    for s in pass.segments().filter(|s| s.from.is_finite() && s.to.is_finite()) {
+        let (length, mut way) = (s.length(), rest);
+        while way < length {
+            samples.push((s.from.lerp(s.to, way / length), s.width));
+            way += step;
+        }
+        rest = way - length;
+    }
+    samples
+}
