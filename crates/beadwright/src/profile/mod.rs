@@ -62,7 +62,8 @@ pub struct Profile {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// Names of the dialects in which programs are written if none is requested, such as `krl`.
+    /// Names of the dialects in which programs are written if none is requested, such as `krl`; a path such as
+    /// `./gantry` is that of a folder with a dialect of one's own, from the profile's folder on.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
