@@ -27,12 +27,8 @@ pub fn posts<S: AsRef<str>>(names: &[S], base: &Path) -> Result<Vec<Post>, OwnEr
 
 /// The files of a folder by their names. Links are left out, since templates see nothing outside their folder.
 fn texts(name: &str, folder: &Path) -> Result<BTreeMap<String, String>, OwnError> {
-    let error = |file: &str, reason: String| OwnError {
-        folder: name.to_owned(),
-        file: file.to_owned(),
-        line: None,
-        reason,
-    };
+    let error =
+        |file: &str, reason: String| OwnError { folder: name.to_owned(), file: file.to_owned(), line: None, reason };
     let unreadable = |e: std::io::Error| error("dialect.toml", format!("{} cannot be read: {e}.", folder.display()));
     let mut texts = BTreeMap::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {

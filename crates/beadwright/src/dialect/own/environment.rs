@@ -70,7 +70,8 @@ pub(super) fn sentence(fault: &Error) -> String {
     match fault.kind() {
         ErrorKind::SyntaxError => format!("the template cannot be read: {detail}."),
         ErrorKind::OutOfFuel => {
-            "the template takes too long: it goes around too often, or writes too much. Go through the steps once.".to_owned()
+            "the template takes too long: it goes around too often, or writes too much. Go through the steps once."
+                .to_owned()
         }
         ErrorKind::TemplateNotFound => format!("{detail}; only files of this folder can be included or imported."),
         kind if detail.is_empty() => format!("{kind}."),

@@ -73,8 +73,8 @@ impl Own {
                 return Err(error(needed, reason));
             }
         }
-        let settings = Settings::read(&files[SETTINGS])
-            .map_err(|(line, reason)| OwnError { line, ..error(SETTINGS, reason) })?;
+        let settings =
+            Settings::read(&files[SETTINGS]).map_err(|(line, reason)| OwnError { line, ..error(SETTINGS, reason) })?;
         let environment = environment::of(&settings, files).map_err(|fault| told(folder, &fault))?;
         Ok(Self { folder: folder.to_owned(), settings, environment })
     }

@@ -24,7 +24,10 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     run(own, job, &[every_step(), every_step()], DVec3::ZERO)?;
     for Probe { what, write, programs: [one, other], leaves: [here, there], file } in probes(job) {
         if run(own, job, &[one], here)? == run(own, job, &[other], there)? {
-            return refuse(file, format!("it writes the same whatever {what} is, so the program would lose it. {write}"));
+            return refuse(
+                file,
+                format!("it writes the same whatever {what} is, so the program would lose it. {write}"),
+            );
         }
     }
     let tells_retract = || own.environment.templates().any(|(_, template)| template.source().contains("wire_retract"));
@@ -157,11 +160,31 @@ fn probes(job: &Job<'_>) -> Vec<Probe> {
     };
     let rows = [
         (true, "the speed of a weld", "step.speed", [pace(7.0), pace(8.0)]),
-        (burns, "an arc start", "step.kind == \"arc-on\"", [pass([]), without(|s| matches!(s, Instruction::ArcOn { .. }))]),
-        (burns, "an arc end", "step.kind == \"arc-off\"", [pass([]), without(|s| matches!(s, Instruction::ArcOff { .. }))]),
-        (arcs, "step.circle (program.arcs = true)", "step.circle, or plan with program.arcs = false", [turn(None), turn(Some(quarter(true)))]),
+        (
+            burns,
+            "an arc start",
+            "step.kind == \"arc-on\"",
+            [pass([]), without(|s| matches!(s, Instruction::ArcOn { .. }))],
+        ),
+        (
+            burns,
+            "an arc end",
+            "step.kind == \"arc-off\"",
+            [pass([]), without(|s| matches!(s, Instruction::ArcOff { .. }))],
+        ),
+        (
+            arcs,
+            "step.circle (program.arcs = true)",
+            "step.circle, or plan with program.arcs = false",
+            [turn(None), turn(Some(quarter(true)))],
+        ),
         (arcs, "the side of a circle", "step.circle.sweep", [turn(Some(quarter(false))), turn(Some(quarter(true)))]),
-        (crater, "the time of a crater fill", "step.seconds at step.kind == \"crater\"", [fill(1.0, 0.5), fill(2.0, 0.5)]),
+        (
+            crater,
+            "the time of a crater fill",
+            "step.seconds at step.kind == \"crater\"",
+            [fill(1.0, 0.5), fill(2.0, 0.5)],
+        ),
         (weak, "the wire feed in a crater", "step.ratio at step.kind == \"crater\"", [fill(1.0, 0.5), fill(1.0, 0.6)]),
         (feeds, "the wire feed", "step.ratio at step.kind == \"wire-feed\"", [feed(0.8), feed(0.9)]),
         (waits, "the wait between layers", "step.seconds at step.kind == \"dwell\"", [wait(5.0), wait(6.0)]),
