@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
-    #[arg(long, value_name = "NAME", help = post_help())]
+    #[arg(long, value_name = "NAME|DIR", help = post_help())]
     post: Vec<String>,
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
@@ -72,7 +72,11 @@ fn strategy_help() -> String {
 }
 
 fn post_help() -> String {
-    format!("Dialect instead of the profile's, may be given several times: {}", dialect::names().join(", "))
+    format!(
+        "Dialect instead of the profile's, may be given several times: {}, or the path of a folder with a dialect of your \
+         own, such as ./gantry",
+        dialect::names().join(", ")
+    )
 }
 
 fn parse_height(text: &str) -> Result<f64, String> {
@@ -98,11 +102,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
     let mut profile = profile::load(&arguments.profile, &settings)?;
     let part = arguments.model.part();
+<<<<<<< HEAD
     if !arguments.post.is_empty() {
         profile.posts.clone_from(&arguments.post);
     }
     let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
     let programs = profile::programs(&profile.posts, &programs.job(&part))?;
+=======
+    let (names, base) = match &arguments.post {
+        posts if posts.is_empty() => (&profile.posts, profile::folder(&arguments.profile)),
+        posts => (posts, PathBuf::new()),
+    };
+    let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
+    let programs = profile::programs(names, &base, &programs.job(&part))?;
+>>>>>>> hc
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
@@ -173,7 +186,7 @@ impl Files<'_> {
     /// Writes what comes last, and moves everything into place.
     fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Written> {
         if let Some(files) = self.files {
-            self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total)))?;
+            self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total))?)?;
         }
         Ok(self.folder.commit()?)
     }

@@ -2,10 +2,10 @@
 
 use anyhow::Context;
 use beadwright::dialect::{DialectError, Job};
-use beadwright::files::Programs;
+use beadwright::files::{self, Programs};
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
@@ -38,7 +38,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             let checked = load(profile, &[])?;
             // What `plan` would refuse for any part.
             checked.wall_bead()?;
-            programs(&checked.posts, &checked.job("part"))?;
+            programs(&checked.posts, &folder(profile), &checked.job("part"))?;
             if let Some(reason) = checked.forbidden().into_iter().next() {
                 anyhow::bail!("{profile}: {reason}");
             }
@@ -95,9 +95,16 @@ pub(crate) fn with_settings(text: String, settings: &[String]) -> anyhow::Result
     })
 }
 
-/// Programs in these dialects; if the profile lacks a section, the error says which one to copy.
-pub(crate) fn programs(names: &[String], job: &Job<'_>) -> anyhow::Result<Programs> {
-    Programs::new(names, job).map_err(|error| {
+/// The folder in which a profile lies, where its `posts` look for dialects of one's own; the current one for a built-in
+/// name.
+pub(crate) fn folder(profile: &str) -> PathBuf {
+    Path::new(profile).parent().map_or_else(PathBuf::new, Path::to_owned)
+}
+
+/// Programs in these dialects, where folders begin at `base`; if the profile lacks a section, the error says which one to
+/// copy.
+pub(crate) fn programs(names: &[String], base: &Path, job: &Job<'_>) -> anyhow::Result<Programs> {
+    Programs::of(&files::posts(names, base)?, job).map_err(|error| {
         let DialectError::NoSection { dialect, .. } = error else { return error.into() };
         let section = format!("\n[{dialect}]");
         let with = BUILT_IN.iter().find(|(_, text)| text.contains(&section));

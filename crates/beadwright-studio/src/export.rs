@@ -2,7 +2,7 @@
 
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
-use beadwright::files::{Folder, PLAN, PlanFiles, Programs};
+use beadwright::files::{self, Folder, PLAN, PlanFiles, Programs};
 use beadwright::plan::Summary;
 use std::path::Path;
 
@@ -90,11 +90,12 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     if !dialects.is_empty() {
         allowed(summary)?;
     }
-    let programs = Programs::new(dialects, &profile.job(&header.part)).map_err(|error| error.to_string())?;
+    let posts = files::posts(dialects, Path::new("")).map_err(|error| error.to_string())?;
+    let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
     let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, 0);
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }
-    chunks.extend(files.end(summary, &part.repair(), Some(total)));
+    chunks.extend(files.end(summary, &part.repair(), Some(total)).map_err(|error| error.to_string())?);
     Ok(chunks)
 }

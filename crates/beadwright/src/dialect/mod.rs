@@ -10,13 +10,15 @@
 //! | `write.rs` | the [writer](writing::Writer) |
 //! | `read.rs` | the reader |
 //!
-//! [`writing`] and [`reading`] hold what the dialects share.
+//! [`writing`] and [`reading`] hold what the dialects share. Users' own dialects, folders of templates, are written by
+//! [`own`].
 
+pub mod own;
 pub mod reading;
 pub mod writing;
 
 pub use reading::read;
-pub use writing::{Chunk, DialectError, Job, PLACEHOLDERS, Writer, write, writer};
+pub use writing::{Chunk, DialectError, Job, PLACEHOLDERS, Writer, write, write_with, writer};
 
 use crate::limit::{Broken, Limit};
 use crate::program::ProgramSettings;

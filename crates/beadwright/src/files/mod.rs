@@ -1,19 +1,24 @@
 //! The files of a plan: programs, `plan.json`, `metrics.json` and `report.html`.
 //!
 //! [`PlanFiles`] makes their text layer by layer, so the command and the desktop program write the same bytes.
-//! [`Folder`] exchanges the files of a folder, all of them or none; it is the only part of the library that touches the disk,
-//! and only with the feature `files`.
+//! [`Folder`] exchanges the files of a folder, all of them or none, and [`posts`] fetches dialects of one's own; nothing else
+//! in the library touches the disk, and these only with the feature `files`.
 
 #[cfg(feature = "files")]
 mod folder;
+#[cfg(feature = "files")]
+mod own_folder;
 #[cfg(feature = "files")]
 mod stage;
 
 #[cfg(feature = "files")]
 pub use folder::{Folder, FolderError, Written, write_file};
+#[cfg(feature = "files")]
+pub use own_folder::posts;
 
 use crate::deposit::{Figures, Judgement};
-use crate::dialect::{self, Chunk, DialectError, Job, Writer, writer};
+use crate::dialect::own::Own;
+use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
 use crate::layer::Layer;
 use crate::model::RepairReport;
 use crate::plan::{Header, Summary};
@@ -30,6 +35,31 @@ pub const METRICS: &str = "metrics.json";
 /// Name of the report.
 pub const REPORT: &str = "report.html";
 
+/// What programs are written with.
+#[derive(Debug, Clone)]
+pub enum Post {
+    /// A dialect of the library, by its name.
+    Named(String),
+    /// A dialect of one's own.
+    Own(Own),
+}
+
+impl Post {
+    fn name(&self) -> &str {
+        match self {
+            Self::Named(name) => name,
+            Self::Own(own) => own.name(),
+        }
+    }
+
+    fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+        match self {
+            Self::Named(name) => writer(name, job),
+            Self::Own(own) => own.writer(job),
+        }
+    }
+}
+
 /// Programs that are written together, layer by layer.
 pub struct Programs {
     writers: Vec<Box<dyn Writer>>,
@@ -37,24 +67,37 @@ pub struct Programs {
 }
 
 impl Programs {
-    /// Programs in these dialects.
+    /// Programs in these dialects of the library.
     ///
     /// # Errors
     /// [`DialectError`] of the first dialect that cannot be written.
     pub fn new<S: AsRef<str>>(dialects: &[S], job: &Job<'_>) -> Result<Self, DialectError> {
+        Self::of(&dialects.iter().map(|name| Post::Named(name.as_ref().to_owned())).collect::<Vec<_>>(), job)
+    }
+
+    /// Programs in these posts.
+    ///
+    /// # Errors
+    /// [`DialectError`] of the first post that cannot be written.
+    pub fn of(posts: &[Post], job: &Job<'_>) -> Result<Self, DialectError> {
         let (mut writers, mut taken) = (Vec::new(), BTreeMap::new());
-        for name in dialects.iter().map(S::as_ref) {
-            let second = dialect::find(name).map_or("", |dialect| dialect.name);
+        for post in posts {
             // Asked of a writer of its own: the one that writes begins when the number of layers is known.
-            let files: BTreeSet<String> = writer(name, job)?.begin(1).into_iter().map(|chunk| chunk.file).collect();
+            let files: BTreeSet<String> = post.writer(job)?.begin(1).into_iter().map(|chunk| chunk.file).collect();
             for file in files {
-                if let Some(first) = taken.insert(file.clone(), second) {
+                let second = post.name().to_owned();
+                if let Some(first) = taken.insert(file.clone(), second.clone()) {
                     return Err(DialectError::SameFile { file, first, second });
                 }
             }
-            writers.push(writer(name, job)?);
+            writers.push(post.writer(job)?);
         }
         Ok(Self { writers, programmer: job.programmer() })
+    }
+
+    /// Why a program is not complete; nothing may then be kept.
+    pub fn failure(&self) -> Option<DialectError> {
+        self.writers.iter().find_map(|writer| writer.failure())
     }
 
     fn each(&mut self, write: impl FnMut(&mut Box<dyn Writer>) -> Vec<Chunk>) -> Vec<Chunk> {
@@ -112,8 +155,19 @@ impl PlanFiles {
     }
 
     /// The last text of all files; `total` is what the deposit model says of all layers.
-    pub fn end(mut self, summary: &Summary, repair: &RepairReport, total: Option<&Figures>) -> Vec<Chunk> {
+    ///
+    /// # Errors
+    /// [`DialectError`] of a program that is not complete; nothing may then be kept.
+    pub fn end(
+        mut self,
+        summary: &Summary,
+        repair: &RepairReport,
+        total: Option<&Figures>,
+    ) -> Result<Vec<Chunk>, DialectError> {
         let mut chunks = self.programs.end();
+        if let Some(failure) = self.programs.failure() {
+            return Err(failure);
+        }
         chunks.push(Chunk::new(PLAN, plan_file::tail()));
         self.note(&chunks);
         let names: Vec<String> = self.names.into_iter().chain([METRICS, REPORT].map(str::to_owned)).collect();
@@ -122,7 +176,7 @@ impl PlanFiles {
         metrics["files"] = serde_json::json!(names);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names)));
-        chunks
+        Ok(chunks)
     }
 
     fn note(&mut self, chunks: &[Chunk]) {

@@ -1,7 +1,7 @@
 //! The limits of values: the rows of all sections, and the few rules that tie keys together.
 
 use super::Profile;
-use crate::dialect::{self, PLACEHOLDERS};
+use crate::dialect::{self, PLACEHOLDERS, own};
 use crate::fill;
 use crate::limit::{Broken, Limit};
 use crate::template;
@@ -55,7 +55,7 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         (None, None) => return Some(Broken::text("fill.overlap", "free", "fill.stepover must then be given, mm.")),
         _ => {}
     }
-    if let Some(post) = p.posts.iter().find(|post| dialect::find(post).is_none()) {
+    if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));
     }
     p.program.broken().or_else(|| p.dialects.iter().find_map(|section| section.broken(&p.program)))

@@ -44,12 +44,32 @@ use crate::weld::WeldSettings;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+/// The text of a profile for plasma on a CNC: one process, and the flavour of G-code of a control.
+macro_rules! plasma_304 {
+    ($name:literal, $control:literal, $gcode:literal) => {
+        concat!(
+            "# CNC plasma-arc deposition of stainless steel, after Liu et al. 2022 (doi 10.11951/j.issn.1005-0299.20210131).\n",
+            "# The paper gives single beads 3-6 mm wide and 1-2 mm high; what it does not give is marked \"ours\".\n",
+            "name = \"",
+            $name,
+            "\"\ndescription = \"Plasma arc, 304 stainless wire 0.8 mm, three-axis ",
+            $control,
+            "\"\nposts = [\"gcode\"]\n\n",
+            include_str!("../../profiles/plasma-304/process.toml"),
+            include_str!(concat!("../../profiles/plasma-304/", $gcode, ".toml"))
+        )
+    };
+}
+
 /// The built-in profiles as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 5] = [
+pub const BUILT_IN: [(&str, &str); 8] = [
     ("cmt-al2319-kuka", include_str!("../../profiles/cmt-al2319-kuka.toml")),
     ("cmt-steel-abb", include_str!("../../profiles/cmt-steel-abb.toml")),
     ("cmt-steel-robots", include_str!("../../profiles/cmt-steel-robots.toml")),
-    ("plasma-304-cnc", include_str!("../../profiles/plasma-304-cnc.toml")),
+    ("plasma-304-cnc", plasma_304!("plasma-304-cnc", "CNC", "linuxcnc")),
+    ("plasma-304-fanuc", plasma_304!("plasma-304-fanuc", "CNC by Fanuc", "fanuc")),
+    ("plasma-304-siemens", plasma_304!("plasma-304-siemens", "CNC by Siemens (Sinumerik)", "siemens")),
+    ("plasma-304-twincat", plasma_304!("plasma-304-twincat", "machine with Beckhoff TwinCAT NC I", "twincat")),
     ("fdm-abs-0.4", include_str!("../../profiles/fdm-abs-0.4.toml")),
 ];
 
@@ -62,7 +82,8 @@ pub struct Profile {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// Names of the dialects in which programs are written if none is requested, such as `krl`.
+    /// Names of the dialects in which programs are written if none is requested, such as `krl`; a path such as
+    /// `./gantry` is that of a folder with a dialect of one's own, from the profile's folder on.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,

@@ -1,10 +1,12 @@
 //! Independent readers of the written programs: they know the languages, not the writers.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod cnc;
 pub mod fanuc;
 pub mod gcode;
 pub mod inform;
 pub mod krl;
+pub mod linuxcnc;
 pub mod marlin;
 pub mod rapid;
 pub mod urscript;

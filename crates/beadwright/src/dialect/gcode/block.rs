@@ -124,6 +124,11 @@ impl Block {
         }
         let value = parse(&line[start..start + digits])?;
         *i = start + digits;
+        // An address with a number, such as `Q1=5.0`, is an axis or a parameter besides those that move the torch.
+        if let Some((b'=', rest)) = line[*i..].split_first() {
+            *i += 1 + rest.iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'+' | b'-')).count();
+            return Some(true);
+        }
         match letter {
             b'G' => self.g.push(value),
             b'M' => {

@@ -52,6 +52,10 @@ pub struct Gcode {
     /// Needed if those take effect only with the next move, as M67 of LinuxCNC does, unlike M68.
     #[serde(default)]
     pub crater: Vec<String>,
+    /// Address of an auxiliary axis that feeds the wire along with the torch, such as `Q1=` (TwinCAT NC I) or `E`: weld
+    /// moves tell the length of wire that is fed until their end, mm from the beginning of the program. It follows the
+    /// wire feed without `wire_feed` lines. Default none: blocks of the templates switch the wire.
+    pub wire_axis: Option<String>,
     /// Blocks at the end of the program.
     pub footer: Vec<String>,
 }
@@ -72,8 +76,16 @@ fn seconds() -> Vec<String> {
     vec!["G4 P{{dwell}}".to_owned()]
 }
 
+<<<<<<< HEAD
 fn hundred() -> f64 {
     100.0
+=======
+/// Whether a text is the address of an axis: a letter, or a letter with a number and `=`.
+fn is_axis(text: &str) -> bool {
+    let Some((letter, rest)) = text.split_at_checked(1) else { return false };
+    let index = rest.strip_suffix('=').unwrap_or("x");
+    "ABCDEHLOPQRSTUVW".contains(letter) && (rest.is_empty() || index.parse::<u8>().is_ok())
+>>>>>>> hc
 }
 
 fn yes() -> bool {
@@ -94,6 +106,10 @@ impl Section for Gcode {
         if !is_extension(&self.extension) {
             return Some(Broken::text("gcode.extension", &self.extension, "letters and digits only."));
         }
+        if let Some(axis) = self.wire_axis.as_ref().filter(|axis| !is_axis(axis)) {
+            let reason = "it is one letter, which no other word has, or a letter, a number and =, such as \"Q1=\".";
+            return Some(Broken::text("gcode.wire_axis", axis, reason));
+        }
         let coarse = program.arcs && self.decimals < 3;
         coarse.then(|| program.broken_tolerance("arcs = true needs 3 gcode.decimals or more: the radius must be kept."))
     }
@@ -111,8 +127,15 @@ impl Section for Gcode {
         ]
     }
 
+    fn dry_run(&mut self) {
+        self.wire_axis = None;
+    }
+
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        needs::lines("gcode", &self.templates(), "M67 E0 Q{{wire_feed_ratio}}", job)?;
+        // An axis follows the wire feed by itself.
+        if self.wire_axis.is_none() || job.weld.ends.wire_retract > 0.0 {
+            needs::lines("gcode", &self.templates(), "M67 E0 Q{{wire_feed_ratio}}", job)?;
+        }
         Ok(Box::new(CncGcode::new(job, self.clone())))
     }
 }

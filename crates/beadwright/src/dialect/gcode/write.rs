@@ -1,4 +1,4 @@
-//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens) are
+//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
 //! set by keys and templates in the profile.
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines};
@@ -23,6 +23,10 @@ pub(super) struct CncGcode {
     block: usize,
     /// Feed written last, mm/s.
     feed: f64,
+    /// The wire feed as a multiple of its nominal value.
+    feed_ratio: f64,
+    /// Wire fed so far, mm.
+    wire: f64,
     at: Option<DVec3>,
 }
 
@@ -33,7 +37,7 @@ impl CncGcode {
         let values = Values::new(&ascii(&job.part), job);
         let comment = job.comment();
         let wire_feed_speed = job.weld.process.wire_feed_speed;
-        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, at: None }
+        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None }
     }
 
     fn begin_block(&mut self, text: &mut String) {
@@ -104,6 +108,9 @@ impl CncGcode {
         if let (Some(circle), Some(at)) = (circle, self.at) {
             push_centre(text, circle.centre - at, self.gcode.decimals);
         }
+        if let (Some(speed), Some(at)) = (feed, self.at) {
+            self.feed_wire(text, circle.map_or_else(|| at.distance(to), |c| c.length()) / speed);
+        }
         if let Some(feed) = feed.filter(|&f| f != self.feed) {
             self.feed = feed;
             text.push_str(" F");
@@ -111,6 +118,34 @@ impl CncGcode {
         }
         text.push('\n');
         self.at = Some(to);
+    }
+
+    /// Moves the axis of the wire, if there is one, as far as it goes in that time.
+    fn feed_wire(&mut self, text: &mut String, seconds: f64) {
+        if let Some(axis) = &self.gcode.wire_axis {
+            self.wire += self.wire_speed() * seconds;
+            text.push_str(&format!(" {axis}"));
+            push_fixed(text, self.wire, 3);
+        }
+    }
+
+    /// mm/s
+    fn wire_speed(&self) -> f64 {
+        self.wire_feed_speed * self.feed_ratio * 1000.0 / 60.0
+    }
+
+    /// Fills a crater: an axis of the wire goes on alone, at its own speed, where others wait.
+    fn fill(&mut self, text: &mut String, seconds: f64) {
+        if self.gcode.wire_axis.is_none() {
+            return self.wait(text, seconds);
+        }
+        self.begin_block(text);
+        text.push_str("G1");
+        self.feed_wire(text, seconds);
+        self.feed = self.wire_speed();
+        text.push_str(" F");
+        push_fixed(text, self.feed * 60.0, 1);
+        text.push('\n');
     }
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
@@ -125,17 +160,19 @@ impl CncGcode {
             }
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
             Instruction::WireFeed { ratio } => {
+                self.feed_ratio = ratio;
                 self.values.set_wire_feed(ratio, self.wire_feed_speed);
                 let lines = self.gcode.wire_feed.clone();
                 self.blocks(text, &lines);
             }
             Instruction::Crater { seconds, ratio } => {
                 if let Some(ratio) = ratio {
+                    self.feed_ratio = ratio;
                     self.values.set_wire_feed(ratio, self.wire_feed_speed);
                     let lines = crater_lines(&self.gcode.crater, &self.gcode.wire_feed).to_vec();
                     self.blocks(text, &lines);
                 }
-                self.wait(text, seconds);
+                self.fill(text, seconds);
             }
             Instruction::Dwell { seconds } => self.wait(text, seconds),
             Instruction::ArcOff { .. } => {

@@ -13,6 +13,7 @@ pub(super) use names::upper_name;
 pub use placeholders::PLACEHOLDERS;
 pub(super) use placeholders::Values;
 
+use super::own::OwnError;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
 use crate::layer::Layer;
@@ -45,12 +46,22 @@ pub trait Writer: Send {
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
+<<<<<<< HEAD
     /// What comes after the last layer; the torch stands clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
 
     /// What people must know about the finished program: sentences.
     fn notes(&self) -> Vec<String> {
         Vec::new()
+=======
+    /// What comes after the last layer; `leave` moves the torch away.
+    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
+
+    /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used. Only
+    /// [dialects of one's own](crate::dialect::own) can fail once they have begun.
+    fn failure(&self) -> Option<DialectError> {
+        None
+>>>>>>> hc
     }
 }
 
@@ -93,7 +104,7 @@ impl Job<'_> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DialectError {
     /// No such dialect.
-    #[error("there is no post \"{0}\". The posts are {known}.", known = names().join(", "))]
+    #[error("there is no post \"{0}\". The posts are {known}. A folder with a dialect of your own is given with its path, such as ./{0}.", known = names().join(", "))]
     Unknown(String),
     /// The profile lacks the section of the dialect.
     #[error("profile \"{profile}\" has no [{dialect}] section, which the post \"{dialect}\" needs.")]
@@ -133,9 +144,9 @@ pub enum DialectError {
         /// The file.
         file: String,
         /// The dialect that comes first.
-        first: &'static str,
+        first: String,
         /// The other one, or the same again.
-        second: &'static str,
+        second: String,
     },
     /// The profile has a turn table that the dialect does not write.
     #[error(
@@ -143,6 +154,9 @@ pub enum DialectError {
         others = with_table().join(" and ")
     )]
     NoTable(&'static str),
+    /// Templates of one's own are broken, or write less than the job asks for.
+    #[error(transparent)]
+    Own(#[from] OwnError),
 }
 
 fn with_table() -> Vec<&'static str> {
@@ -174,7 +188,18 @@ pub fn write<L: Borrow<Layer>>(
     layers: &[L],
     job: &Job<'_>,
 ) -> Result<BTreeMap<String, String>, DialectError> {
-    let mut writer = writer(name, job)?;
+    write_with(writer(name, job)?, layers, job)
+}
+
+/// The same with a writer that has been begun.
+///
+/// # Errors
+/// [`DialectError`] of the writer.
+pub fn write_with<L: Borrow<Layer>>(
+    mut writer: Box<dyn Writer>,
+    layers: &[L],
+    job: &Job<'_>,
+) -> Result<BTreeMap<String, String>, DialectError> {
     let mut programmer = job.programmer();
     let mut chunks = writer.begin(layers.len());
     layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
@@ -183,7 +208,7 @@ pub fn write<L: Borrow<Layer>>(
     for chunk in chunks {
         files.entry(chunk.file).or_default().push_str(&chunk.text);
     }
-    Ok(files)
+    writer.failure().map_or(Ok(files), Err)
 }
 
 /// Lines that set the wire feed in a crater: the profile's own for craters or, without these, its general ones.

@@ -1,0 +1,120 @@
+//! Programs for CNC controls, read by what each control knows: lengths, times and wire are those of the plan. LinuxCNC's
+//! own interpreter can be asked too (`benches/linuxcnc.sh`).
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod common;
+mod readers;
+
+use beadwright::plan::Plan;
+use beadwright::profile::Profile;
+use common::{planned, profile};
+use readers::cnc::{Control, Run, run};
+use std::collections::BTreeMap;
+
+/// Passes with crater fills, waits between layers, and arcs.
+fn welder(name: &str) -> Profile {
+    let mut profile = profile(name);
+    profile.fill.strategy = "contour".to_owned();
+    (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
+    (profile.start_stop.crater_fill_time, profile.start_stop.interpass_time) = (0.8, 12.5);
+    profile
+}
+
+fn program(plan: &Plan, profile: &Profile) -> String {
+    let files: BTreeMap<String, String> =
+        beadwright::dialect::write("gcode", &plan.layers, &profile.job("cross")).unwrap();
+    assert_eq!(files.len(), 1);
+    files.into_values().next().unwrap()
+}
+
+fn close(a: f64, b: f64, what: &str) {
+    println!("{what}: {a:.3} for {b:.3}, {:+.4} %", (a / b - 1.0) * 100.0);
+    assert!((a / b - 1.0).abs() < 2e-3, "{what}: {a} for {b}");
+}
+
+#[test]
+fn controls_run_what_was_planned() {
+    for (name, control, arc) in [
+        ("plasma-304-fanuc", Control::Fanuc, [3, 5]),
+        ("plasma-304-siemens", Control::Siemens, [3, 5]),
+        ("plasma-304-twincat", Control::TwinCat, [62, 63]),
+    ] {
+        for part in ["cross", "propeller"] {
+            let profile = welder(name);
+            let plan = planned(part, &profile);
+            let m = &plan.summary.metrics;
+            let Run { motion, arc_time, wire } = run(control, &program(&plan, &profile), arc);
+            assert_eq!(motion.welds.len(), m.arc_starts, "{name}");
+            assert!(motion.circles > 20, "{name}: {}", motion.circles);
+            close(motion.weld_length(), m.deposited_length_mm, "deposited length");
+            // The program also comes down to the first point and takes the torch away.
+            close(motion.travel, m.travel_length_mm + 2.0 * profile.travel.clearance, "travel");
+            // An axis of the wire fills craters by moving; the others wait.
+            let crater = profile.start_stop.crater_fill_time * m.arc_starts as f64;
+            let moving = m.arc_time_s - if control == Control::TwinCat { 0.0 } else { crater };
+            close(arc_time, moving, "arc time");
+            let whole = arc_time + motion.waits + m.travel_length_mm / profile.travel.speed;
+            close(whole, m.total_time_s, "total time");
+            if control == Control::TwinCat {
+                close(wire / 1000.0, m.wire_length_m, "wire");
+            } else {
+                assert_eq!(wire, 0.0);
+            }
+        }
+    }
+}
+
+/// An axis of the wire follows the wire feed: where it carries the bead's width, where a crater is filled with less.
+#[test]
+fn an_axis_of_the_wire_follows_the_wire_feed() {
+    use beadwright::process::Follow;
+    let mut profile = welder("plasma-304-twincat");
+    profile.fill.strategy = "loop".to_owned();
+    (profile.process.follow, profile.start_stop.crater_power) = (Follow::WireFeed, 0.5);
+    let plan = planned("cross", &profile);
+    let run = run(Control::TwinCat, &program(&plan, &profile), [62, 63]);
+    close(run.wire / 1000.0, plan.summary.metrics.wire_length_m, "wire");
+    close(run.arc_time, plan.summary.metrics.arc_time_s, "arc time");
+    let dry = profile.dry_run();
+    let text = program(&plan, &dry);
+    assert!(!text.contains("Q1=") && !text.contains("M62") && text.contains("DRY RUN"), "wire in a dry run");
+}
+
+#[test]
+fn an_impossible_axis_of_the_wire_is_refused() {
+    for axis in ["X", "Q1", "q1=", "", "QQ=", "F", "\u{e4}"] {
+        let text = Profile::built_in_text("plasma-304-twincat").unwrap().replace("\"Q1=\"", &format!("{axis:?}"));
+        let error = Profile::parse(&text).unwrap_err().to_string();
+        assert!(error.contains("gcode.wire_axis"), "{axis}: {error}");
+    }
+}
+
+/// Asks LinuxCNC's interpreter what it would do with our program; `BEADWRIGHT_RS274` is the command.
+#[test]
+#[ignore = "needs LinuxCNC's rs274: run benches/linuxcnc.sh"]
+fn linuxcnc_runs_what_was_planned() {
+    let command = std::env::var("BEADWRIGHT_RS274").expect("BEADWRIGHT_RS274 is the path of rs274");
+    for part in ["cross", "propeller"] {
+        let profile = welder("plasma-304-cnc");
+        let plan = planned(part, &profile);
+        let m = &plan.summary.metrics;
+        let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("part.ngc"), program(&plan, &profile)).unwrap();
+        std::fs::write(folder.join("tool.tbl"), "T1 P1 D1 Z0\n").unwrap();
+        let output = std::process::Command::new(&command)
+            .args(["-g", "-t", "tool.tbl", "part.ngc"])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let found = readers::linuxcnc::run(&String::from_utf8(output.stdout).unwrap());
+        assert_eq!(found.arc_starts, m.arc_starts);
+        close(found.weld_length, m.deposited_length_mm, "deposited length");
+        close(found.travel, m.travel_length_mm + 2.0 * profile.travel.clearance, "travel");
+        let crater = profile.start_stop.crater_fill_time * m.arc_starts as f64;
+        close(found.arc_time, m.arc_time_s - crater, "arc time");
+        close(found.arc_time + found.waits + m.travel_length_mm / profile.travel.speed, m.total_time_s, "total time");
+    }
+}
