@@ -102,20 +102,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
     let mut profile = profile::load(&arguments.profile, &settings)?;
     let part = arguments.model.part();
-<<<<<<< HEAD
+    let base = if arguments.post.is_empty() { profile::folder(&arguments.profile) } else { PathBuf::new() };
     if !arguments.post.is_empty() {
         profile.posts.clone_from(&arguments.post);
     }
     let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let programs = profile::programs(&profile.posts, &programs.job(&part))?;
-=======
-    let (names, base) = match &arguments.post {
-        posts if posts.is_empty() => (&profile.posts, profile::folder(&arguments.profile)),
-        posts => (posts, PathBuf::new()),
-    };
-    let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let programs = profile::programs(names, &base, &programs.job(&part))?;
->>>>>>> hc
+    let programs = profile::programs(&profile.posts, &base, &programs.job(&part))?;
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;

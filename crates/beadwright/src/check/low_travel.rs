@@ -30,7 +30,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         let (mut pass, mut told) = (0, false);
         for instruction in programmer.layer(layer).instructions {
             match instruction {
-                Instruction::Travel { to } => {
+                Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
                     let lowest = at.and_then(|from| standing.lowest_gap(from, to));
                     if let Some((gap, place)) = lowest.filter(|(gap, _)| !told && *gap < TOO_CLOSE * clearance) {
                         findings.push(Finding::of_pass(&CHECK, layer, pass, Some(place), sentence(gap)));

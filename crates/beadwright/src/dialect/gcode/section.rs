@@ -76,16 +76,15 @@ fn seconds() -> Vec<String> {
     vec!["G4 P{{dwell}}".to_owned()]
 }
 
-<<<<<<< HEAD
 fn hundred() -> f64 {
     100.0
-=======
+}
+
 /// Whether a text is the address of an axis: a letter, or a letter with a number and `=`.
 fn is_axis(text: &str) -> bool {
     let Some((letter, rest)) = text.split_at_checked(1) else { return false };
     let index = rest.strip_suffix('=').unwrap_or("x");
     "ABCDEHLOPQRSTUVW".contains(letter) && (rest.is_empty() || index.parse::<u8>().is_ok())
->>>>>>> hc
 }
 
 fn yes() -> bool {

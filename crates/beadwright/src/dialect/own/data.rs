@@ -49,9 +49,7 @@ impl Steps {
 
     pub(super) fn step(&mut self, instruction: Instruction) -> Value {
         let from = self.at;
-        if let Instruction::Travel { to } | Instruction::Weld { to, .. } = instruction {
-            self.at = Some(to);
-        }
+        self.at = instruction.target().or(self.at);
         let Self { travel_speed, wire_feed_speed, .. } = *self;
         Value::from_object(Step { instruction, from, travel_speed, wire_feed_speed })
     }
@@ -71,7 +69,7 @@ struct Step {
 impl Step {
     fn kind(&self) -> &'static str {
         match self.instruction {
-            Instruction::Travel { .. } => "travel",
+            Instruction::Approach { .. } | Instruction::Travel { .. } | Instruction::Retract { .. } => "travel",
             Instruction::ArcOn { .. } => "arc-on",
             Instruction::WireFeed { .. } => "wire-feed",
             Instruction::Weld { .. } => "weld",
@@ -83,7 +81,9 @@ impl Step {
 
     fn keys(&self) -> &'static [&'static str] {
         match self.instruction {
-            Instruction::Travel { .. } => &["kind", "x", "y", "z", "from", "speed", "length", "seconds"],
+            Instruction::Approach { .. } | Instruction::Travel { .. } | Instruction::Retract { .. } => {
+                &["kind", "x", "y", "z", "from", "speed", "length", "seconds", "first"]
+            }
             Instruction::Weld { .. } => {
                 &["kind", "x", "y", "z", "from", "speed", "length", "seconds", "circle", "last"]
             }
@@ -132,7 +132,11 @@ impl Step {
                 Some(circle.map_or_else(|| Value::from(()), |circle| self.circle(circle)))
             }
             (Instruction::Weld { to, circle, speed, .. }, _) => self.motion(key, to, speed, circle),
-            (Instruction::Travel { to }, _) => self.motion(key, to, self.travel_speed, None),
+            (Instruction::Approach { .. }, "first") => Some(Value::from(true)),
+            (Instruction::Travel { .. } | Instruction::Retract { .. }, "first") => Some(Value::from(false)),
+            (Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to }, _) => {
+                self.motion(key, to, self.travel_speed, None)
+            }
             (Instruction::ArcOn { pass, .. } | Instruction::ArcOff { pass }, "pass") => Some(Value::from(pass)),
             (Instruction::ArcOn { kind, .. }, "pass_kind") => Some(Value::from(kind.name())),
             (Instruction::Crater { seconds, .. } | Instruction::Dwell { seconds }, "seconds") => {

@@ -21,11 +21,11 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
         return refuse(SETTINGS, reason.to_owned());
     }
     names(own, job)?;
-    run(own, job, &[every_step(), every_step()], DVec3::ZERO)?;
-    for Probe { what, write, programs: [one, other], leaves: [here, there], file } in probes(job) {
-        if run(own, job, &[one], here)? == run(own, job, &[other], there)? {
+    run(own, job, &[every_step(), every_step()])?;
+    for Probe { what, write, programs: [one, other] } in probes(job) {
+        if run(own, job, &[one])? == run(own, job, &[other])? {
             return refuse(
-                file,
+                LAYER,
                 format!("it writes the same whatever {what} is, so the program would lose it. {write}"),
             );
         }
@@ -40,14 +40,14 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
 }
 
 /// Runs the templates on layers; the text of all files.
-fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>], leave: DVec3) -> Result<String, DialectError> {
+fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>]) -> Result<String, DialectError> {
     let mut writer = OwnWriter::new(own, job);
     let mut chunks = writer.begin(layers.len());
     for (index, instructions) in layers.iter().enumerate() {
         let (z, instructions) = (2.0 * (index + 1) as f64, instructions.clone());
         chunks.extend(writer.layer(&LayerProgram { index, z, instructions }));
     }
-    chunks.extend(writer.end(Some(Instruction::Travel { to: leave })));
+    chunks.extend(writer.end());
     match writer.failure() {
         Some(error) => Err(error),
         None => Ok(chunks.into_iter().map(|chunk| chunk.text).collect()),
@@ -62,9 +62,9 @@ fn names(own: &Own, job: &Job<'_>) -> Result<(), OwnError> {
         let more: &[&str] = match file {
             BEGIN | FILE => &[],
             LAYER => &["layer", "z", "steps", "file"],
-            END => &["leave", "layer_files"],
+            END => &["layer_files"],
             LAYER_FILE => &["layer"],
-            _ => &["layer", "z", "steps", "file", "leave", "layer_files"],
+            _ => &["layer", "z", "steps", "file", "layer_files"],
         };
         let is_known = |name: &str| more.contains(&name) || environment.globals().any(|(global, _)| global == name);
         let mut unknown: Vec<String> = template.undeclared_variables(false).into_iter().collect();
@@ -110,9 +110,16 @@ const END_OF_QUARTER: DVec3 = DVec3::new(15.0, 25.0, 2.0);
 
 /// A pass from [`START`] with something in it.
 fn pass(inside: impl IntoIterator<Item = Instruction>) -> Vec<Instruction> {
-    let head = [travel(START + 5.0 * DVec3::Z), travel(START), Instruction::ArcOn { pass: 1, kind: PassKind::Contour }];
+    let head = [
+        Instruction::Approach { to: START + 5.0 * DVec3::Z },
+        travel(START),
+        Instruction::ArcOn { pass: 1, kind: PassKind::Contour },
+    ];
     let last = Instruction::Weld { to: DVec3::new(40.0, 20.0, 2.0), circle: None, speed: 7.0, last: true };
-    head.into_iter().chain(inside).chain([last, Instruction::ArcOff { pass: 1 }]).collect()
+    head.into_iter()
+        .chain(inside)
+        .chain([last, Instruction::ArcOff { pass: 1 }, Instruction::Retract { to: DVec3::new(40.0, 20.0, 7.0) }])
+        .collect()
 }
 
 fn every_step() -> Vec<Instruction> {
@@ -131,14 +138,12 @@ fn every_step() -> Vec<Instruction> {
     layer
 }
 
-/// Two programs, or two places to leave to, that must not give the same text.
+/// Two programs that must not give the same text.
 struct Probe {
     what: String,
     /// What to write, as a sentence.
     write: String,
-    file: &'static str,
     programs: [Vec<Instruction>; 2],
-    leaves: [DVec3; 2],
 }
 
 /// All that the job needs.
@@ -192,9 +197,7 @@ fn probes(job: &Job<'_>) -> Vec<Probe> {
     let needed = rows.into_iter().filter(|row| row.0).map(|(_, what, write, programs)| Probe {
         what: what.to_owned(),
         write: format!("Write {write}."),
-        file: LAYER,
         programs,
-        leaves: [DVec3::ZERO; 2],
     });
     places(arcs).into_iter().chain(needed).collect()
 }
@@ -204,19 +207,16 @@ fn places(arcs: bool) -> Vec<Probe> {
     let mut probes = Vec::new();
     for (axis, by) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
         let here = DVec3::new(20.0, 30.0, 4.0);
-        let mut probe = |what: &str, file, name: &str, programs, leaves| {
-            let (what, write) = (format!("the {axis} of {what}"), format!("Write {{{{ {name}.{axis} | fixed(3) }}}}."));
-            probes.push(Probe { what, write, file, programs, leaves });
+        let mut probe = |what: &str, programs| {
+            let (what, write) = (format!("the {axis} of {what}"), format!("Write {{{{ step.{axis} | fixed(3) }}}}."));
+            probes.push(Probe { what, write, programs });
         };
         let moved = |to: fn(DVec3) -> Instruction| [pass([to(here)]), pass([to(here + by)])];
-        probe("a travel", LAYER, "step", moved(travel), [DVec3::ZERO; 2]);
-        probe("a weld", LAYER, "step", moved(|to| weld(to, None, 7.0)), [DVec3::ZERO; 2]);
+        probe("a travel", moved(travel));
+        probe("a weld", moved(|to| weld(to, None, 7.0)));
         if arcs && axis != "z" {
             let programs = [0.0, 1.0].map(|far| pass([weld(END_OF_QUARTER + far * by, Some(quarter(true)), 7.0)]));
-            probe("the end of a circle", LAYER, "step", programs, [DVec3::ZERO; 2]);
-        }
-        if axis == "z" {
-            probe("the move that takes the torch away", END, "leave", [pass([]), pass([])], [here, here + by]);
+            probe("the end of a circle", programs);
         }
     }
     probes

@@ -5,7 +5,7 @@ use super::environment::{FUEL, FUEL_PER_STEP};
 use super::settings::{LineEnds, Settings};
 use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, data, told};
 use crate::dialect::writing::{Chunk, DialectError, Job, Writer};
-use crate::program::{Instruction, LayerProgram};
+use crate::program::LayerProgram;
 use minijinja::{Environment, Error, Value, context};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -170,12 +170,11 @@ impl Writer for OwnWriter {
         self.keep(written)
     }
 
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk> {
+    fn end(&mut self) -> Vec<Chunk> {
         if self.failure.is_some() {
             return Vec::new();
         }
-        let leave = leave.map_or_else(|| Value::from(()), |leave| self.steps.step(leave));
-        let written = self.main(END, context! { leave => leave, layer_files => &self.layer_files });
+        let written = self.main(END, context! { layer_files => &self.layer_files });
         self.keep(written)
     }
 

@@ -197,6 +197,8 @@ impl Reader<'_> {
         } else if is("UnLoad") {
             let file = module::stem(text).unwrap_or_default();
             self.modules.retain(|m| !m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(file)));
+        } else if is("IF") && flat.to_ascii_uppercase().contains("ERASEMODULE") {
+            // Clears what a stop may have left; a program read from its beginning finds nothing.
         } else if CONTROL.iter().any(|c| is(c)) {
             return self.control(text, line, module, depth);
         } else {

@@ -46,22 +46,18 @@ pub trait Writer: Send {
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
-<<<<<<< HEAD
     /// What comes after the last layer; the torch stands clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
 
     /// What people must know about the finished program: sentences.
     fn notes(&self) -> Vec<String> {
         Vec::new()
-=======
-    /// What comes after the last layer; `leave` moves the torch away.
-    fn end(&mut self, leave: Option<Instruction>) -> Vec<Chunk>;
+    }
 
     /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used. Only
     /// [dialects of one's own](crate::dialect::own) can fail once they have begun.
     fn failure(&self) -> Option<DialectError> {
         None
->>>>>>> hc
     }
 }
 

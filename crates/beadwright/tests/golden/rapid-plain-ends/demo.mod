@@ -10,9 +10,11 @@ MODULE demo
     ConfL \Off;
     SingArea \Wrist;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+    IF ModExist("demo_L001") EraseModule "demo_L001";
     Load \Dynamic,"HOME:/part/demo_L001.mod";
     %"demo_L001:Layer001"%;
     UnLoad "HOME:/part/demo_L001.mod";
+    IF ModExist("demo_L002") EraseModule "demo_L002";
     Load \Dynamic,"HOME:/part/demo_L002.mod";
     %"demo_L002:Layer002"%;
     UnLoad "HOME:/part/demo_L002.mod";
