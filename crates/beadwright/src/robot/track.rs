@@ -25,6 +25,21 @@ pub struct Stop {
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
+    /// Whether it lies on the part, or on the way from or to home.
+    pub leg: Leg,
+}
+
+/// A leg of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Leg {
+    /// From home to the first point.
+    FromHome,
+    /// The program itself.
+    #[default]
+    Part,
+    /// From the last point to home.
+    ToHome,
 }
 
 /// The path of the torch.
@@ -32,12 +47,15 @@ pub struct Stop {
 pub struct Track {
     /// Its stops.
     pub stops: Vec<Stop>,
+    /// Speed of travels, mm/s.
+    pub travel_speed: f64,
 }
 
 impl Track {
     /// The path through a plan's layers, as programs made with the profile follow it.
     pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Self {
-        let (mut track, travel_speed) = (Self::default(), profile.travel.speed);
+        let travel_speed = profile.travel.speed;
+        let mut track = Self { travel_speed, ..Self::default() };
         let mut programmer = profile.programmer().unfitted();
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
@@ -58,12 +76,12 @@ impl Track {
         for instruction in &program.instructions {
             match *instruction {
                 Instruction::Travel { to } => {
-                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false });
+                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false, leg: Leg::Part });
                 }
                 Instruction::ArcOn { .. } => point = 0,
                 Instruction::Weld { to, speed, .. } => {
                     point += 1;
-                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true });
+                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, leg: Leg::Part });
                 }
                 Instruction::WireFeed { .. } | Instruction::Crater { .. } | Instruction::Dwell { .. } => {}
                 // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.
