@@ -284,7 +284,7 @@ fn an_inform_job_of_another_hand() {
     // through its last two.
     let chained = try_read(&INFORM.replace(" FPT", "")).unwrap();
     let left = chained.notes.iter().find(|n| n.contains("another circle with neither FPT nor a MOVL"));
-    assert!(left.is_some_and(|n| n.contains("line 31")), "{:?}", chained.notes);
+    assert!(left.is_some_and(|n| n.contains("line 30")), "{:?}", chained.notes);
     assert!((chained.totals().deposited_length_mm - totals.deposited_length_mm).abs() > 1.0);
     // The last arc lacks its end.
     let short = try_read(&INFORM.replace("MOVC C00006 V=10.0\n", "")).unwrap();

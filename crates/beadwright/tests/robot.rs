@@ -7,7 +7,7 @@ use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::robot::cell::BUILT_IN;
-use beadwright::robot::{self, Cell, CellError, Frame, PartPlace, Reach, Track, Trouble};
+use beadwright::robot::{self, Body, Cell, CellError, Frame, Home, Leg, PartPlace, Reach, Solid, Track, Trouble, Way};
 use beadwright::task::Task;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -16,12 +16,17 @@ fn cell(name: &str) -> Cell {
     Cell::built_in(name).unwrap()
 }
 
+/// A cell that tells neither home nor how thick its arm is.
+fn bare(name: &str) -> Cell {
+    Cell { home: None, body: None, ..cell(name) }
+}
+
 fn kuka() -> Cell {
-    cell("kuka-kr20-r1810")
+    bare("kuka-kr20-r1810")
 }
 
 fn abb() -> Cell {
-    cell("abb-irb1410")
+    bare("abb-irb1410")
 }
 
 fn place(x: f64, y: f64, z: f64, rotation: f64) -> PartPlace {
@@ -114,6 +119,115 @@ fn there_and_back_for_100_000_poses() {
     }
 }
 
+/// The wrist lies behind the flange by the length of the hand, and the links are as long as the cell tells.
+#[test]
+fn links_hang_together() {
+    for (name, _) in BUILT_IN {
+        let (cell, mut noise) = (cell(name), noise(11));
+        let (arm, table) = (cell.arm(), cell.arm);
+        for _ in 0..1000 {
+            let joints = arm.limits.map(|[low, high]| low + (high - low) * noise());
+            let [foot, shoulder, elbow, wrist] = arm.links(&joints);
+            let flange = arm.forward(&joints);
+            assert!(wrist.distance(flange.apply(DVec3::new(0.0, 0.0, -table.c4))) < 1e-6, "{name}: {joints:?}");
+            assert_eq!(foot, DVec3::ZERO);
+            assert!((shoulder.distance(elbow) - table.c2).abs() < 1e-9);
+            assert!((elbow.distance(wrist) - table.a2.hypot(table.c3)).abs() < 1e-9);
+        }
+    }
+}
+
+/// From the home pose of the profile, whose J5 is 0, a straight move begins in the singularity; a joint move does not mind.
+#[test]
+fn the_wrist_at_home_matters_on_straight_moves_only() {
+    let full = Cell { body: None, ..cell("kuka-kr20-r1810") };
+    let joints = full.home.unwrap().joints;
+    let walk = |joints, by| {
+        let cell = Cell { home: Some(Home { joints, by }), ..full.clone() };
+        robot::reach(&cell, cell.part, &square())
+    };
+    let line = walk(joints, Way::Line);
+    let wrist = |leg| line.findings.iter().find(|f| f.stop.leg == leg && matches!(f.trouble, Trouble::Wrist { .. }));
+    for (leg, words) in [(Leg::FromHome, "from home to the first point"), (Leg::ToHome, "from the last point to home")]
+    {
+        let found = wrist(leg).unwrap();
+        assert!(matches!(found.worst.1, Trouble::Wrist { margin } if margin < 1e-6), "{found:?}");
+        let sentence = found.sentence();
+        assert!(sentence.contains(words) && sentence.contains("joint move") && !found.trouble.is_fatal(), "{sentence}");
+    }
+    assert!(line.is_reachable());
+    let joint = walk(joints, Way::Joint);
+    assert!(joint.findings.is_empty(), "{:?}", joint.findings);
+    // A home that a joint cannot reach is fatal by either way.
+    let beyond = walk([0.0, -90.0, 90.0, 0.0, 140.0, 0.0], Way::Joint);
+    let bad = beyond.first_bad().unwrap();
+    assert!(matches!(bad.trouble, Trouble::Limit { joint: 4, .. }) && bad.stop.leg == Leg::FromHome, "{bad:?}");
+    // From the other side of the wrist a straight move cannot get to the posture that was judged.
+    let judged = walk(joints, Way::Joint).poses[0].1.unwrap().joints;
+    let flipped = [judged[0], judged[1], judged[2], judged[3] - 180.0, -judged[4], judged[5] + 180.0];
+    let found = walk(flipped, Way::Line);
+    let posture = found.findings.iter().find(|f| matches!(f.trouble, Trouble::Posture { .. }));
+    assert!(posture.is_some_and(|f| f.sentence().contains("from home")), "{:?}", found.findings);
+    assert!(walk(judged, Way::Line).findings.is_empty());
+}
+
+fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
+    let hit = |trouble: Trouble| match trouble {
+        Trouble::Collision { solids, depth } => Some((solids, depth)),
+        _ => None,
+    };
+    reach.findings.iter().filter_map(|f| hit(f.worst.1)).collect()
+}
+
+#[test]
+fn what_the_arm_hits_is_told() {
+    let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
+    let body = full.body.clone().unwrap();
+    let with = |change: fn(&mut Body), at: PartPlace, track: &Track| {
+        let mut body = body.clone();
+        change(&mut body);
+        robot::reach(&Cell { body: Some(body), ..full.clone() }, at, track)
+    };
+    assert_eq!(hits(&with(|_| {}, full.part, &square())), []);
+    // A table as high as the elbow, down to the floor and reaching up to the base.
+    let high = place(1000.0, 0.0, 1100.0, 0.0);
+    let table = hits(&with(|b| b.table = [1900.0, 800.0], high, &square()));
+    assert!(table.iter().any(|(solids, _)| *solids == [Solid::UpperArm, Solid::Table]), "{table:?}");
+    assert_eq!(hits(&with(|b| b.table = [300.0, 300.0], high, &square())), []);
+    // A base so thick that it reaches the part.
+    let thick = with(|b| b.base = 1100.0, full.part, &square());
+    let sentence = thick.findings.iter().find(|f| matches!(f.trouble, Trouble::Collision { .. })).unwrap().sentence();
+    assert!(sentence.contains("the torch hits the robot's base, by ") && sentence.contains("[body]"), "{sentence}");
+    assert!(thick.is_reachable(), "capsules only tell");
+    // Ten millimetres more of thickness go ten millimetres deeper.
+    let thicker = with(|b| b.base = 1110.0, full.part, &square());
+    let depth = |reach: &Reach| hits(reach).iter().find(|(s, _)| *s == [Solid::Torch, Solid::Base]).unwrap().1;
+    assert!((depth(&thicker) - depth(&thick) - 10.0).abs() < 1e-9, "{} {}", depth(&thicker), depth(&thick));
+    // The torch stands upright at x 1150 mm and more; the axis of the base ends at (160, 0, 520) mm.
+    assert!((depth(&thick) - (1100.0 + 25.0 - 1000.0)).abs() < 60.0, "{}", depth(&thick));
+}
+
+/// A post stands; what is welded at its foot afterwards brings the torch into it.
+#[test]
+fn the_part_as_far_as_it_is_welded_is_hit() {
+    let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
+    let welded = |beside: f64, post_first: bool| {
+        let line = |x: f64, z: f64| {
+            let points = vec![DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)];
+            Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(10.0) }
+        };
+        let (post, foot) = (line(0.0, 150.0), line(beside, 2.0));
+        let passes = if post_first { vec![post, foot] } else { vec![foot, post] };
+        let layer = Layer { index: 0, z: 150.0, height: 2.0, passes, ..Layer::default() };
+        let track = Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap());
+        hits(&robot::reach(&full, full.part, &track))
+    };
+    let found = welded(20.0, true);
+    assert!(found.iter().any(|(solids, _)| *solids == [Solid::Torch, Solid::Part]), "{found:?}");
+    assert_eq!(welded(20.0, false), [], "the post is welded last");
+    assert_eq!(welded(400.0, true), [], "the post stands far away");
+}
+
 #[test]
 fn a_branch_is_kept_on_small_moves() {
     let arm = kuka().arm();
@@ -145,9 +259,14 @@ fn propeller() -> Track {
 #[test]
 fn both_robots_reach_the_propeller() {
     let track = propeller();
-    for (cell, margin) in [(kuka(), 50.0), (abb(), 20.0)] {
+    for (name, margin) in [("kuka-kr20-r1810", 50.0), ("abb-irb1410", 20.0)] {
+        let cell = cell(name);
         let reach = robot::reach(&cell, cell.part, &track);
-        assert!(reach.is_reachable() && reach.findings.is_empty(), "{:?}", reach.findings);
+        let on_part = reach.findings.iter().filter(|f| f.stop.leg == Leg::Part);
+        assert!(reach.is_reachable() && on_part.count() == 0, "{:?}", reach.findings);
+        for finding in &reach.findings {
+            println!("{name}: {}", finding.sentence());
+        }
         assert!(reach.least_margin().unwrap() > margin, "{:?}", reach.least_margin());
         assert!((0..6).all(|j| reach.joint(j).unwrap().margin > margin));
         check_way(&cell, cell.part, &reach);

@@ -175,6 +175,18 @@ impl Arm {
         Frame { position: pose.translation * MM_PER_M, rotation: pose.rotation }
     }
 
+    /// Foot, axis 2, axis 3 and wrist for angles of the joints, °; mm from the foot.
+    pub fn links(&self, joints: &Joints) -> [DVec3; 4] {
+        let Lengths { a1, b, c1, c2, .. } = self.lengths;
+        let [q1, q2, q3, ..] = self.model(joints);
+        let upright = DQuat::from_rotation_z(q1);
+        let link = |from: DVec3, length: f64, lean: f64| from + DVec3::new(lean.sin(), 0.0, lean.cos()) * length;
+        let shoulder = DVec3::new(a1, b, c1);
+        let elbow = link(shoulder, c2, q2);
+        let wrist = link(elbow, self.forearm(), q2 + q3 + self.bend());
+        [DVec3::ZERO, shoulder, elbow, wrist].map(|place| upright * place)
+    }
+
     /// All ways to put the flange there, including those beyond a limit. Of a joint's angles that differ by whole
     /// turns, the one nearest to the middle of its range is returned.
     pub fn inverse(&self, base_from_flange: &Frame) -> Vec<(Branch, Joints)> {

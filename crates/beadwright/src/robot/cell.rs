@@ -1,6 +1,8 @@
 //! Cells: an arm with its torch and the place of the part, as a TOML file people can edit.
 
 use super::arm::{Arm, Frame, Lengths};
+use super::body::Body;
+use super::home::Home;
 use crate::profile::{explain, line_of, line_of_key, nearest};
 use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
@@ -28,6 +30,12 @@ pub struct Cell {
     /// Turn table that carries the part; optional.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<Table>,
+    /// Where programs begin and end; optional, without it the ways from and to home are not looked at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub home: Option<Home>,
+    /// How thick the arm is, and how large the table; optional, without it no collision is looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<Body>,
 }
 
 /// A six-axis arm with parallel base and spherical wrist. Lengths in mm, angles in °.
@@ -199,6 +207,21 @@ impl Cell {
         if let Some(table) = &self.table {
             ranges.extend(table.axis.map(|v| ("table.axis", v, -1e5, 1e5, "mm")));
             ranges.extend(table.limits.map(|v| ("table.limits", v, -7200.0, 7200.0, "°")));
+        }
+        if let Some(home) = &self.home {
+            ranges.extend(home.joints.map(|v| ("home.joints", v, -7200.0, 7200.0, "°")));
+        }
+        if let Some(body) = &self.body {
+            let sizes = [
+                ("body.base", body.base),
+                ("body.upper_arm", body.upper_arm),
+                ("body.forearm", body.forearm),
+                ("body.hand", body.hand),
+                ("body.torch", body.torch),
+                ("body.stick_out", body.stick_out),
+            ];
+            ranges.extend(sizes.map(|(key, v)| (key, v, 0.0, 2e3, "mm")));
+            ranges.extend(body.table.map(|v| ("body.table", v, 0.0, 1e5, "mm")));
         }
         // Written so that NaN is out of range too.
         if let Some((key, value, low, high, unit)) =

@@ -1,6 +1,7 @@
 //! What is wrong with a program on a cell, in sentences for a welder.
 
-use super::track::Stop;
+use super::body::Solid;
+use super::track::{Leg, Stop};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -43,15 +44,32 @@ pub enum Trouble {
         /// Distance of joint 5 from the angle at which they do, °.
         margin: f64,
     },
+    /// A straight move from home leads to other joint angles than the program was judged with.
+    Posture {
+        /// The joint that differs most, from 0.
+        joint: usize,
+        /// Angle to which the straight move leads, °.
+        angle: f64,
+        /// Angle that was judged, °.
+        judged: f64,
+    },
+    /// Two solids are in each other, as capsules.
+    Collision {
+        /// What is hit, and by what.
+        solids: [Solid; 2],
+        /// How deep, mm.
+        depth: f64,
+    },
 }
 
 impl Trouble {
-    /// Whether this keeps the program from being welded. Slower travels and a near singularity are only reported.
+    /// Whether this keeps the program from being welded. Slower travels, a near singularity and what
+    /// coarse capsules hit are only reported.
     pub fn is_fatal(&self) -> bool {
         match self {
             Self::OutOfReach { .. } | Self::Limit { .. } => true,
             Self::Speed { arc, .. } => *arc,
-            Self::Wrist { .. } => false,
+            Self::Wrist { .. } | Self::Posture { .. } | Self::Collision { .. } => false,
         }
     }
 
@@ -63,6 +81,8 @@ impl Trouble {
             Self::Speed { joint, arc: true, .. } => (2, joint),
             Self::Wrist { .. } => (3, 4),
             Self::Speed { joint, arc: false, .. } => (4, joint),
+            Self::Posture { .. } => (5, 0),
+            Self::Collision { solids: [a, b], .. } => (6, 8 * a as usize + b as usize),
         }
     }
 
@@ -73,11 +93,13 @@ impl Trouble {
             Self::Limit { angle, low, high, .. } => (low - angle).max(angle - high),
             Self::Speed { speed, limit, .. } => speed / limit,
             Self::Wrist { margin } => -margin,
+            Self::Posture { angle, judged, .. } => (angle - judged).abs(),
+            Self::Collision { depth, .. } => depth,
         }
     }
 }
 
-/// All troubles of one kind and joint.
+/// All troubles of one kind and joint on one leg of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReachFinding {
     /// The first stop that has it.
@@ -118,6 +140,21 @@ impl ReachFinding {
                     "The robot will travel more slowly there."
                 }
             ),
+            Trouble::Wrist { margin } if self.stop.leg != Leg::Part => format!(
+                "{place}: joint 5 is {margin:.1}° from the singularity of the wrist on a straight move{more}; joints 4 and 6 may \
+                 swing round. Go this way by a joint move (PTP, MoveJ), or take a home position with joint 5 bent."
+            ),
+            Trouble::Posture { joint, angle, judged } => format!(
+                "{place}: the straight move leads joint {} to {angle:.1}°, but the program was judged with {judged:.1}°{more}. Go \
+                 this way by a joint move (PTP, MoveJ), or take a home position nearer to that posture.",
+                joint + 1
+            ),
+            Trouble::Collision { solids: [a, b], depth } => format!(
+                "{place}: {} hits {}, by {depth:.0} mm as the cell's capsules have it{more}. Move or turn the part, bend the \
+                 torch in another way, or correct [body] of the cell.",
+                a.name(),
+                b.name()
+            ),
             Trouble::Wrist { margin } => format!(
                 "{place}: joint 5 is {margin:.1}° from the singularity of the wrist{more}; joints 4 and 6 may swing round. \
                  Move the part, or bend the torch more."
@@ -135,8 +172,17 @@ impl ReachFinding {
             Trouble::Limit { angle, .. } => format!("{angle:.1}°"),
             Trouble::Speed { speed, .. } => format!("{speed:.0} °/s"),
             Trouble::Wrist { margin } => format!("{margin:.1}°"),
+            Trouble::Posture { angle, .. } => format!("{angle:.1}°"),
+            Trouble::Collision { depth, .. } => format!("{depth:.0} mm"),
         };
-        let Stop { layer, pass, point, .. } = self.worst.0;
+        let Stop { layer, pass, point, at, leg, .. } = self.worst.0;
+        if leg != Leg::Part {
+            let count = self.count;
+            return format!(
+                ", and at {count} points in all, the worst {worst} (x {:.1} y {:.1} z {:.1} mm)",
+                at.x, at.y, at.z
+            );
+        }
         format!(
             ", and at {} points in all, the worst {worst} (layer {}, pass {}, point {})",
             self.count,
@@ -148,7 +194,15 @@ impl ReachFinding {
 }
 
 fn place(stop: &Stop) -> String {
-    let Stop { layer, pass, point, at, arc, .. } = stop;
+    let Stop { layer, pass, point, at, arc, leg, .. } = stop;
+    let way = match leg {
+        Leg::Part => None,
+        Leg::FromHome => Some("from home to the first point"),
+        Leg::ToHome => Some("from the last point to home"),
+    };
+    if let Some(way) = way {
+        return format!("On the way {way}, at x {:.1} y {:.1} z {:.1} mm", at.x, at.y, at.z);
+    }
     let travel = if *arc { "" } else { " (travel)" };
     format!(
         "Layer {}, pass {}, point {}{travel} at x {:.1} y {:.1} z {:.1} mm",
@@ -163,12 +217,13 @@ fn place(stop: &Stop) -> String {
 
 /// Troubles gathered on the way.
 #[derive(Debug, Default)]
-pub(super) struct Findings(BTreeMap<(u8, usize), ReachFinding>);
+pub(super) struct Findings(BTreeMap<(u8, usize, Leg), ReachFinding>);
 
 impl Findings {
     pub(super) fn add(&mut self, stop: &Stop, trouble: Trouble) {
         let new = || ReachFinding { stop: *stop, trouble, worst: (*stop, trouble), count: 0 };
-        let finding = self.0.entry(trouble.key()).or_insert_with(new);
+        let (kind, joint) = trouble.key();
+        let finding = self.0.entry((kind, joint, stop.leg)).or_insert_with(new);
         finding.count += 1;
         if trouble.size() > finding.worst.1.size() {
             finding.worst = (*stop, trouble);

@@ -7,16 +7,21 @@
 //!    angle about its own axis, and that freedom keeps joints away from limits;
 //! 2. dynamic programming picks one branch of the arm for the whole program and, of all courses of the torch angle with
 //!    the greatest least margin, the one that turns least;
-//! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`).
+//! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`); before and
+//!    after it the ways from and to home (`home.rs`), where the cell has one;
+//! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and with the metal
+//!    laid so far (`body.rs`), where the cell tells how thick they are.
 //!
 //! [`suggest()`] searches for a place of the part with greater margins, [`turn_table`] for the angle of a table under
 //! it.
 //!
-//! Not checked: collisions of arm, torch and part, cables, and the load's dynamics.
+//! Not checked: cables, fixtures and anything else beside the table, and the load's dynamics.
 
 pub mod arm;
+pub mod body;
 pub mod cell;
 pub mod finding;
+pub mod home;
 pub mod page;
 pub mod suggest;
 pub mod table;
@@ -25,11 +30,13 @@ mod turn;
 mod walk;
 
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
+pub use body::{Body, Solid};
 pub use cell::{Cell, CellError, PartPlace, Table};
 pub use finding::{ReachFinding, Trouble};
+pub use home::{Home, Way};
 pub use suggest::{Suggestion, suggest};
 pub use table::{TableAngle, turn_table};
-pub use track::{Stop, Track};
+pub use track::{Leg, Stop, Track};
 pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;

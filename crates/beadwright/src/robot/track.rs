@@ -15,7 +15,7 @@ pub const PIECE_MM: f64 = 20.0;
 pub struct Stop {
     /// Layer, from 0.
     pub layer: usize,
-    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to.
+    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to, the way up to the pass that it leaves.
     pub pass: usize,
     /// Point of the pass as the program has it, from 0; on the way to a point, that point.
     pub point: usize,
@@ -25,6 +25,21 @@ pub struct Stop {
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
+    /// Whether it lies on the part, or on the way from or to home.
+    pub leg: Leg,
+}
+
+/// A leg of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Leg {
+    /// From home to the first point.
+    FromHome,
+    /// The program itself.
+    #[default]
+    Part,
+    /// From the last point to home.
+    ToHome,
 }
 
 /// The path of the torch.
@@ -32,12 +47,15 @@ pub struct Stop {
 pub struct Track {
     /// Its stops.
     pub stops: Vec<Stop>,
+    /// Speed of travels, mm/s.
+    pub travel_speed: f64,
 }
 
 impl Track {
     /// The path through a plan's layers, as programs made with the profile follow it.
     pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Self {
-        let (mut track, travel_speed) = (Self::default(), profile.travel.speed);
+        let travel_speed = profile.travel.speed;
+        let mut track = Self { travel_speed, ..Self::default() };
         let mut programmer = profile.programmer().unfitted();
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);
@@ -54,13 +72,17 @@ impl Track {
         let (mut pass, mut point) = (0, 0);
         for instruction in &program.instructions {
             match *instruction {
-                Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
-                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false });
+                Instruction::Approach { to } | Instruction::Travel { to } => {
+                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false, leg: Leg::Part });
+                }
+                Instruction::Retract { to } => {
+                    let pass = pass.saturating_sub(1);
+                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false, leg: Leg::Part });
                 }
                 Instruction::ArcOn { .. } => point = 0,
                 Instruction::Weld { to, speed, .. } => {
                     point += 1;
-                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true });
+                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, leg: Leg::Part });
                 }
                 Instruction::WireFeed { .. } | Instruction::Crater { .. } | Instruction::Dwell { .. } => {}
                 // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.

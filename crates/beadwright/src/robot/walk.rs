@@ -1,15 +1,19 @@
 //! The walk along the whole path: joint angles, margins, speeds, and what is wrong.
 
 use super::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
+use super::body::Room;
 use super::cell::{Cell, PartPlace};
 use super::finding::{Findings, ReachFinding, Trouble};
-use super::track::{Stop, Track};
+use super::home::{Move, Way};
+use super::track::{Leg, Stop, Track};
 use super::{part_from_tool, turn};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// A finding is reported where joint 5 is closer than this to its singular angle, °: |sin J5| = 0.087.
 pub(super) const WRIST_MARGIN: f64 = 5.0;
+/// Joint angles that differ by less belong to one posture, °.
+const SAME_POSTURE: f64 = 1.0;
 
 /// The arm at one stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +63,7 @@ pub struct Reach {
     pub computed: usize,
 }
 
-/// Walks a track with the part at a place of the cell.
+/// Walks a track with the part at a place of the cell, from home and back to it.
 pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let arm = cell.arm();
     let (base_from_part, tool_from_flange) = (place.base_from_part(), cell.flange_from_tool().inverse());
@@ -68,12 +72,29 @@ pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let pairs: Vec<(&Stop, f64)> = track.stops.iter().zip(course.angles.iter().copied()).collect();
     let solved: Vec<Option<Joints>> =
         pairs.par_iter().map(|(stop, angle)| solve(&arm, &flange(stop, *angle), course.branch)).collect();
-    let mut walk = Walk { arm: &arm, before: None, findings: Findings::default() };
+    let room = Room::new(cell, &arm, &base_from_part);
+    let mut walk = Walk { arm: &arm, before: None, room, findings: Findings::default() };
+    let flange_from_tool = cell.flange_from_tool();
+    let home = cell.home.map(|home| {
+        let (speed, by) = (track.travel_speed, home.by);
+        let way = Move { arm: &arm, flange_from_tool: &flange_from_tool, base_from_part: &base_from_part, by, speed };
+        (home.joints, way)
+    });
+    if let (Some((from, way)), Some((first, _)), Some(Some(to))) = (&home, pairs.first(), solved.first()) {
+        walk.home(way, *from, *to, Stop { leg: Leg::FromHome, ..**first });
+    }
+    let mut at = None;
     let step = |((stop, angle), joints): (&(&Stop, f64), Option<Joints>)| {
-        let pose = walk.step(stop, *angle, joints, || arm.beyond(&flange(stop, *angle)));
+        let pose = walk.step(stop, *angle, joints, Way::Line, || arm.beyond(&flange(stop, *angle)));
+        if let (Some(room), Some(from)) = (&mut walk.room, at.replace(stop.at).filter(|_| stop.arc)) {
+            room.lay(from, stop.at);
+        }
         (**stop, pose)
     };
     let poses: Vec<(Stop, Option<Pose>)> = pairs.iter().zip(solved).map(step).collect();
+    if let (Some((to, way)), Some((last, Some(pose)))) = (&home, poses.last()) {
+        walk.home(way, pose.joints, *to, Stop { leg: Leg::ToHome, ..*last });
+    }
     let angles = || course.angles.iter().copied();
     let turning = Turning {
         range: (angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)),
@@ -92,16 +113,32 @@ fn solve(arm: &Arm, base_from_flange: &Frame, branch: Branch) -> Option<Joints> 
 struct Walk<'a> {
     arm: &'a Arm,
     before: Option<Joints>,
+    /// What takes up room; none where the cell does not tell.
+    room: Option<Room<'a>>,
     findings: Findings,
 }
 
 impl Walk<'_> {
+    /// Goes between home and an end of the program.
+    fn home(&mut self, way: &Move<'_>, from: Joints, to: Joints, like: Stop) {
+        self.before = None;
+        for (stop, joints, flange) in way.stops(from, to, like) {
+            self.step(&stop, 0.0, joints, way.by, || way.arm.beyond(&flange));
+        }
+        let off = |at: Joints| (0..6).map(|j| (j, (at[j] - to[j]).abs(), at[j])).max_by(|a, b| a.1.total_cmp(&b.1));
+        let off = self.before.take().and_then(off).filter(|(_, off, _)| *off > SAME_POSTURE);
+        if let Some((joint, _, angle)) = off {
+            self.findings.add(&like, Trouble::Posture { joint, angle, judged: to[joint] });
+        }
+    }
+
     /// Goes to one stop.
     fn step(
         &mut self,
         stop: &Stop,
         torch_angle: f64,
         joints: Option<Joints>,
+        by: Way,
         beyond: impl Fn() -> f64,
     ) -> Option<Pose> {
         let Some(mut joints) = joints else {
@@ -118,11 +155,12 @@ impl Walk<'_> {
         let speeds = std::array::from_fn(|j| (joints[j] - from[j]).abs() / seconds);
         self.before = Some(joints);
         let pose = Pose { torch_angle, joints, margins: self.arm.margins(&joints), speeds };
-        self.note(stop, &pose);
+        self.note(stop, &pose, by);
+        self.touch(stop, &joints);
         Some(pose)
     }
 
-    fn note(&mut self, stop: &Stop, pose: &Pose) {
+    fn note(&mut self, stop: &Stop, pose: &Pose, by: Way) {
         for joint in 0..6 {
             let [low, high] = self.arm.limits[joint];
             if pose.margins.limits[joint] < 0.0 {
@@ -133,8 +171,19 @@ impl Walk<'_> {
                 self.findings.add(stop, Trouble::Speed { joint, speed: pose.speeds[joint], limit, arc: stop.arc });
             }
         }
-        if pose.margins.wrist < WRIST_MARGIN {
+        // Joint moves pass the singularity unharmed.
+        if by == Way::Line && pose.margins.wrist < WRIST_MARGIN {
             self.findings.add(stop, Trouble::Wrist { margin: pose.margins.wrist });
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// Looks for what the arm hits at a stop.
+    fn touch(&mut self, stop: &Stop, joints: &Joints) {
+        let contacts = self.room.as_ref().map(|room| room.contacts(joints)).unwrap_or_default();
+        for contact in contacts {
+            self.findings.add(stop, Trouble::Collision { solids: contact.solids, depth: contact.depth });
         }
     }
 }
@@ -147,7 +196,10 @@ impl Reach {
 
     /// The first fatal finding along the path.
     pub fn first_bad(&self) -> Option<&ReachFinding> {
-        self.findings.iter().filter(|f| f.trouble.is_fatal()).min_by_key(|f| (f.stop.layer, f.stop.pass, f.stop.point))
+        self.findings
+            .iter()
+            .filter(|f| f.trouble.is_fatal())
+            .min_by_key(|f| (f.stop.leg, f.stop.layer, f.stop.pass, f.stop.point))
     }
 
     /// Least margin of all points that have joint angles, °.
