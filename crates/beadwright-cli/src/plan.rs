@@ -3,7 +3,7 @@
 use crate::{model, profile, program, progress};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::files::{Folder, PlanFiles, Programs, Written};
+use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
 use beadwright::layer::Layer;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
@@ -40,6 +40,9 @@ pub(crate) struct Arguments {
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     from_layer: u32,
+    /// Begin that layer with this pass, counted from 1: the one that was interrupted is welded anew.
+    #[arg(long, value_name = "PASS", default_value_t = 1, requires = "from_layer", value_parser = clap::value_parser!(u32).range(1..))]
+    from_pass: u32,
     /// Write programs that only move the torch, to run before the first bead: the same paths at the same speeds, but
     /// with arc, gas and wire always off. Their names begin with "dry_"; plan.json and the report stay as they are.
     #[arg(long)]
@@ -113,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
-    let from_layer = arguments.from_layer as usize - 1;
+    let start = Start { layer: arguments.from_layer as usize - 1, pass: arguments.from_pass as usize - 1 };
     let mut files = Files {
         folder: Folder::new(&arguments.output)?,
         programs: Some(programs),
@@ -121,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         pictures: &arguments.picture,
         profile: &profile,
         judge: (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS)),
-        from_layer,
+        start,
     };
     let planned = plan::plan_into(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
@@ -131,7 +134,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
     })?;
     anyhow::ensure!(
-        from_layer < summary.metrics.layers,
+        start.layer < summary.metrics.layers,
         "--from-layer {} lies above the part, which has {} layers",
         arguments.from_layer,
         summary.metrics.layers
@@ -171,7 +174,7 @@ struct Files<'a> {
     profile: &'a Profile,
     judge: Option<Judge>,
     /// Index of the first layer of the programs.
-    from_layer: usize,
+    start: Start,
 }
 
 impl Files<'_> {
@@ -189,7 +192,7 @@ impl Sink for Files<'_> {
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
-        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.from_layer);
+        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.start);
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }
@@ -199,6 +202,14 @@ impl Sink for Files<'_> {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
+        let Start { layer: index, pass } = self.start;
+        anyhow::ensure!(
+            layer.index != index || pass == 0 || pass < layer.passes.len(),
+            "--from-pass {}: layer {} has {} passes",
+            pass + 1,
+            index + 1,
+            layer.passes.len()
+        );
         let welded = plan::welded(&layer, self.profile);
         let judgement = self.judge.as_mut().map(|judge| judge.layer(&welded));
         if let Some(files) = &mut self.files {

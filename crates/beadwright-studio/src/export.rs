@@ -2,7 +2,7 @@
 
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
-use beadwright::files::{self, Folder, PLAN, PlanFiles, Programs};
+use beadwright::files::{self, Folder, PLAN, PlanFiles, Programs, Start};
 use beadwright::plan::Summary;
 use std::path::Path;
 
@@ -92,7 +92,7 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     }
     let posts = files::posts(dialects, Path::new("")).map_err(|error| error.to_string())?;
     let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
-    let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, 0);
+    let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, Start::default());
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }

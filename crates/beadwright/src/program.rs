@@ -181,13 +181,18 @@ impl Programmer {
 
     /// The instructions of the next layer; the torch ends above its last pass, clear of it.
     pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
+        self.layer_from(layer, 0)
+    }
+
+    /// The same from the pass with the index `first` on, for a build that was stopped there.
+    pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
         if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten() {
             self.pause(pause, &mut instructions);
         }
-        for (i, pass) in layer.passes.iter().enumerate() {
+        for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut instructions);
         }
         if self.dry {

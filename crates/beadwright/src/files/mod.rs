@@ -108,8 +108,8 @@ impl Programs {
         self.each(|writer| writer.begin(layers))
     }
 
-    fn layer(&mut self, layer: &Layer) -> Vec<Chunk> {
-        let program = self.programmer.layer(layer);
+    fn layer(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
+        let program = self.programmer.layer_from(layer, first);
         self.each(|writer| writer.layer(&program))
     }
 
@@ -118,22 +118,30 @@ impl Programs {
     }
 }
 
+/// Where programs begin: elsewhere than at the beginning, a build goes on that was stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Start {
+    /// Index of the layer, from 0.
+    pub layer: usize,
+    /// Index of the pass in it, from 0.
+    pub pass: usize,
+}
+
 /// Makes the text of all files of a plan as its layers come.
 pub struct PlanFiles {
     programs: Programs,
     report: Report,
-    /// Index of the first layer of the programs.
-    from_layer: usize,
+    start: Start,
     names: BTreeSet<String>,
 }
 
 impl PlanFiles {
-    /// Begins the files of a plan and returns their first text; the programs begin with layer index `from_layer`.
-    pub fn begin(header: &Header, profile: &Profile, mut programs: Programs, from_layer: usize) -> (Self, Vec<Chunk>) {
+    /// Begins the files of a plan and returns their first text; the programs begin at `start`.
+    pub fn begin(header: &Header, profile: &Profile, mut programs: Programs, start: Start) -> (Self, Vec<Chunk>) {
         let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, profile))];
         chunks.extend(programs.begin(header.layers));
         let report = Report::new(header, profile);
-        let mut files = Self { programs, report, from_layer, names: BTreeSet::new() };
+        let mut files = Self { programs, report, start, names: BTreeSet::new() };
         files.note(&chunks);
         (files, chunks)
     }
@@ -142,8 +150,9 @@ impl PlanFiles {
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
         let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
-        if layer.index >= self.from_layer {
-            chunks.extend(self.programs.layer(layer));
+        if layer.index >= self.start.layer {
+            let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
+            chunks.extend(self.programs.layer(layer, first));
         }
         self.note(&chunks);
         chunks
