@@ -41,7 +41,7 @@ pub enum Post {
     /// A dialect of the library, by its name.
     Named(String),
     /// A dialect of one's own.
-    Own(Own),
+    Own(Box<Own>),
 }
 
 impl Post {

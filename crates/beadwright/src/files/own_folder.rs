@@ -19,7 +19,7 @@ const MOST: usize = 100;
 /// [`OwnError`] for a folder that cannot be read, or that holds no dialect.
 pub fn posts<S: AsRef<str>>(names: &[S], base: &Path) -> Result<Vec<Post>, OwnError> {
     let post = |name: &S| match name.as_ref() {
-        name if own::is_folder(name) => Ok(Post::Own(Own::new(name, texts(name, &base.join(name))?)?)),
+        name if own::is_folder(name) => Ok(Post::Own(Box::new(Own::new(name, texts(name, &base.join(name))?)?))),
         name => Ok(Post::Named(name.to_owned())),
     };
     names.iter().map(post).collect()
