@@ -104,9 +104,21 @@ struct Source {
     /// Name in upper case, byte after the DEF line, number of the next line.
     programs: Vec<(String, usize, usize)>,
     targets: HashMap<String, Target>,
-    /// Weld speeds of ArcTech data sets, mm/s.
-    weld_speeds: HashMap<String, f64>,
+    /// ArcTech data sets.
+    arc_data: HashMap<String, ArcData>,
 }
+
+/// What an ArcTech data set says of speed and time.
+#[derive(Clone, Copy)]
+struct ArcData {
+    /// Weld speed, mm/s.
+    speed: Option<f64>,
+    /// Time for which the torch stands while the arc starts or ends, s.
+    stands: f64,
+}
+
+/// Times of an ArcTech data set for which the torch stands, at the start and at the end of a seam.
+const STANDS: [&str; 5] = ["PreFlowTime", "StartTime", "CraterTime", "BurnBackTime", "PostflowTime"];
 
 /// Whether a line can occur only in KRL.
 pub(super) fn typical(line: &str) -> bool {
@@ -165,8 +177,8 @@ impl Reader<'_> {
         let own = module.or(programs.first().map(|p| p.0.as_str())).map(|name| format!("{name}.dat"));
         let data = own.as_ref().and_then(|name| (self.module)(name));
         let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
-        let (targets, weld_speeds) = (HashMap::new(), HashMap::new());
-        let mut source = Source { module: self.trace.module.clone(), text, programs, targets, weld_speeds };
+        let (targets, arc_data) = (HashMap::new(), HashMap::new());
+        let mut source = Source { module: self.trace.module.clone(), text, programs, targets, arc_data };
         if let Some(data) = data {
             self.trace.module = own;
             for (i, line) in data.lines().enumerate() {
@@ -188,8 +200,10 @@ impl Reader<'_> {
             let target = self.aggregate(value, number)?;
             source.targets.insert(variable.to_ascii_uppercase(), target);
         } else if is("stArcDat_T") {
-            let speed = value.split_once("Velocity").and_then(|(_, v)| number_before(v));
-            source.weld_speeds.extend(speed.map(|s| (variable.to_ascii_uppercase(), s * 1000.0)));
+            let value_of = |key: &str| value.split_once(key).and_then(|(_, v)| number_before(v));
+            let speed = value_of("Velocity").map(|speed| speed * 1000.0);
+            let stands = STANDS.iter().filter_map(|key| value_of(key)).map(|time| time.max(0.0)).sum();
+            source.arc_data.insert(variable.to_ascii_uppercase(), ArcData { speed, stands });
         }
         Ok(())
     }
@@ -281,8 +295,11 @@ impl Reader<'_> {
         if !lit && !ended {
             return Ok(false);
         }
-        let data = flat.split([',', ')']).find_map(|d| self.sources[source].weld_speeds.get(d));
-        self.weld_speed = data.copied().or(self.weld_speed);
+        let data = flat.split([',', ')']).find_map(|d| self.sources[source].arc_data.get(d)).copied();
+        self.weld_speed = data.and_then(|data| data.speed).or(self.weld_speed);
+        if !flat.starts_with("TRIGGERWHEN") && !flat.contains("BEFOREMOVE") && !flat.contains("#ARCSWI") {
+            self.trace.dwell += data.map_or(0.0, |data| data.stands);
+        }
         // An inline form holds its motion: the arc is switched at its end.
         let form = ["LIN", "PTP", "CIRC"].iter().find_map(|w| line.find(&format!(" {w} ")).map(|at| &line[at + 1..]));
         let at_end = flat.starts_with("TRIGGERWHEN") && !flat.contains("DISTANCE=0");
