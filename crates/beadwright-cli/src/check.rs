@@ -104,7 +104,7 @@ fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
     }
     let reach: Vec<&Finding> = findings.iter().filter(|f| f.check == REACH).collect();
     if !reach.is_empty() {
-        writeln!(out, "{REACH} ({}): the robot stops, or turns faster than it can.", reach.len())?;
+        writeln!(out, "{REACH} ({}): the robot stops, turns faster than it can, or hits something.", reach.len())?;
         reach.iter().try_for_each(|finding| writeln!(out, "  {}", finding.text))?;
     }
     if findings.is_empty() {

@@ -64,16 +64,16 @@ fn case_1621_coordinates_out_of_all_bounds_are_refused() {
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
 fn case_1622_bombs_are_stopped() {
-    for name in ["krl_arcbomb.src", "krl_callbomb.src"] {
-        check(name, &["inspect", "CASE"], 1, &["million moves"]);
-    }
+    check("krl_callbomb.src", &["inspect", "CASE"], 1, &["million moves"]);
+    // Its circles run through points of one line; those of a true circle are counted in `tests/readback.rs`.
+    check("krl_arcbomb.src", &["inspect", "CASE"], 1, &["line 5: no circle runs through"]);
     check("box40x60.stl", &["plan", "CASE", "--grid", "0.001"], 1, &["--grid 0.001", "points"]);
     check("box40x60.stl", &["plan", "CASE", "--threads", "100000"], 2, &["1024"]);
     check("box40x60.stl", &["compare", "CASE", "--layers", "1-4000000000"], 2, &["at most 100000"]);
     check("box40x60.stl", &["compare", "CASE", "--layers", "5-1"], 2, &["the lower first"]);
     check("box40x60.stl", &["compare", "CASE", "--layers", "50"], 1, &["none of these layers"]);
     check("box40x60.stl", &["plan", "CASE", "--picture", "99"], 1, &["the part has the layers 1 to"]);
-    check("krl_arcbomb.src", &["inspect", "CASE", "--max-memory", "0.1"], 1, &["0.1 GB of memory", "--max-memory"]);
+    check("krl_callbomb.src", &["inspect", "CASE", "--max-memory", "0.1"], 1, &["0.1 GB of memory", "--max-memory"]);
     #[cfg(unix)]
     for device in ["/dev/zero", "/dev/null"] {
         check("box40x60.stl", &["plan", device], 1, &["a device or a pipe"]);

@@ -396,15 +396,21 @@ fn linuxcnc_interprets_the_gcode() {
 fn plans_are_checked() {
     let folder = folder_with("cross");
     ok(folder.path(), &["plan", "cross.stl", "-s", "hybrid", "--no-deposit", "-o", "out"]);
-    let check = ["check", "out/plan.json", "--cell", "kuka-kr20-r1810"];
+    let cell = ok(folder.path(), &["reach", "--show", "kuka-kr20-r1810"]);
+    fs::write(folder.path().join("cell.toml"), cell.replace("by = \"line\"", "by = \"joint\"")).unwrap();
+    let check = ["check", "out/plan.json", "--cell", "cell.toml"];
     assert!(ok(folder.path(), &check).contains("nothing found"));
+    // Programs leave home, where the wrist is singular, on a straight move.
+    let output = beadwright(folder.path(), &["check", "out/plan.json", "--cell", "kuka-kr20-r1810"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.code() == Some(3) && said.contains("reach (2): "), "{said}");
+    assert!(said.contains("from home to the first point") && said.contains("on a straight move"), "{said}");
     assert!(ok(folder.path(), &["check"]).contains("stacked-starts: "));
     // Half the wire does not fill the beads.
     let output = beadwright(folder.path(), &[&check[..], &["--set", "process.wire_feed_speed=3"]].concat());
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.code() == Some(3) && said.contains("wire-balance (1)") && said.contains("Remedy"), "{said}");
     // A cell with the part far away.
-    let cell = ok(folder.path(), &["reach", "--show", "kuka-kr20-r1810"]);
     fs::write(folder.path().join("far.toml"), cell.replace("[1200.0, 0.0, 500.0]", "[4200.0, 0.0, 500.0]")).unwrap();
     let output = beadwright(folder.path(), &["check", "out/plan.json", "--cell", "far.toml"]);
     let said = String::from_utf8(output.stdout).unwrap();

@@ -410,6 +410,14 @@ END
     assert!(travel.notes[0].starts_with("SPL runs on a curve"), "{:?}", travel.notes);
 }
 
+#[test]
+fn circles_that_turn_for_ever_are_stopped() {
+    let circle = "CIRC {X 1,Y 1},{X 2,Y 0},CA 36000000\nLIN {X 0,Y 0}\n";
+    let text = format!("DEF A( )\nLIN {{X 0,Y 0,Z 2}}\nARC_ON( )\n{}ARC_OFF( )\nEND\n", circle.repeat(200));
+    let error = try_read(&text, &Options::default()).unwrap_err().to_string();
+    assert!(error.contains("10 million moves"), "{error}");
+}
+
 /// `inside` a loop of every language that has them, behind a start at the origin, arc on.
 fn looped(inside: [&str; 3]) -> [String; 3] {
     let [krl, rapid, script] = inside;
