@@ -205,7 +205,7 @@ impl Sink for Files<'_> {
         let Start { layer: index, pass } = self.start;
         anyhow::ensure!(
             layer.index != index || pass == 0 || pass < layer.passes.len(),
-            "--from-pass {}: layer {} has {} passes",
+            "--from-pass {}: the passes of layer {} are numbered 1 to {}",
             pass + 1,
             index + 1,
             layer.passes.len()

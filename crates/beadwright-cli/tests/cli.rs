@@ -421,7 +421,7 @@ fn plans_are_checked() {
 #[test]
 fn a_build_is_resumed_at_a_layer() {
     let folder = folder_with("cross");
-    let plan = ["plan", "cross.stl", "--post", "krl", "--no-deposit"];
+    let plan = ["plan", "cross.stl", "--post", "krl", "--no-deposit", "-s", "contour"];
     ok(folder.path(), &[&plan[..], &["-o", "all"]].concat());
     ok(folder.path(), &[&plan[..], &["-o", "rest", "--from-layer", "4"]].concat());
     let (all, rest) = (files(&folder.path().join("all")), files(&folder.path().join("rest")));
@@ -433,6 +433,14 @@ fn a_build_is_resumed_at_a_layer() {
     // All but the way to the first pass is the same.
     let tail = |files: &BTreeMap<String, Vec<u8>>| String::from_utf8(files["CROSS_L005.src"].clone()).unwrap();
     assert_eq!(tail(&all), tail(&rest));
+    let last = ["-o", "last", "--from-layer", "4", "--from-pass", "3"];
+    ok(folder.path(), &[&plan[..], &last].concat());
+    let resumed = String::from_utf8(files(&folder.path().join("last"))["CROSS_L004.src"].clone()).unwrap();
+    assert!(!resumed.contains("; pass 2 ") && resumed.contains("; pass 3 "), "{resumed}");
+    let beyond = ["-o", "none", "--from-layer", "4", "--from-pass", "77"];
+    assert!(
+        refused(folder.path(), &[&plan[..], &beyond].concat(), 1).contains("the passes of layer 4 are numbered 1 to")
+    );
     let said = refused(folder.path(), &[&plan[..], &["-o", "none", "--from-layer", "99"]].concat(), 1);
     assert!(said.contains("lies above the part") && !folder.path().join("none").join("plan.json").exists(), "{said}");
 }

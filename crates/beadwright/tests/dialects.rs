@@ -417,3 +417,40 @@ fn passes_too_long_for_a_program_are_lit_again() {
         }
     }
 }
+
+/// A build stopped in layer 7, pass 3: the metal laid before and that of the resumed program are, place by place, that of
+/// one program.
+#[test]
+fn a_stopped_build_goes_on_at_its_pass() {
+    let mut profile = profile();
+    profile.fill.strategy = "contour".to_owned();
+    let plan = plan::plan("demo", &example::find("gear").unwrap().mesh(), &profile, &Task::new()).unwrap();
+    let (layer, pass) = (6, 2);
+    assert!(plan.layers.len() > layer && plan.layers[layer].passes.len() > pass);
+    let before = plan.layers[..layer].iter().map(|l| l.passes.len()).sum::<usize>() + pass;
+    let resumed = |post: &str| -> Files {
+        let job = profile.job("demo");
+        let (mut writer, mut programmer, mut files) =
+            (dialect::writer(post, &job).unwrap(), job.programmer(), Files::new());
+        let mut chunks = writer.begin(plan.layers.len());
+        for at in &plan.layers[layer..] {
+            chunks.extend(writer.layer(&programmer.layer_from(at, if at.index == layer { pass } else { 0 })));
+        }
+        chunks.extend(writer.end());
+        chunks.into_iter().for_each(|chunk| files.entry(chunk.file).or_default().push_str(&chunk.text));
+        files
+    };
+    let run = |post: &str, files: &Files| match post {
+        "krl" => readers::krl::run(files, "DEMO", "$OUT[2]"),
+        "rapid" => readers::rapid::run(files, "demo", ""),
+        "fanuc" => readers::fanuc::run(files, "DEMO"),
+        "inform" => readers::inform::run(files, "DEMO"),
+        "urscript" => readers::urscript::run(&files["demo.script"], 1),
+        _ => readers::gcode::run(&files["demo.nc"], 3, 5),
+    };
+    for post in ["krl", "rapid", "fanuc", "gcode", "inform", "urscript"] {
+        let (whole, rest) = (run(post, &written(post, "demo", &plan.layers, &profile)), run(post, &resumed(post)));
+        assert_eq!([&whole.welds[..before], &rest.welds[..]].concat(), whole.welds, "{post}");
+        assert_eq!(rest.welds.len(), whole.welds.len() - before, "{post}");
+    }
+}
