@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Name of the part.
     name: Option<String>,
-    /// File to write; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
+    /// File to write, or a folder for NAME.stl; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -26,7 +26,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names = || example::ALL.iter().map(|e| e.name).collect::<Vec<_>>().join(", ");
     let example = example::find(name)
         .with_context(|| format!("there is no example part \"{name}\". The parts are {}.", names()))?;
-    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.stl")));
+    let file = format!("{name}.stl");
+    let path = match &arguments.output {
+        Some(folder) if folder.is_dir() => folder.join(file),
+        Some(path) => path.clone(),
+        None => PathBuf::from(file),
+    };
     let wants_curves = path.extension().is_some_and(|e| e == "igs" || e == "iges");
     let bytes = match (wants_curves, example.iges()) {
         (false, _) => example.stl(),

@@ -316,6 +316,16 @@ fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
 }
 
 #[test]
+fn urscript_tells_the_payload() {
+    let mut profile = profile();
+    assert!(!written("urscript", "demo", &job(), &profile)["demo.script"].contains("set_payload"));
+    profile.dialects.urscript.as_mut().unwrap().payload = Some(4.2);
+    let script = &written("urscript", "demo", &job(), &profile)["demo.script"];
+    let place = |words: &str| script.find(words).unwrap();
+    assert!(place("set_payload(4.200)") < place("move"));
+}
+
+#[test]
 fn odd_names_are_legal_in_urscript() {
     for part in ["end", "layer_001", "7up", "Gr\u{fc}n", ""] {
         let files = written("urscript", part, &job(), &profile());

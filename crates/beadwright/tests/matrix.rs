@@ -50,6 +50,8 @@ fn dressed(base: &str, dialect: &str, way: &str, strategy: &str) -> Option<Profi
     sections.fanuc.as_mut()?.wire_feed = lines("AO[1]={{wire_feed_ratio}}");
     sections.inform.as_mut()?.wire_feed = lines("AOUT AO#(1) {{wire_feed_ratio}}");
     sections.urscript.as_mut()?.wire_feed = lines("set_standard_analog_out(0, {{wire_feed_ratio}})");
+    // Each volume would be a program of its own.
+    (sections.krl.as_mut()?.max_megabytes, sections.urscript.as_mut()?.max_megabytes) = (1000.0, 1000.0);
     match dialect {
         // The data sets of ArcTech have craters of their own, and one wire feed.
         "krl-arctech" if ["start_stop", "wire feed"].contains(&way) => return None,

@@ -191,8 +191,9 @@ impl Reader {
                     self.trace.note("G5", "is a spline and was read as a straight move", line);
                 }
                 170 | 180 | 190 => self.flat = code == 170,
-                200 => self.unit = INCH,
-                210 => self.unit = 1.0,
+                // G70 and G700, G71 and G710 of Siemens.
+                200 | 700 | 7000 => self.unit = INCH,
+                210 | 710 | 7100 => self.unit = 1.0,
                 900 | 910 => self.relative = code == 910,
                 901 | 911 => self.absolute_centres = code == 901,
                 921..=923 => self.offset = DVec3::ZERO,

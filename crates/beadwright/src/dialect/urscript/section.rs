@@ -15,6 +15,9 @@ pub struct Urscript {
     /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; leave it out if the installation already has
     /// it.
     pub tool_frame: Option<[f64; 6]>,
+    /// Mass of the torch and what hangs on the flange, kg, written as `set_payload`: without it the arm may stop for no
+    /// reason or push where it should yield. Leave it out if the installation already has it.
+    pub payload: Option<f64>,
     /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
     pub part_frame: [f64; 6],
     /// Axis angles before and after the program, °.
@@ -64,6 +67,7 @@ fn two() -> f64 {
 impl Section for Urscript {
     fn limits(&self) -> Vec<Limit> {
         let mut limits = limits! {
+            "urscript.payload": self.payload.unwrap_or(0.0), 0.0, 60.0, "kg", CONTROLLER;
             "urscript.home_speed": self.home_speed, 0.1, 180.0, "°/s", CONTROLLER;
             "urscript.acceleration": self.acceleration, 1.0, 20_000.0, "mm/s²", CONTROLLER;
             "urscript.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "the controller reads a script as a whole";

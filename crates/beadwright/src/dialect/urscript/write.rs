@@ -155,6 +155,9 @@ impl UniversalScript {
         if let Some(frame) = &self.urscript.tool_frame {
             text.push_str(&format!("  set_tcp({})\n", frame_text(frame)));
         }
+        if let Some(mass) = self.urscript.payload {
+            text.push_str(&format!("  set_payload({})\n", fixed(mass, 3)));
+        }
         text.push_str(&format!("  global part_frame = {}\n", frame_text(&self.urscript.part_frame)));
         vec![self.chunk(text)]
     }
