@@ -63,7 +63,7 @@ impl Volumes {
 pub(in crate::dialect) fn from_anywhere(instructions: &[Instruction]) -> Vec<Instruction> {
     let first = instructions.iter().position(|i| matches!(i, Instruction::Weld { .. })).unwrap_or(instructions.len());
     let ways: Vec<usize> = (0..first).filter(|&i| instructions[i].target().is_some()).collect();
-    let Some(&above) = ways.iter().rev().take(2).last() else { return instructions.to_vec() };
+    let Some(&above) = ways.get(ways.len().saturating_sub(2)) else { return instructions.to_vec() };
     let begin = |(i, instruction): (usize, &Instruction)| match *instruction {
         Instruction::Travel { to } if i == above => Some(Instruction::Approach { to }),
         Instruction::Travel { .. } if i < above => None,
