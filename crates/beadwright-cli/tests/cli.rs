@@ -397,11 +397,11 @@ fn plans_are_checked() {
     let folder = folder_with("cross");
     ok(folder.path(), &["plan", "cross.stl", "-s", "hybrid", "--no-deposit", "-o", "out"]);
     let cell = ok(folder.path(), &["reach", "--show", "kuka-kr20-r1810"]);
-    fs::write(folder.path().join("cell.toml"), cell.replace("by = \"line\"", "by = \"joint\"")).unwrap();
-    let check = ["check", "out/plan.json", "--cell", "cell.toml"];
+    fs::write(folder.path().join("cell.toml"), cell.replace("by = \"joint\"", "by = \"line\"")).unwrap();
+    let check = ["check", "out/plan.json", "--cell", "kuka-kr20-r1810"];
     assert!(ok(folder.path(), &check).contains("nothing found"));
-    // Programs leave home, where the wrist is singular, on a straight move.
-    let output = beadwright(folder.path(), &["check", "out/plan.json", "--cell", "kuka-kr20-r1810"]);
+    // A straight move from home, where the wrist is singular.
+    let output = beadwright(folder.path(), &["check", "out/plan.json", "--cell", "cell.toml"]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.code() == Some(3) && said.contains("reach (2): "), "{said}");
     assert!(said.contains("from home to the first point") && said.contains("on a straight move"), "{said}");

@@ -142,9 +142,9 @@ fn as_planned(run: &Run, metrics: &serde_json::Value, crater: f64) {
     assert_eq!(run.passes.len() as f64, of("arc_starts"));
     close(run.deposited, of("deposited_length_mm"), "deposited length");
     close(run.arc, of("arc_time_s") - crater * of("arc_starts"), "arc time");
-    // The program also comes down to the first point and takes the torch away, 20 mm each at 100 mm/s.
-    close(run.travel, of("travel_length_mm") + 40.0, "travel");
-    close(run.time, of("total_time_s") + 0.4, "total time");
+    // The program also comes down to the first point, 20 mm at 100 mm/s.
+    close(run.travel, of("travel_length_mm") + 20.0, "travel");
+    close(run.time, of("total_time_s") + 0.2, "total time");
 }
 
 #[test]

@@ -5,9 +5,11 @@
 //! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and no
 //! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
 
+mod safety;
 mod settings;
 mod spread;
 
+pub use safety::Safety;
 pub use settings::ProgramSettings;
 
 use crate::layer::Layer;
@@ -43,6 +45,15 @@ pub enum Instruction {
         /// Tool point, mm.
         to: DVec3,
     },
+    /// A pass begins; the torch is above the part, or anywhere where a program begins at this pass.
+    PassStart {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+        /// A point above its start to which the torch can come from anywhere, mm.
+        above: DVec3,
+    },
+    /// The pass is done; the torch is above the part.
+    PassEnd,
     /// Strikes the arc at the start of a pass.
     ArcOn {
         /// Number of the pass in its layer, from 1.
@@ -142,6 +153,8 @@ pub struct Programmer {
     /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
     feed: Option<f64>,
     sets_feed: bool,
+    /// Whether programs may begin at any pass.
+    restarts: bool,
     dry: bool,
     spread: Option<Spread>,
 }
@@ -151,13 +164,14 @@ impl Programmer {
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
         let (spread, feed) = (None, None);
-        Self { torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, dry: false }
+        Self { torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, restarts: false, dry: false }
     }
 
     /// Programs passes as they are welded; a dry run has the same moves and no arc.
     pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker();
-        let programmer = Self { torch: Torch::of(weld), sets_feed, dry, ..Self::new(weld.travel.clearance) };
+        let (torch, restarts) = (Torch::of(weld), program.restart);
+        let programmer = Self { torch, sets_feed, restarts, dry, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
     }
 
@@ -189,14 +203,15 @@ impl Programmer {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
-        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten() {
-            self.pause(pause, &mut instructions);
-        }
+        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten();
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
-            self.pass(i + 1, pass, &mut instructions);
+            self.pass(i + 1, pass, &mut pause, &mut instructions);
         }
         if self.dry {
-            instructions.retain(|instruction| instruction.target().is_some());
+            let kept = |i: &Instruction| {
+                i.target().is_some() || matches!(i, Instruction::PassStart { .. } | Instruction::PassEnd)
+            };
+            instructions.retain(kept);
         }
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
@@ -206,13 +221,21 @@ impl Programmer {
         out.push(Instruction::Dwell { seconds: pause.seconds });
     }
 
-    fn pass(&mut self, number: usize, pass: &Pass, out: &mut Vec<Instruction>) {
+    /// A pass, after the wait of its layer if there is still one.
+    fn pass(&mut self, number: usize, pass: &Pass, pause: &mut Option<Pause>, out: &mut Vec<Instruction>) {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
         self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
         let [(start, _), (_, first), ..] = moves[..] else { return };
         let begins = self.torch.at().is_none();
-        let mut legs = self.torch.approach(start).legs.into_iter();
+        let legs = self.torch.approach(start).legs;
+        let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
+        let mut legs = legs.into_iter();
+        out.push(Instruction::PassStart { pass: number, above });
+        pause.take().into_iter().for_each(|pause| self.pause(pause, out));
+        if self.restarts {
+            self.feed = None;
+        }
         self.set_feed(self.torch.feed_at(first), out);
         out.extend(legs.by_ref().take(usize::from(begins)).map(|to| Instruction::Approach { to }));
         out.extend(legs.map(|to| Instruction::Travel { to }));
@@ -235,6 +258,7 @@ impl Programmer {
         }
         out.push(Instruction::ArcOff { pass: number });
         out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
+        out.push(Instruction::PassEnd);
     }
 
     /// Sets the wire feed, as a multiple of the nominal one, where it changes.

@@ -99,8 +99,10 @@ fn an_impossible_axis_of_the_wire_is_refused() {
 #[ignore = "needs LinuxCNC's rs274: run benches/linuxcnc.sh"]
 fn linuxcnc_runs_what_was_planned() {
     let command = std::env::var("BEADWRIGHT_RS274").expect("BEADWRIGHT_RS274 is the path of rs274");
-    for part in ["cross", "propeller"] {
-        let profile = welder("plasma-304-cnc");
+    // A program that can begin at any pass does the same from its beginning.
+    for (part, restart) in [("cross", false), ("propeller", false), ("cross", true)] {
+        let mut profile = welder("plasma-304-cnc");
+        profile.program.restart = restart;
         let plan = planned(part, &profile);
         let m = &plan.summary.metrics;
         let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}", std::process::id()));

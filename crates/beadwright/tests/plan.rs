@@ -209,6 +209,7 @@ fn krl_reads_back_as_planned() {
     each_case(|case, plan, profile| {
         let mut profile = profile.clone();
         profile.dialects.krl = Profile::built_in("cmt-al2319-kuka").unwrap().dialects.krl;
+        profile.dialects.krl.as_mut().unwrap().max_megabytes = 1000.0;
         let files = written(plan, &profile, "krl");
         same_as_plan(case, &readers::krl::run(&files, "TEST_PART_1", "$OUT[2]"), plan, &profile);
     });

@@ -274,7 +274,7 @@ fn counted(profile: &Profile) -> (f64, f64) {
                 (time, wire, at) = (time + seconds, wire + seconds * feed, Some(to));
             }
             Instruction::ArcOn { .. } => time += DELAY,
-            Instruction::ArcOff { .. } => {}
+            Instruction::ArcOff { .. } | Instruction::PassStart { .. } | Instruction::PassEnd => {}
             Instruction::WireFeed { ratio } => feed = ratio,
             Instruction::Crater { seconds, ratio } => {
                 feed = ratio.unwrap_or(feed);

@@ -132,11 +132,11 @@ fn the_table_stands_in_every_pose_or_the_post_refuses() {
     let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();
     let poses = |text: &str, mark: &str| text.matches(mark).count();
     let layer = &krl["PART_L001.src"];
-    assert_eq!((poses(layer, "{X "), poses(layer, ",C 180.0000,E1 -35.0000}")), (4, 4), "{layer}");
+    assert_eq!((poses(layer, "{X "), poses(layer, ",C 180.0000,E1 -35.0000}")), (5, 5), "{layer}");
     let rapid = dialect::write("rapid", &job(), &profile.job("part")).unwrap();
     let layer = &rapid["part_L001.mod"];
     let axes = ",[-35.0000,9E+09,9E+09,9E+09,9E+09,9E+09]]";
-    assert_eq!((poses(layer, ",[0,0,0,0],"), poses(layer, axes)), (4, 4), "{layer}");
+    assert_eq!((poses(layer, ",[0,0,0,0],"), poses(layer, axes)), (5, 5), "{layer}");
     for post in ["fanuc", "inform", "urscript"] {
         let error = dialect::write(post, &job(), &profile.job("part")).unwrap_err().to_string();
         assert!(error.contains("program.table_angle") && error.contains(post), "{error}");

@@ -51,7 +51,9 @@ fn seconds(instructions: &[Instruction]) -> Vec<Vec<f64>> {
                 at = to;
                 times.last_mut().into_iter().for_each(|pass| pass.push(length / speed.max(1e-9)));
             }
-            Instruction::WireFeed { .. }
+            Instruction::PassStart { .. }
+            | Instruction::PassEnd
+            | Instruction::WireFeed { .. }
             | Instruction::Crater { .. }
             | Instruction::Dwell { .. }
             | Instruction::ArcOff { .. } => {}

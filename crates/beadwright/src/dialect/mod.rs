@@ -18,7 +18,7 @@ pub mod reading;
 pub mod writing;
 
 pub use reading::read;
-pub use writing::{Chunk, DialectError, Job, PLACEHOLDERS, Writer, write, write_with, writer};
+pub use writing::{Chunk, DialectError, Hooks, Job, PLACEHOLDERS, Writer, write, write_with, writer};
 
 use crate::limit::{Broken, Limit};
 use crate::program::ProgramSettings;
@@ -56,6 +56,16 @@ pub trait Section {
 
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
+
+    /// Whether its programs can begin at any pass (`program.restart`).
+    fn restarts(&self) -> bool {
+        false
+    }
+
+    /// The lines at other places of programs, if the dialect has them.
+    fn hooks(&self) -> Option<&Hooks> {
+        None
+    }
 
     /// How long the torch stands at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of the
     /// section determine it and not `process.arc_end_delay`.
@@ -135,17 +145,26 @@ dialects! {
 }
 
 impl Sections {
+    /// Keys and lines of all templates, those of hooks too.
+    pub fn templates(&self) -> impl Iterator<Item = (String, &Vec<String>)> {
+        ALL.iter().filter_map(|dialect| Some((dialect.name, self.get(dialect.name)?))).flat_map(|(name, section)| {
+            let hooks = section.hooks().map(Hooks::templates).unwrap_or_default();
+            let hooks = hooks.into_iter().map(move |(key, lines)| (format!("{name}.hooks.{key}"), lines));
+            section.templates().into_iter().map(|(key, lines)| (key.to_owned(), lines)).chain(hooks)
+        })
+    }
+
     /// The codes in the templates that light and end the arc: the last line of those that light it and the first of
     /// those that end it, since gas and delays come before and after. Lines with placeholders do not count.
     pub fn arc_codes(&self) -> ArcCodes {
         let lines_of = |name: &str| {
-            let template = move |(key, lines): (&str, &Vec<String>)| {
+            let template = move |(key, lines): (String, &Vec<String>)| {
                 let plain = lines.iter().filter(|line| !template::has_placeholder(line));
                 // Readers see statements without the `;` that ends them.
                 let codes: Vec<String> = plain.map(|l| l.trim_end().trim_end_matches(';').to_owned()).collect();
                 key.ends_with(name).then_some(codes)
             };
-            self.iter().flat_map(|section| section.templates()).filter_map(template).collect::<Vec<_>>()
+            self.templates().filter_map(template).collect::<Vec<_>>()
         };
         ArcCodes {
             on: lines_of(".arc_on").into_iter().filter_map(|codes| codes.last().cloned()).collect(),

@@ -34,6 +34,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.check.limits(),
         p.travel.limits(),
         p.program.limits(w),
+        p.safety.limits(),
         p.one_loop.limits(),
         p.start_stop.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),
@@ -58,13 +59,14 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));
     }
-    p.program.broken().or_else(|| p.dialects.iter().find_map(|section| section.broken(&p.program)))
+    let sections = p.safety.broken().or_else(|| p.program.broken());
+    sections.or_else(|| p.dialects.iter().find_map(|section| section.broken(&p.program)))
 }
 
 /// Templates may use known placeholders and printable ASCII only: controllers read nothing else.
 fn bad_template(p: &Profile) -> Option<Broken> {
-    let templates = p.dialects.iter().flat_map(|section| section.templates());
-    let mut lines = templates.flat_map(|(key, lines)| lines.iter().map(move |line| (key, line)));
+    let templates = p.dialects.templates();
+    let mut lines = templates.flat_map(|(key, lines)| lines.iter().map(move |line| (key.clone(), line)));
     lines.find_map(|(key, line)| {
         let known = PLACEHOLDERS.map(|(name, _)| name);
         let reason = match template::unknown_placeholder(line, &known) {
@@ -74,6 +76,6 @@ fn bad_template(p: &Profile) -> Option<Broken> {
             }
             None => return None,
         };
-        Some(Broken::text(key, line, reason))
+        Some(Broken::text(&key, line, reason))
     })
 }

@@ -38,7 +38,7 @@ use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop, Travel, Wire};
-use crate::program::{ProgramSettings, Programmer};
+use crate::program::{ProgramSettings, Programmer, Safety};
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
 use glam::DVec2;
@@ -118,6 +118,9 @@ pub struct Profile {
     /// How paths become moves of a program; optional.
     #[serde(default)]
     pub program: ProgramSettings,
+    /// What the cell must supply; optional.
+    #[serde(default)]
+    pub safety: Safety,
     /// How passes begin and end, and how long layers wait; optional.
     #[serde(default)]
     pub start_stop: StartStop,
@@ -335,6 +338,7 @@ impl Profile {
             wire_diameter: self.wire.diameter,
             weld: self.weld_settings(),
             program: &self.program,
+            safety: &self.safety,
             dry_run: self.dry_run,
         }
     }

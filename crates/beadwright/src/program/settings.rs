@@ -4,7 +4,7 @@ use crate::limit::{Broken, Limit, limits};
 use serde::{Deserialize, Serialize};
 
 /// How paths become moves of a program; every key has a default.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProgramSettings {
@@ -28,6 +28,27 @@ pub struct ProgramSettings {
     /// angle. The part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other
     /// posts refuse it. Leave it out if there is no turn table.
     pub table_angle: Option<f64>,
+    /// Whether a stopped build can go on inside the program, without a new one: a variable, which each program tells at its
+    /// head, holds the layer times 10000 plus the pass at which to begin, and 0 to begin at the beginning. For robots and
+    /// LinuxCNC; others take `plan --from-layer --from-pass`. Default false.
+    pub restart: bool,
+    /// Before every how many layers the lines of `hooks.measure` are written; default 10.
+    pub measure_every: usize,
+}
+
+impl Default for ProgramSettings {
+    fn default() -> Self {
+        Self {
+            chord_tolerance: 0.0,
+            arcs: false,
+            speed_tolerance: 0.0,
+            min_point_time: 0.0,
+            torch_angle: 0.0,
+            table_angle: None,
+            restart: false,
+            measure_every: 10,
+        }
+    }
 }
 
 impl ProgramSettings {
@@ -39,6 +60,7 @@ impl ProgramSettings {
             "program.speed_tolerance": self.speed_tolerance, 0.0, 0.3, "(fraction of the speed)",
                 "the bead's width follows the speed: 30 % is the width of a process window";
             "program.min_point_time": self.min_point_time, 0.0, 1.0, "s", "values outside this range make no sense";
+            "program.measure_every": self.measure_every as f64, 1.0, 1e6, "layers", "values outside this range make no sense";
             "program.torch_angle": self.torch_angle, -360.0, 360.0, "°", "values outside this range make no sense";
             "program.table_angle": self.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°",
                 "values outside this range make no sense";

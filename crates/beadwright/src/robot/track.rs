@@ -84,7 +84,11 @@ impl Track {
                     point += 1;
                     self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, leg: Leg::Part });
                 }
-                Instruction::WireFeed { .. } | Instruction::Crater { .. } | Instruction::Dwell { .. } => {}
+                Instruction::PassStart { .. }
+                | Instruction::PassEnd
+                | Instruction::WireFeed { .. }
+                | Instruction::Crater { .. }
+                | Instruction::Dwell { .. } => {}
                 // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.
                 Instruction::ArcOff { pass: number } => pass = number,
             }

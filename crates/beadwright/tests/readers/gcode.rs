@@ -10,6 +10,8 @@ pub fn run(text: &str, arc_on: u32, arc_off: u32) -> Motion {
 
 /// The same for a program without `%` signs.
 pub fn run_flavour(text: &str, arc_on: u32, arc_off: u32) -> Motion {
+    let mut start = text.lines().find_map(super::branches::declaration).unwrap_or(0.0);
+    let text = &super::branches::resolve(text, &mut start);
     let lines: Vec<&str> = text.lines().collect();
     assert!(text.is_ascii() && !text.contains('%'));
     let mut reader = Reader::default();

@@ -10,8 +10,9 @@ pub fn run(files: &BTreeMap<String, String>, main: &str, arc: &str) -> Motion {
     for (name, text) in files.iter().filter(|(name, _)| name.ends_with(".src") || name.ends_with(".dat")) {
         check_module(name, text);
     }
+    let files = &super::branches::resolved(files);
     let data = &files[&format!("{main}.dat")];
-    assert!(data.contains(&format!("DEFDAT {main}\r\n")) && data.contains("DECL E6AXIS XHOME={A1 "));
+    assert!(data.contains(&format!("DEFDAT {main}")) && data.contains("DECL E6AXIS XHOME={A1 "));
     let mut machine = Reader {
         files,
         arc,
@@ -39,7 +40,7 @@ fn check_module(file: &str, text: &str) {
     let head = lines.iter().take_while(|l| l.starts_with('&')).count();
     assert!(head > 0 && lines[head..].iter().all(|l| !l.starts_with('&')), "{file}: & lines only at the head");
     let begins = if file.ends_with(".dat") { format!("DEFDAT {name}") } else { format!("DEF {name}( )") };
-    assert_eq!(lines[head], begins);
+    assert_eq!(lines[head].trim_end_matches(" PUBLIC"), begins);
     assert_eq!(lines[lines.len() - 2], if file.ends_with(".dat") { "ENDDAT" } else { "END" });
     let mut depth = 0_i32;
     for line in lines.iter().map(|l| l.trim_start()) {
@@ -208,6 +209,10 @@ fn declared(text: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for line in text.split("\r\n").filter(|l| l.starts_with("DECL ")) {
         let (left, value) = line.split_once('=').unwrap();
+        // Where a program begins.
+        if left.starts_with("DECL GLOBAL INT ") {
+            continue;
+        }
         let [_, kind, name] = left.split(' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
         assert!(["E6AXIS", "E6POS", "FDAT", "LDAT", "stArcDat_T"].contains(&kind) && name.len() <= 24, "{line}");
         assert!(kind != "stArcDat_T" || value.starts_with(&format!("{{WdatId[] \"{name}\",")), "{line}");

@@ -1,6 +1,7 @@
 //! Independent readers of the written programs: they know the languages, not the writers.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod branches;
 pub mod cnc;
 pub mod fanuc;
 pub mod gcode;

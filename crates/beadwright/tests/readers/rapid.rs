@@ -17,6 +17,8 @@ const SHAPES: [(&str, &str); 8] = [
 
 /// Runs the program of that name (file names as keys). `output` switches the arc where there is no RobotWare Arc.
 pub fn run(files: &BTreeMap<String, String>, main: &str, output: &str) -> Motion {
+    let restarts = files.values().any(|text| text.contains("nStart"));
+    let files = &if restarts { super::branches::resolved(files) } else { files.clone() };
     let modules: BTreeMap<String, Module> = files
         .iter()
         .filter_map(|(file, text)| Some((file.strip_suffix(".mod")?.to_owned(), Module::new(file, text))))
@@ -102,6 +104,7 @@ impl Module {
         let words: Vec<&str> = head.split(' ').collect();
         let (local, kind, name) = match words[..] {
             ["LOCAL", "PERS" | "CONST", kind, name] => (true, kind, name),
+            ["PERS", "num", "nStart"] => return,
             ["TASK", "PERS", kind, name] | ["CONST", kind, name] => (false, kind, name),
             _ => panic!("no declaration: {statement}"),
         };

@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 /// Runs a program; `arc` is the number of the output that switches the arc.
 pub fn run(text: &str, arc: u32) -> Motion {
     assert!(text.is_ascii() && !text.contains(['\t', '\r']));
+    let mut start = text.lines().find_map(super::branches::declaration).unwrap_or(0.0);
+    let text = &super::branches::resolve(text, &mut start);
     let lines: Vec<&str> = text.lines().collect();
     let name = lines[0].strip_prefix("def ").and_then(|l| l.strip_suffix("():")).unwrap();
     assert!(name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_'), "{name}");
@@ -64,7 +66,7 @@ impl Reader<'_> {
             let body = self.functions.get(function).unwrap_or_else(|| panic!("{function} is not there yet")).clone();
             body.iter().for_each(|line| self.statement(line));
         } else {
-            let known = ["set_tcp(p[", "global part_frame = p["];
+            let known = ["set_tcp(p[", "global part_frame = p[", "waited = "];
             assert!(known.iter().any(|k| line.starts_with(k)), "{line}");
         }
     }
@@ -86,7 +88,7 @@ impl Reader<'_> {
             _ => panic!("{line}"),
         }
         (self.blend, self.before) = (blend, length);
-        assert!(blend < 0.5 * length, "the blend is longer than half of the move: {line}");
+        assert!(blend == 0.0 || blend < 0.5 * length, "the blend is longer than half of the move: {line}");
     }
 }
 

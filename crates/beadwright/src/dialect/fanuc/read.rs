@@ -3,7 +3,7 @@
 //! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
 //! them, on lines of their own or after a motion, or by the codes in the options.
 
-use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
+use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -70,6 +70,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         on: Patterns::new(&options.arc.on),
         off: Patterns::new(&options.arc.off),
         frame: None,
+        registers: HashMap::new(),
     };
     let main = reader.listing(None, text)?;
     if main.statements.is_empty() {
@@ -87,6 +88,8 @@ struct Reader<'a> {
     off: Patterns,
     /// User frame of the first position.
     frame: Option<u32>,
+    /// Registers with a plain number, such as `R[1]`.
+    registers: HashMap<String, f64>,
 }
 
 impl Reader<'_> {
@@ -118,16 +121,33 @@ impl Reader<'_> {
         unrolled(statements.len(), |i| mark(&statements[i].1), |i| {
             let (line, text) = &statements[i];
             match mark(text) {
-                Some(Mark::Begin) => Ok(turns(text, "=", Counting::Up).unwrap_or_else(|| {
-                    self.trace.note("FOR", "is not followed: its lines were read once", *line);
-                    1
-                })),
-                Some(Mark::End) => self.trace.turn(*line).map(|()| 0),
-                None => self.statement(text, *line, listing, depth).map(|()| 0),
+                Some(Mark::Begin) => Ok(turns(text, "=", Counting::Up).map_or_else(
+                    || {
+                        self.trace.note("FOR", "is not followed: its lines were read once", *line);
+                        Next::On
+                    },
+                    Next::Turns,
+                )),
+                Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
+                Some(Mark::Else) => Ok(Next::On),
+                None => match self.jump(text, &statements[i + 1..]) {
+                    Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
+                    None => self.statement(text, *line, listing, depth).map(|()| Next::On),
+                },
             }
         })?;
         self.trace.module = caller;
         Ok(())
+    }
+
+    /// By how many statements `IF R[1]>5,JMP LBL[3]` goes on, 0 where it does not jump; `None` for all else, conditions of
+    /// which nothing is known, and labels that do not come behind.
+    fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
+        let flat = compact(text);
+        let (condition, label) = flat.strip_prefix("IF")?.split_once(",JMP")?;
+        let taken = holds(condition, |register| self.registers.get(register).copied())?;
+        let to = behind.iter().position(|(_, text)| compact(text) == label)?;
+        Some(if taken { to + 2 } else { 0 })
     }
 
     fn statement(&mut self, text: &str, line: usize, listing: &Listing, depth: usize) -> Result<(), ReadError> {
@@ -155,6 +175,11 @@ impl Reader<'_> {
             if let Some((_, called)) = text.split_once("CALL ").filter(|_| is(&"IF")) {
                 return self.call(called, line, depth);
             }
+        } else if let Some((register, value)) = flat.split_once('=').filter(|_| flat.starts_with("R[")) {
+            match number(value) {
+                Some(value) => self.registers.insert(register.to_owned(), value),
+                None => self.registers.remove(register),
+            };
         } else if (flat.starts_with("DO[") || flat.starts_with("RO[")) && flat.ends_with("=ON") {
             self.trace.see(text);
         } else if !HARMLESS.iter().any(is) && !flat.contains('=') {

@@ -1,7 +1,7 @@
 //! The section `[fanuc]`: a FANUC cell (R-30iB, ArcTool), and the limits of its values.
 
 use super::write::FanucTp;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -65,6 +65,16 @@ pub struct Fanuc {
     pub crater: Vec<String>,
     /// Instructions at the end of the main program.
     pub end: Vec<String>,
+    /// Register that holds where to begin, for `program.restart`; default 90.
+    #[serde(default = "ninety")]
+    pub restart_register: u32,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
+}
+
+fn ninety() -> u32 {
+    90
 }
 
 impl Section for Fanuc {
@@ -74,6 +84,7 @@ impl Section for Fanuc {
             "fanuc.tool_frame": self.tool_frame.into(), 1.0, 29.0, "(tool frame)", CONTROLLER;
             "fanuc.home_speed": self.home_speed, 1.0, 100.0, "%", CONTROLLER;
             "fanuc.continuity": self.continuity.into(), 0.0, 100.0, "(CNT)", CONTROLLER;
+            "fanuc.restart_register": self.restart_register.into(), 1.0, 1500.0, "(register)", CONTROLLER;
             "fanuc.max_points": self.max_points as f64, 10.0, 3000.0, "moves per program",
                 "larger programs do not load into the controller";
         };
@@ -101,7 +112,16 @@ impl Section for Fanuc {
         ]
     }
 
+    fn restarts(&self) -> bool {
+        true
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
+    }
+
     fn dry_run(&mut self) {
+        self.hooks.dry_run();
         // The weld schedule gives no speed while nothing is welded.
         if self.speed == FanucSpeed::WeldSpeed {
             self.speed = FanucSpeed::MillimetresPerSecond;

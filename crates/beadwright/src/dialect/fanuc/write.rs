@@ -4,11 +4,11 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
 //! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Fanuc, FanucSpeed};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -17,6 +17,9 @@ const MAX_NAME: usize = 36;
 
 /// Comments may have this many characters.
 const MAX_COMMENT: usize = 16;
+
+/// Remarks may have this many characters.
+const MAX_REMARK: usize = 32;
 
 /// Longest wait of one line, s.
 const MAX_WAIT: f64 = 300.0;
@@ -28,13 +31,17 @@ const SUFFIX: usize = 2 + 4;
 pub(super) struct FanucTp {
     name: String,
     comment: String,
+    supplies: Vec<String>,
     fanuc: Fanuc,
+    program: ProgramSettings,
     values: Values,
     travel_speed: f64,
     nominal_speed: f64,
     wire_feed_speed: f64,
     digits: usize,
     main: Program,
+    /// Label behind the present pass.
+    skip: Option<usize>,
 }
 
 /// Lines and positions of one program.
@@ -44,6 +51,7 @@ struct Program {
     count: usize,
     positions: String,
     points: usize,
+    labels: usize,
 }
 
 impl Program {
@@ -51,6 +59,12 @@ impl Program {
         self.count += 1;
         // Motions begin right after the colon, instructions two blanks after it.
         let _ = write!(self.lines, "{:>4}:{text} ;\r\n", self.count);
+    }
+
+    /// Number of a new label.
+    fn label(&mut self) -> usize {
+        self.labels += 1;
+        self.labels
     }
 
     fn position(&mut self, head: &str, axes: [(&str, String); 6]) -> usize {
@@ -83,11 +97,44 @@ impl FanucTp {
         let travel_speed = job.weld.travel.speed;
         let comment = ascii(&job.part).replace('"', "_");
         let main = Program::default();
-        Self { name, comment, fanuc, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main }
+        let (supplies, program) = (job.supplies(MAX_REMARK), job.program.clone());
+        Self { name, comment, supplies, fanuc, program, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
         self.values.expand(template).for_each(|line| program.line(&format!("  {line}")));
+    }
+
+    /// Begins what a program begun later than `number` leaves out; returns the label where it goes on.
+    fn begin_skippable(&self, program: &mut Program, number: usize) -> Option<usize> {
+        let label = self.program.restart.then(|| program.label())?;
+        program.line(&format!("  IF R[{}]>{number},JMP LBL[{label}]", self.fanuc.restart_register));
+        Some(label)
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&self, program: &mut Program, number: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        let label = self.begin_skippable(program, number);
+        self.lines(program, lines);
+        label.into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, program: &mut Program, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.skip = self.begin_skippable(program, number);
+        if self.program.restart {
+            let (register, label) = (self.fanuc.restart_register, program.label());
+            program.line(&format!("  IF R[{register}]=0,JMP LBL[{label}]"));
+            self.instruction(program, Instruction::Approach { to: above });
+            program.line(&format!("  R[{register}]=0"));
+            program.line(&format!("  LBL[{label}]"));
+        }
+        self.lines(program, &self.fanuc.hooks.pass_start);
     }
 
     fn frames(&self, program: &mut Program) {
@@ -135,6 +182,7 @@ impl FanucTp {
                 self.values.set("pass", pass);
                 program.line(&format!("  !pass {pass} {}", kind.name()));
                 self.lines(program, &self.fanuc.arc_on);
+                self.lines(program, &self.fanuc.hooks.arc_established);
             }
             Instruction::Weld { to, circle, speed, last } => {
                 let via = circle.map(|circle| self.pose(program, circle.via));
@@ -158,7 +206,16 @@ impl FanucTp {
                 wait(program, seconds);
             }
             Instruction::Dwell { seconds } => wait(program, seconds),
-            Instruction::ArcOff { .. } => self.lines(program, &self.fanuc.arc_off),
+            Instruction::ArcOff { .. } => {
+                self.lines(program, &self.fanuc.hooks.before_arc_off);
+                self.lines(program, &self.fanuc.arc_off);
+            }
+            // Begun where the number of the pass is known.
+            Instruction::PassStart { .. } => {}
+            Instruction::PassEnd => {
+                self.lines(program, &self.fanuc.hooks.pass_end);
+                self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
+            }
         }
     }
 }
@@ -171,7 +228,13 @@ impl Writer for FanucTp {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.name.truncate(MAX_NAME - SUFFIX - self.digits);
+        self.values.set("layers", layers);
         let mut main = Program::default();
+        self.supplies.iter().for_each(|line| main.line(&format!("  !{line}")));
+        if self.program.restart {
+            main.line("  !0, or layer*10000+pass");
+            main.line(&format!("  R[{}]=0", self.fanuc.restart_register));
+        }
         self.frames(&mut main);
         self.home(&mut main);
         self.lines(&mut main, &self.fanuc.start);
@@ -183,18 +246,31 @@ impl Writer for FanucTp {
         if layer.instructions.is_empty() {
             return Vec::new();
         }
-        self.values.set("layer", layer.index + 1);
+        self.values.set_layer(layer);
         let mut chunks = Vec::new();
-        for (i, part) in split::passes(&layer.instructions, self.fanuc.max_points).into_iter().enumerate() {
+        let parts = split::passes(&layer.instructions, self.fanuc.max_points);
+        let count = parts.len();
+        for (i, part) in parts.into_iter().enumerate() {
             let more = if i == 0 { String::new() } else { format!("_{}", i + 1) };
             let name = format!("{}_L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut program = Program::default();
             self.frames(&mut program);
             if i == 0 {
                 program.line(&format!("  !layer {}, z {} mm", layer.index + 1, fixed(layer.z, 3)));
-                self.lines(&mut program, &self.fanuc.layer_start);
+                let lines = self.fanuc.hooks.before_layer(&self.fanuc.layer_start, layer.index, &self.program);
+                self.skippable(&mut program, restart::last(layer), &lines);
             }
-            part.iter().for_each(|&instruction| self.instruction(&mut program, instruction));
+            for &instruction in part {
+                match instruction {
+                    Instruction::PassStart { pass, above } => {
+                        self.pass_start(&mut program, restart::number(layer, pass), pass, above);
+                    }
+                    other => self.instruction(&mut program, other),
+                }
+            }
+            if i + 1 == count {
+                self.skippable(&mut program, restart::last(layer), &self.fanuc.hooks.layer_end);
+            }
             self.main.line(&format!("  CALL {name}"));
             chunks.push(Chunk {
                 file: format!("{name}.ls"),

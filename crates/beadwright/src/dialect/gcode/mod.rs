@@ -2,6 +2,7 @@
 
 mod block;
 mod hints;
+mod o_words;
 mod read;
 mod section;
 pub(super) mod write;

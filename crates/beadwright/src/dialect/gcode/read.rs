@@ -7,6 +7,7 @@
 use super::block::{Block, Code, Line, begins_block};
 use crate::dialect::reading::trace::{Curve, Step, Trace};
 use super::hints;
+use super::o_words::{OWords, Seen};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram, words};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -40,7 +41,16 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     let hints = hints::of(text);
     let mut reader = Reader::new(&hints, options);
     let mut block = Block::new();
+    let mut o_words = OWords::default();
     for (i, line) in text.as_bytes().split(|&b| b == b'\n').enumerate() {
+        match o_words.see(line) {
+            Seen::Block => {}
+            Seen::Done => continue,
+            Seen::Unknown => {
+                reader.trace.note("an O word", "is not followed: its lines were read once", i + 1);
+                continue;
+            }
+        }
         match block.read(line) {
             Line::Empty => reader.comment(line),
             Line::Words => {

@@ -1,7 +1,7 @@
 //! CNC G-code in profiles: the keys, and the limits of their values.
 
 use super::write::CncGcode;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{needs, is_extension};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limits};
@@ -58,6 +58,12 @@ pub struct Gcode {
     pub wire_axis: Option<String>,
     /// Blocks at the end of the program.
     pub footer: Vec<String>,
+    /// Whether the control knows the O words of LinuxCNC, which `program.restart` needs; default false.
+    #[serde(default)]
+    pub o_words: bool,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
 }
 
 /// How comments are written in CNC G-code.
@@ -126,7 +132,17 @@ impl Section for Gcode {
         ]
     }
 
+    fn restarts(&self) -> bool {
+        // An axis of the wire would feed at once what was left out.
+        self.o_words && self.wire_axis.is_none()
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
+    }
+
     fn dry_run(&mut self) {
+        self.hooks.dry_run();
         self.wire_axis = None;
     }
 

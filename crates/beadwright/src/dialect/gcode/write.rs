@@ -1,10 +1,10 @@
 //! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
 //! set by keys and templates in the profile.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart};
 use crate::number::push_fixed;
 use super::section::{Gcode, GcodeComments};
-use crate::program::{Circle, Instruction, LayerProgram};
+use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 
 /// Block numbers start again after this one.
@@ -13,11 +13,16 @@ const MAX_BLOCK: usize = 99_990;
 /// A comment may have this many characters: blocks stay under 80.
 const MAX_COMMENT: usize = 60;
 
+/// Where to begin, as LinuxCNC names it.
+const START: &str = "#<_start>";
+
 /// Writes G-code.
 pub(super) struct CncGcode {
     file: String,
     comment: String,
+    supplies: Vec<String>,
     gcode: Gcode,
+    program: ProgramSettings,
     values: Values,
     wire_feed_speed: f64,
     block: usize,
@@ -28,6 +33,8 @@ pub(super) struct CncGcode {
     /// Wire fed so far, mm.
     wire: f64,
     at: Option<DVec3>,
+    /// The O word behind the present pass.
+    skip: usize,
 }
 
 impl CncGcode {
@@ -37,7 +44,8 @@ impl CncGcode {
         let values = Values::new(&ascii(&job.part), job);
         let comment = job.comment();
         let wire_feed_speed = job.weld.process.wire_feed_speed;
-        Self { file, comment, gcode, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None }
+        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
+        Self { file, comment, supplies, gcode, program, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None, skip: 0 }
     }
 
     fn begin_block(&mut self, text: &mut String) {
@@ -59,10 +67,55 @@ impl CncGcode {
     fn blocks(&mut self, text: &mut String, template: &[String]) {
         let lines: Vec<String> = self.values.expand(template).collect();
         for line in lines {
-            self.begin_block(text);
+            // LinuxCNC takes no number before an O word.
+            if !line.starts_with('O') {
+                self.begin_block(text);
+            }
             text.push_str(&line);
             text.push('\n');
         }
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&mut self, text: &mut String, number: usize, word: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        self.begin_skippable(text, number, word);
+        self.blocks(text, lines);
+        self.end_skippable(text);
+    }
+
+    /// Every O word has a number of its own: that of the pass or layer, and a digit, which is 1 or 2 here; the others are for
+    /// the lines of the profile.
+    fn begin_skippable(&mut self, text: &mut String, number: usize, word: usize) {
+        if self.program.restart {
+            self.skip = number * 10 + word;
+            text.push_str(&format!("O{} if [{START} LE {number}]\n", self.skip));
+        }
+    }
+
+    fn end_skippable(&self, text: &mut String) {
+        if self.program.restart {
+            text.push_str(&format!("O{} endif\n", self.skip));
+        }
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.begin_skippable(text, number, 1);
+        if self.program.restart {
+            let word = number * 10 + 2;
+            text.push_str(&format!("O{word} if [{START} GT 0]\n"));
+            self.approach(text, above);
+            text.push_str(&format!("{START} = 0\nO{word} endif\n"));
+            // Whether the torch came that way is not known here.
+            (self.at, self.feed) = (None, 0.0);
+        }
+        let lines = self.gcode.hooks.pass_start.clone();
+        self.blocks(text, &lines);
     }
 
     fn wait(&mut self, text: &mut String, seconds: f64) {
@@ -155,7 +208,7 @@ impl CncGcode {
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
                 self.comment(text, &format!("PASS {pass} {}", kind.name()));
-                let lines = self.gcode.arc_on.clone();
+                let lines = [&self.gcode.arc_on[..], &self.gcode.hooks.arc_established].concat();
                 self.blocks(text, &lines);
             }
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
@@ -176,8 +229,15 @@ impl CncGcode {
             }
             Instruction::Dwell { seconds } => self.wait(text, seconds),
             Instruction::ArcOff { .. } => {
-                let lines = self.gcode.arc_off.clone();
+                let lines = [&self.gcode.hooks.before_arc_off[..], &self.gcode.arc_off].concat();
                 self.blocks(text, &lines);
+            }
+            // Begun where the number of the pass is known.
+            Instruction::PassStart { .. } => {}
+            Instruction::PassEnd => {
+                let lines = self.gcode.hooks.pass_end.clone();
+                self.blocks(text, &lines);
+                self.end_skippable(text);
             }
         }
     }
@@ -198,7 +258,7 @@ pub(in crate::dialect) fn push_centre(text: &mut String, centre: DVec3, decimals
 }
 
 impl Writer for CncGcode {
-    fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
+    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         let mut text = String::new();
         if self.gcode.percent_signs {
             text.push_str("%\n");
@@ -206,7 +266,12 @@ impl Writer for CncGcode {
         if let Some(number) = self.gcode.program_number {
             text.push_str(&format!("O{number:04}\n"));
         }
+        self.values.set("layers", layers);
         self.comment(&mut text, &self.comment);
+        self.supplies.iter().for_each(|line| self.comment(&mut text, line));
+        if self.program.restart {
+            text.push_str(&format!("({})\n{START} = 0\n", restart::comment(START)));
+        }
         let header = self.gcode.header.clone();
         self.blocks(&mut text, &header);
         self.chunk(text)
@@ -217,13 +282,20 @@ impl Writer for CncGcode {
             return Vec::new();
         }
         let mut text = String::with_capacity(program.instructions.len() * 32);
-        self.values.set("layer", program.index + 1);
+        self.values.set_layer(program);
         self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
-        let layer_start = self.gcode.layer_start.clone();
-        self.blocks(&mut text, &layer_start);
+        let lines = self.gcode.hooks.before_layer(&self.gcode.layer_start, program.index, &self.program);
+        self.skippable(&mut text, restart::last(program), 1, &lines);
         for &instruction in &program.instructions {
-            self.instruction(&mut text, instruction);
+            match instruction {
+                Instruction::PassStart { pass, above } => {
+                    self.pass_start(&mut text, restart::number(program, pass), pass, above);
+                }
+                other => self.instruction(&mut text, other),
+            }
         }
+        let lines = self.gcode.hooks.layer_end.clone();
+        self.skippable(&mut text, restart::last(program), 2, &lines);
         self.chunk(text)
     }
 

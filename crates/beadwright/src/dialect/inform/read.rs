@@ -6,6 +6,7 @@
 //! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
 //! circle, so a chain that leaves its circle is noted).
 
+use crate::dialect::reading::loops::{Next, holds, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -49,6 +50,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         off: Patterns::new(&options.arc.off),
         unit: if options.inform_cm_per_min { 10.0 / 60.0 } else { 1.0 },
         circle: Circle::None,
+        variables: HashMap::new(),
     };
     let main = reader.job(None, text)?;
     if main.instructions.is_empty() {
@@ -81,6 +83,8 @@ struct Reader<'a> {
     /// mm/s of V=1.
     unit: f64,
     circle: Circle,
+    /// Variables with a plain number, such as `D090`.
+    variables: HashMap<String, f64>,
 }
 
 impl Reader<'_> {
@@ -116,11 +120,22 @@ impl Reader<'_> {
 
     fn run(&mut self, job: &Rc<Job>, depth: usize) -> Result<(), ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, job.module.clone());
-        for (line, text) in &job.instructions {
-            self.instruction(text, *line, job, depth)?;
-        }
+        let all = &job.instructions;
+        unrolled(all.len(), |_| None, |i| match self.jump(&all[i].1, &all[i + 1..]) {
+            Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
+            None => self.instruction(&all[i].1, all[i].0, job, depth).map(|()| Next::On),
+        })?;
         self.trace.module = caller;
         Ok(())
+    }
+
+    /// By how many instructions `JUMP *L1 IF D090>5` goes on, 0 where it does not jump; `None` for all else, conditions of
+    /// which nothing is known, and labels that do not come behind.
+    fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
+        let (label, condition) = text.strip_prefix("JUMP ")?.split_once(" IF ")?;
+        let taken = holds(condition, |variable| self.variables.get(variable).copied())?;
+        let to = behind.iter().position(|(_, text)| text == label.trim())?;
+        Some(if taken { to + 2 } else { 0 })
     }
 
     fn instruction(&mut self, text: &str, line: usize, job: &Job, depth: usize) -> Result<(), ReadError> {
@@ -143,6 +158,12 @@ impl Reader<'_> {
             self.trace.dwell += wait.max(0.0);
         } else if word == "CALL" {
             return self.call(words.next().unwrap_or_default(), line, depth);
+        } else if word == "SET" {
+            let (variable, value) = (words.next().unwrap_or_default(), words.next().and_then(number));
+            match value {
+                Some(value) => self.variables.insert(variable.to_owned(), value),
+                None => self.variables.remove(variable),
+            };
         } else if CONTROL.contains(&word) {
             self.trace.note(word, "is not followed: its lines were read once", line);
         } else if word == "DOUT" && flat.ends_with("ON") {

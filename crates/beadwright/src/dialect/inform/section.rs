@@ -1,7 +1,7 @@
 //! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and the limits of its values.
 
 use super::write::YaskawaInform;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -68,6 +68,16 @@ pub struct Inform {
     pub crater: Vec<String>,
     /// Instructions at the end of the main job.
     pub end: Vec<String>,
+    /// Number of the D variable that holds where to begin, for `program.restart`; default 90.
+    #[serde(default = "ninety")]
+    pub restart_variable: u32,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
+}
+
+fn ninety() -> u32 {
+    90
 }
 
 impl Section for Inform {
@@ -78,6 +88,7 @@ impl Section for Inform {
             "inform.home_speed": self.home_speed, 0.01, 100.0, "%", CONTROLLER;
             "inform.position_level": self.position_level.into(), 0.0, 8.0, "(PL)", CONTROLLER;
             "inform.max_name": self.max_name as f64, 8.0, 32.0, "characters", CONTROLLER;
+            "inform.restart_variable": self.restart_variable.into(), 0.0, 99.0, "(D variable)", CONTROLLER;
             "inform.max_points": self.max_points as f64, 10.0, 2000.0, "moves per job",
                 "larger programs do not load into the controller";
         };
@@ -113,8 +124,20 @@ impl Section for Inform {
         ]
     }
 
+    fn restarts(&self) -> bool {
+        true
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
+    }
+
     fn longest_pass(&self) -> Option<usize> {
         Some(self.max_points)
+    }
+
+    fn dry_run(&mut self) {
+        self.hooks.dry_run();
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {

@@ -5,10 +5,10 @@
 //! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
 //! point separates an arc from the next.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Inform, InformSpeed};
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -25,7 +25,9 @@ const SUFFIX: usize = 2;
 pub(super) struct YaskawaInform {
     name: String,
     comment: String,
+    supplies: Vec<String>,
     inform: Inform,
+    program: ProgramSettings,
     values: Values,
     travel_speed: f64,
     wire_feed_speed: f64,
@@ -35,6 +37,8 @@ pub(super) struct YaskawaInform {
     at: DVec3,
     /// Whether the last move was along an arc.
     in_arc: bool,
+    /// Label behind the present pass.
+    skip: Option<usize>,
 }
 
 /// Positions and instructions of one job.
@@ -43,9 +47,16 @@ struct JobText {
     positions: String,
     count: usize,
     instructions: String,
+    labels: usize,
 }
 
 impl JobText {
+    /// Number of a new label.
+    fn label(&mut self) -> usize {
+        self.labels += 1;
+        self.labels
+    }
+
     fn line(&mut self, text: &str) {
         self.instructions.push_str(text);
         self.instructions.push_str("\r\n");
@@ -61,7 +72,9 @@ impl YaskawaInform {
         Self {
             name,
             comment: ascii(&job.part),
+            supplies: job.supplies(MAX_COMMENT),
             inform,
+            program: job.program.clone(),
             values,
             travel_speed,
             wire_feed_speed: job.weld.process.wire_feed_speed,
@@ -69,6 +82,7 @@ impl YaskawaInform {
             main: String::new(),
             at: DVec3::ZERO,
             in_arc: false,
+            skip: None,
         }
     }
 
@@ -77,6 +91,38 @@ impl YaskawaInform {
             text.push_str(&line);
             text.push_str("\r\n");
         }
+    }
+
+    /// Begins what a program begun later than `number` leaves out; returns the label where it goes on.
+    fn begin_skippable(&self, job: &mut JobText, number: usize) -> Option<usize> {
+        let label = self.program.restart.then(|| job.label())?;
+        job.line(&format!("JUMP *L{label} IF D{:03}>{number}", self.inform.restart_variable));
+        Some(label)
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&self, job: &mut JobText, number: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        let label = self.begin_skippable(job, number);
+        self.lines(&mut job.instructions, lines);
+        label.into_iter().for_each(|label| job.line(&format!("*L{label}")));
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, job: &mut JobText, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.skip = self.begin_skippable(job, number);
+        if self.program.restart {
+            let (variable, label) = (self.inform.restart_variable, job.label());
+            job.line(&format!("JUMP *L{label} IF D{variable:03}=0"));
+            self.instruction(job, Instruction::Approach { to: above });
+            job.line(&format!("SET D{variable:03} 0"));
+            job.line(&format!("*L{label}"));
+        }
+        self.lines(&mut job.instructions, &self.inform.hooks.pass_start);
     }
 
     /// Adds a position in the user frame and returns its name.
@@ -117,6 +163,7 @@ impl YaskawaInform {
                 self.values.set("pass", pass);
                 job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
                 self.lines(&mut job.instructions, &self.inform.arc_on);
+                self.lines(&mut job.instructions, &self.inform.hooks.arc_established);
             }
             Instruction::Weld { to, circle, speed, last } => {
                 let level = if last { 0 } else { self.inform.position_level };
@@ -142,7 +189,16 @@ impl YaskawaInform {
                 wait(job, seconds);
             }
             Instruction::Dwell { seconds } => wait(job, seconds),
-            Instruction::ArcOff { .. } => self.lines(&mut job.instructions, &self.inform.arc_off),
+            Instruction::ArcOff { .. } => {
+                self.lines(&mut job.instructions, &self.inform.hooks.before_arc_off);
+                self.lines(&mut job.instructions, &self.inform.arc_off);
+            }
+            // Begun where the number of the pass is known.
+            Instruction::PassStart { .. } => {}
+            Instruction::PassEnd => {
+                self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
+                self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
+            }
         }
     }
 
@@ -177,7 +233,13 @@ impl Writer for YaskawaInform {
         // Where names may be longer, those of split layers fit too: "-L001-2".
         let more = if self.inform.max_name > 16 { 4 } else { 2 };
         self.name.truncate((self.inform.max_name - SUFFIX - self.digits).saturating_sub(more).max(1));
+        self.values.set("layers", layers);
         let mut main = String::new();
+        self.supplies.iter().for_each(|line| main.push_str(&format!("'{line}\r\n")));
+        if self.program.restart {
+            let variable = self.inform.restart_variable;
+            main.push_str(&format!("'0, OR LAYER*10000+PASS\r\nSET D{variable:03} 0\r\n"));
+        }
         self.lines(&mut main, &self.inform.start);
         self.main = main;
         Vec::new()
@@ -187,16 +249,29 @@ impl Writer for YaskawaInform {
         if layer.instructions.is_empty() {
             return Vec::new();
         }
-        self.values.set("layer", layer.index + 1);
+        self.values.set_layer(layer);
         let mut chunks = Vec::new();
-        for (i, part) in split::passes(&layer.instructions, self.inform.max_points).into_iter().enumerate() {
+        let parts = split::passes(&layer.instructions, self.inform.max_points);
+        let count = parts.len();
+        for (i, part) in parts.into_iter().enumerate() {
             let more = if i == 0 { String::new() } else { format!("-{}", i + 1) };
             let name = format!("{}-L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut job = JobText::default();
             if i == 0 {
-                self.lines(&mut job.instructions, &self.inform.layer_start);
+                let lines = self.inform.hooks.before_layer(&self.inform.layer_start, layer.index, &self.program);
+                self.skippable(&mut job, restart::last(layer), &lines);
             }
-            part.iter().for_each(|&instruction| self.instruction(&mut job, instruction));
+            for &instruction in part {
+                match instruction {
+                    Instruction::PassStart { pass, above } => {
+                        self.pass_start(&mut job, restart::number(layer, pass), pass, above);
+                    }
+                    other => self.instruction(&mut job, other),
+                }
+            }
+            if i + 1 == count {
+                self.skippable(&mut job, restart::last(layer), &self.inform.hooks.layer_end);
+            }
             self.main.push_str(&format!("CALL JOB:{name}\r\n"));
             chunks.push(self.relative(&name, &format!("LAYER {} Z {}", layer.index + 1, fixed(layer.z, 3)), &job));
         }
@@ -210,7 +285,7 @@ impl Writer for YaskawaInform {
         self.lines(&mut instructions, &self.inform.end);
         instructions.push_str(&go(1));
         let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
-        let main = JobText { positions, count: 2, instructions };
+        let main = JobText { positions, count: 2, instructions, labels: 0 };
         let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
         vec![self.file(&self.name, &self.comment, &head, "SC,RW", &main)]
     }

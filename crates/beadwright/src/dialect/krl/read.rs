@@ -4,7 +4,7 @@
 //! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read as
 //! they are; how SPL curves only the controller knows, so it is refused where it welds.
 
-use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
+use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
@@ -44,10 +44,12 @@ const HARMLESS: [&str; 25] = [
 /// System programs that move nothing.
 const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
 
-/// Branches and loops, by their first words.
-const CONTROL: [&str; 10] =
-    ["IF", "ELSE", "WHILE", "LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
-const CONTROL_REST: [&str; 7] = ["ENDIF", "ENDWHILE", "ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
+/// Branches and loops that are not followed, by their first words.
+const CONTROL: [&str; 7] = ["LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
+const CONTROL_REST: [&str; 5] = ["ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
+
+/// First words of blocks, and of their ends.
+const BLOCKS: [(&str, &str); 3] = [("FOR", "ENDFOR"), ("IF", "ENDIF"), ("WHILE", "ENDWHILE")];
 
 /// Motions with (circular, relative, point to point).
 const MOTIONS: [(&str, Motion); 14] = [
@@ -140,6 +142,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         weld_speed: None,
         block_speed: None,
         later: None,
+        values: HashMap::new(),
     };
     let main = reader.load(None, text.into())?;
     // A fragment has no DEF and runs from its first line.
@@ -168,6 +171,8 @@ struct Reader<'a> {
     block_speed: Option<f64>,
     /// Whether the arc is on after the next motion; `None` if nothing switches it there.
     later: Option<bool>,
+    /// Variables with a plain number, in upper case.
+    values: HashMap<String, f64>,
 }
 
 impl Reader<'_> {
@@ -191,7 +196,7 @@ impl Reader<'_> {
     }
 
     /// `DECL E6POS XP1={..}` and ArcTech data; other declarations are not needed.
-    fn declaration(&self, line: &str, number: usize, source: &mut Source) -> Result<(), ReadError> {
+    fn declaration(&mut self, line: &str, number: usize, source: &mut Source) -> Result<(), ReadError> {
         let Some((left, value)) = line.split_once('=') else { return Ok(()) };
         let mut words = left.split_whitespace().rev();
         let (Some(variable), Some(kind)) = (words.next(), words.next()) else { return Ok(()) };
@@ -204,6 +209,8 @@ impl Reader<'_> {
             let speed = value_of("Velocity").map(|speed| speed * 1000.0);
             let stands = STANDS.iter().filter_map(|key| value_of(key)).map(|time| time.max(0.0)).sum();
             source.arc_data.insert(variable.to_ascii_uppercase(), ArcData { speed, stands });
+        } else if let Some(value) = words::number(value) {
+            self.values.insert(variable.to_ascii_uppercase(), value);
         }
         Ok(())
     }
@@ -215,24 +222,53 @@ impl Reader<'_> {
         let ends = |line: &&str| strip_word(line, "END").is_some() || is_head(line).is_some();
         let lines: Vec<&str> = lines.take_while(|line| !ends(line)).collect();
         unrolled(lines.len(), |i| mark(lines[i]), |i| match lines[i] {
-            "" => Ok(0),
-            line if line.starts_with('&') => Ok(0),
-            line => self.line(line, start.1 + i, source, depth),
+            "" => Ok(Next::On),
+            line if line.starts_with('&') => Ok(Next::On),
+            _ => self.line(&lines, i, start.1 + i, source, depth),
         })?;
         self.trace.module = caller;
         Ok(())
     }
 
-    /// A line; where a loop begins, how often it turns.
-    fn line(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<u64, ReadError> {
-        match mark(line) {
-            Some(Mark::Begin) => Ok(turns(line, "=", Counting::Up).unwrap_or_else(|| {
-                self.trace.note("FOR", "is not followed: its lines were read once", number);
-                1
-            })),
-            Some(Mark::End) => self.trace.turn(number).map(|()| 0),
-            None => self.statement(line, number, source, depth).map(|()| 0),
+    /// A line, and what comes after it.
+    fn line(
+        &mut self,
+        lines: &[&str],
+        i: usize,
+        number: usize,
+        source: usize,
+        depth: usize,
+    ) -> Result<Next, ReadError> {
+        match mark(lines[i]) {
+            Some(Mark::Begin) => Ok(self.block(lines, i, number)),
+            Some(Mark::Else) => Ok(Next::On),
+            Some(Mark::End) => self.trace.turn(number).map(|()| Next::On),
+            None => self.statement(lines[i], number, source, depth).map(|()| Next::On),
         }
+    }
+
+    /// How often the block that begins with a line turns.
+    fn block(&mut self, lines: &[&str], i: usize, number: usize) -> Next {
+        let (word, rest) = name(lines[i]);
+        let known = if word.eq_ignore_ascii_case("FOR") {
+            turns(lines[i], "=", Counting::Up)
+        } else {
+            let condition = compact(rest);
+            let condition = condition.strip_suffix("THEN").unwrap_or(&condition);
+            let until = behind(i + 1, lines.len(), |at| mark(lines[at]));
+            let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
+            let loops = word.eq_ignore_ascii_case("WHILE");
+            let taken = holds(condition, |name| self.values.get(name).copied()).filter(|_| !loops);
+            taken.or_else(|| input(condition).filter(|_| !moves)).map(u64::from)
+        };
+        known.map_or_else(
+            || {
+                let fate = "is not followed: its lines were read once";
+                self.trace.note(&word.to_ascii_uppercase(), fate, number);
+                Next::On
+            },
+            Next::Turns,
+        )
     }
 
     fn statement(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
@@ -277,13 +313,24 @@ impl Reader<'_> {
         } else if rest.starts_with('(') && !SYSTEM.iter().any(is) {
             return self.call(word, rest, number, source, depth);
         } else if rest.starts_with(['.', '[', '=']) {
-            if rest.starts_with('.') {
+            if let Some(value) = rest.strip_prefix('=') {
+                self.assign(word, value);
+            } else if rest.starts_with('.') {
                 self.trace.note(word, "is changed in a part, which is not understood", number);
             }
         } else if !HARMLESS.iter().chain(&CONTROL_REST).chain(&SYSTEM).any(is) && !flat.starts_with("TRIGGERWHEN") {
             self.trace.note(word, "is not understood and was left out", number);
         }
         Ok(())
+    }
+
+    /// Remembers a plain number; what is computed is forgotten.
+    fn assign(&mut self, variable: &str, value: &str) {
+        let variable = variable.to_ascii_uppercase();
+        match words::number(value) {
+            Some(value) => self.values.insert(variable, value),
+            None => self.values.remove(&variable),
+        };
     }
 
     /// Whether the statement switches the arc, and if so, does it.
@@ -442,10 +489,18 @@ impl Reader<'_> {
     }
 }
 
-/// Where a loop begins or ends.
+/// Where a block begins or ends.
 fn mark(line: &str) -> Option<Mark> {
-    let begins = strip_word(line, "FOR").map(|_| Mark::Begin);
-    begins.or_else(|| strip_word(line, "ENDFOR").map(|_| Mark::End))
+    let is = |word: &str| strip_word(line, word).is_some();
+    let of = |(begin, end): &(&str, &str)| is(begin).then_some(Mark::Begin).or_else(|| is(end).then_some(Mark::End));
+    BLOCKS.iter().find_map(of).or_else(|| is("ELSE").then_some(Mark::Else))
+}
+
+/// What a condition on an input alone is while all is well: inputs such as that of a burning arc are on.
+fn input(condition: &str) -> Option<bool> {
+    let (condition, wanted) = condition.strip_prefix("NOT").map_or((condition, true), |rest| (rest, false));
+    let inside = condition.trim_matches(['(', ')']).strip_prefix("$IN[")?;
+    inside.strip_suffix(']').is_some_and(|number| number.bytes().all(|b| b.is_ascii_digit())).then_some(wanted)
 }
 
 /// The name in a line `DEF NAME( )` or `GLOBAL DEF ..`.

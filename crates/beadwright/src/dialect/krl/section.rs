@@ -2,7 +2,7 @@
 
 use super::write::KukaKrl;
 use super::arctech;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
@@ -60,6 +60,12 @@ pub struct Krl {
     pub crater: Vec<String>,
     /// Lines at the end of the main program.
     pub end: Vec<String>,
+    /// Lines of subprograms that the other lines call, behind the main program; default none.
+    #[serde(default)]
+    pub routines: Vec<String>,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
 }
 
 fn four() -> f64 {
@@ -107,7 +113,16 @@ impl Section for Krl {
             ("krl.wire_feed", &self.wire_feed),
             ("krl.crater", &self.crater),
             ("krl.end", &self.end),
+            ("krl.routines", &self.routines),
         ]
+    }
+
+    fn restarts(&self) -> bool {
+        true
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
     }
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
@@ -116,6 +131,7 @@ impl Section for Krl {
     }
 
     fn dry_run(&mut self) {
+        self.hooks.dry_run();
         self.arc = KrlArc::Outputs;
     }
 

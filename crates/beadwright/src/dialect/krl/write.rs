@@ -6,16 +6,19 @@
 
 use super::arctech::{Forms, Target};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split, upper_name};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
 use super::section::Krl;
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 
 /// Module names may have this many characters.
 const MAX_NAME: usize = 24;
+
+/// Comments are wrapped at this many characters.
+const MAX_COMMENT: usize = 76;
 
 /// Room for the number of a part of a layer: `_999`.
 const PART: usize = 4;
@@ -24,7 +27,9 @@ const PART: usize = 4;
 pub(super) struct KukaKrl {
     name: String,
     comment: String,
+    supplies: Vec<String>,
     krl: Krl,
+    program: ProgramSettings,
     process: Process,
     values: Values,
     travel_speed: f64,
@@ -47,15 +52,16 @@ impl KukaKrl {
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let table = job.program.table_angle;
         let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
-        Self { name, comment, krl, process, values, travel_speed, table, digits: 3, speed: 0.0, volumes, main }
+        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
+        Self { name, comment, supplies, krl, program, process, values, travel_speed, table, digits: 3, speed: 0.0, volumes, main }
     }
 
     fn layer_name(&self, index: usize) -> String {
         format!("{}_L{:0digits$}", self.name, index + 1, digits = self.digits)
     }
 
-    /// The module for one part of a layer (`part` counts from 0), with its data and its call.
-    fn module(&mut self, program: &LayerProgram, part: usize, moves: &[Instruction]) -> Vec<Chunk> {
+    /// The module for one part of a layer (`part` counts from 0; `last` if no other follows), with its data and its call.
+    fn module(&mut self, program: &LayerProgram, part: usize, last: bool, moves: &[Instruction]) -> Vec<Chunk> {
         let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
         let module = format!("{}{more}", self.layer_name(program.index));
         self.speed = 0.0;
@@ -63,14 +69,21 @@ impl KukaKrl {
         text.reserve(moves.len() * 70);
         text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
         if part == 0 {
-            self.lines(&mut text, &self.krl.layer_start);
+            let lines = self.krl.hooks.before_layer(&self.krl.layer_start, program.index, &self.program);
+            self.skippable(&mut text, restart::last(program), &lines);
         }
         let mut forms = self.forms();
         for i in 0..moves.len() {
-            match &mut forms {
-                Some(forms) => self.with_forms(&mut text, forms, moves, i),
-                None => self.instruction(&mut text, moves[i]),
+            match (moves[i], &mut forms) {
+                (Instruction::PassStart { pass, above }, _) => {
+                    self.pass_start(&mut text, restart::number(program, pass), pass, above);
+                }
+                (_, Some(forms)) => self.with_forms(&mut text, forms, moves, i),
+                (instruction, None) => self.instruction(&mut text, instruction),
             }
+        }
+        if last {
+            self.skippable(&mut text, restart::last(program), &self.krl.hooks.layer_end);
         }
         text.push_str("END\r\n");
         let data = forms.map(|forms| Chunk {
@@ -94,6 +107,43 @@ impl KukaKrl {
             text.push_str(&line);
             text.push_str("\r\n");
         }
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&self, text: &mut String, number: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        self.begin_skippable(text, number);
+        self.lines(text, lines);
+        self.end_skippable(text);
+    }
+
+    fn begin_skippable(&self, text: &mut String, number: usize) {
+        if self.program.restart {
+            text.push_str(&format!("IF {}_START <= {number} THEN\r\n", self.main));
+        }
+    }
+
+    fn end_skippable(&self, text: &mut String) {
+        if self.program.restart {
+            text.push_str("ENDIF\r\n");
+        }
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.begin_skippable(text, number);
+        if self.program.restart {
+            let variable = format!("{}_START", self.main);
+            text.push_str(&format!("IF {variable} > 0 THEN\r\n"));
+            self.instruction(text, Instruction::Approach { to: above });
+            text.push_str(&format!("{variable} = 0\r\nENDIF\r\n"));
+            self.speed = 0.0;
+        }
+        self.lines(text, &self.krl.hooks.pass_start);
     }
 
     fn set_speed(&mut self, text: &mut String, speed: f64) {
@@ -195,6 +245,7 @@ impl KukaKrl {
                 self.values.set("pass", pass);
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 self.lines(text, &self.krl.arc_on);
+                self.lines(text, &self.krl.hooks.arc_established);
             }
             Instruction::Weld { to, circle, speed, last } => {
                 self.set_speed(text, speed);
@@ -215,7 +266,16 @@ impl KukaKrl {
                 wait(text, seconds);
             }
             Instruction::Dwell { seconds } => wait(text, seconds),
-            Instruction::ArcOff { .. } => self.lines(text, &self.krl.arc_off),
+            Instruction::ArcOff { .. } => {
+                self.lines(text, &self.krl.hooks.before_arc_off);
+                self.lines(text, &self.krl.arc_off);
+            }
+            // Begun where the number of the pass is known.
+            Instruction::PassStart { .. } => {}
+            Instruction::PassEnd => {
+                self.lines(text, &self.krl.hooks.pass_end);
+                self.end_skippable(text);
+            }
         }
     }
 }
@@ -226,10 +286,14 @@ impl KukaKrl {
         self.main = self.volumes.begin(&self.name);
         let (name, krl) = (&self.main, &self.krl);
         let data = format!(
-            "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}\r\nDECL E6AXIS XHOME={{{}}}\r\nENDDAT\r\n",
-            self.comment, krl.home
+            "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}{}\r\nDECL E6AXIS XHOME={{{}}}\r\n{}ENDDAT\r\n",
+            self.comment,
+            if self.program.restart { " PUBLIC" } else { "" },
+            krl.home,
+            self.start_variable()
         );
         let mut text = self.head(name);
+        self.supplies.iter().for_each(|line| text.push_str(&format!("; {line}\r\n")));
         text.push_str(";FOLD INI;%{PE}\r\n  GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )\r\n");
         text.push_str("  INTERRUPT ON 3\r\n  BAS(#INITMOV,0)\r\n;ENDFOLD (INI)\r\n");
         text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = BASE_DATA[{}]\r\n", krl.tool, krl.base));
@@ -241,23 +305,34 @@ impl KukaKrl {
         vec![Chunk::new(format!("{name}.dat"), data), Chunk::new(format!("{name}.src"), text)]
     }
 
+    /// The declaration of where to begin.
+    fn start_variable(&self) -> String {
+        let variable = format!("{}_START", self.main);
+        let declaration = || format!("; {}\r\nDECL GLOBAL INT {variable}=0\r\n", restart::comment(&variable));
+        self.program.restart.then(declaration).unwrap_or_default()
+    }
+
     fn end_volume(&self) -> Vec<Chunk> {
         let mut text = String::new();
         self.lines(&mut text, &self.krl.end);
         text.push_str("PTP XHOME\r\nEND\r\n");
+        self.lines(&mut text, &self.krl.routines);
         vec![Chunk::new(format!("{}.src", self.main), text)]
     }
 
     /// The modules of a layer, and their calls.
     fn modules(&mut self, program: &LayerProgram) -> Vec<Chunk> {
         let parts = split::passes(&program.instructions, self.krl.max_points);
-        parts.into_iter().enumerate().flat_map(|(part, moves)| self.module(program, part, moves)).collect()
+        let count = parts.len();
+        let module = |(part, moves)| self.module(program, part, part + 1 == count, moves);
+        parts.into_iter().enumerate().flat_map(module).collect()
     }
 }
 
 impl Writer for KukaKrl {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
+        self.values.set("layers", layers);
         // Room for "_L" and the number, and for that of a part.
         self.name.truncate(MAX_NAME - 2 - self.digits - PART);
         self.begin_volume()
@@ -267,7 +342,7 @@ impl Writer for KukaKrl {
         if program.instructions.is_empty() {
             return Vec::new();
         }
-        self.values.set("layer", program.index + 1);
+        self.values.set_layer(program);
         let mut chunks = self.modules(program);
         if !self.volumes.has_room(size(&chunks)) {
             let before = self.end_volume();

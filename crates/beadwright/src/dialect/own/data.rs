@@ -8,7 +8,8 @@ use minijinja::{Error, ErrorKind, Value};
 use std::sync::Arc;
 
 /// Placeholders of the other dialects that are no values of a whole job.
-const CHANGING: [&str; 7] = ["program", "layer", "pass", "dwell", "dwell_ms", "wire_feed", "wire_feed_ratio"];
+const CHANGING: [&str; 10] =
+    ["program", "layer", "layers", "z", "pass", "pass_number", "dwell", "dwell_ms", "wire_feed", "wire_feed_ratio"];
 
 /// What is the same all through a program.
 pub(super) fn job(job: &Job<'_>) -> Vec<(&'static str, Value)> {
@@ -44,7 +45,9 @@ impl Steps {
     }
 
     pub(super) fn layer(&mut self, program: &LayerProgram) -> Vec<Value> {
-        program.instructions.iter().map(|&instruction| self.step(instruction)).collect()
+        let steps =
+            program.instructions.iter().filter(|i| !matches!(i, Instruction::PassStart { .. } | Instruction::PassEnd));
+        steps.map(|&instruction| self.step(instruction)).collect()
     }
 
     pub(super) fn step(&mut self, instruction: Instruction) -> Value {
@@ -76,6 +79,8 @@ impl Step {
             Instruction::Crater { .. } => "crater",
             Instruction::ArcOff { .. } => "arc-off",
             Instruction::Dwell { .. } => "dwell",
+            // Templates see what is between them.
+            Instruction::PassStart { .. } | Instruction::PassEnd => "pass",
         }
     }
 
@@ -92,6 +97,7 @@ impl Step {
             Instruction::Crater { .. } => &["kind", "seconds", "ratio", "wire_feed"],
             Instruction::ArcOff { .. } => &["kind", "pass"],
             Instruction::Dwell { .. } => &["kind", "seconds"],
+            Instruction::PassStart { .. } | Instruction::PassEnd => &["kind"],
         }
     }
 

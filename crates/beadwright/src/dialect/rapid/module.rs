@@ -31,14 +31,14 @@ const LINES: [&str; 21] = [
 ];
 
 /// Data kinds whose values matter.
-const KINDS: [&str; 4] = ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA"];
+const KINDS: [&str; 5] = ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA", "NUM"];
 
 /// A value of named data.
 #[derive(Clone, Copy)]
 pub(super) enum Value {
     /// Position, mm.
     Target(DVec3),
-    /// Speed, mm/s.
+    /// Speed, mm/s, or a plain number.
     Speed(f64),
     /// Times for which the torch stands at the start and at the end of a seam, s.
     Seam([f64; 2]),

@@ -4,12 +4,13 @@
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Value};
-use crate::dialect::reading::loops::{Counting, Mark, turns, unrolled};
+use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
 use super::module;
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal.
@@ -66,7 +67,7 @@ const HARMLESS: [&str; 49] = [
 ];
 
 /// Branches and loops.
-const CONTROL: [&str; 8] = ["IF", "ELSEIF", "ELSE", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
+const CONTROL: [&str; 6] = ["IF", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
 
 /// Where handlers begin: they run on errors only.
 const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
@@ -114,6 +115,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         modules: Vec::new(),
         on: Patterns::new(&options.arc.on),
         off: Patterns::new(&options.arc.off),
+        values: HashMap::new(),
     };
     let main = reader.load(None, text)?;
     let entry = main.proc("main").or_else(|| main.first_proc()).ok_or(ReadError::NoProgram("RAPID"))?;
@@ -128,6 +130,8 @@ struct Reader<'a> {
     modules: Vec<Rc<Module>>,
     on: Patterns,
     off: Patterns,
+    /// Numbers of variables that were assigned, in upper case.
+    values: HashMap<String, f64>,
 }
 
 impl Reader<'_> {
@@ -144,6 +148,7 @@ impl Reader<'_> {
             };
             match found {
                 Some(found) => module.set(&variable, found),
+                None if kind == "NUM" => {}
                 None => self.trace.note(&variable, "has a value that is not understood", line),
             }
         }
@@ -162,16 +167,35 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A statement; where a loop begins, how often it turns.
-    fn line(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<u64, ReadError> {
+    /// A statement, and what comes after it.
+    fn line(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<Next, ReadError> {
         match mark(text) {
-            Some(Mark::Begin) => Ok(turns(text, "FROM", Counting::Towards).unwrap_or_else(|| {
-                self.trace.note("FOR", "is not followed: its lines were read once", line);
-                1
-            })),
-            Some(Mark::End) => self.trace.turn(line).map(|()| 0),
-            None => self.statement(text, line, module, depth).map(|()| 0),
+            Some(Mark::Begin) => {
+                let next = match strip_word(text, "IF") {
+                    Some(condition) => Next::taken(self.holds(condition, module)),
+                    None => turns(text, "FROM", Counting::Towards).map_or(Next::On, Next::Turns),
+                };
+                if next == Next::On {
+                    let word = name(text).0.to_ascii_uppercase();
+                    self.trace.note(&word, "is not followed: its lines were read once", line);
+                }
+                Ok(next)
+            }
+            Some(Mark::Else) => Ok(Next::On),
+            Some(Mark::End) => self.trace.turn(line).map(|()| Next::On),
+            None => self.statement(text, line, module, depth).map(|()| Next::On),
         }
+    }
+
+    /// Whether a condition up to its `THEN` holds, if that is known.
+    fn holds(&self, condition: &str, module: &Module) -> Option<bool> {
+        let condition = compact(condition).to_ascii_uppercase();
+        let value = |name: &str| match (self.values.get(name), self.value(name, module)) {
+            (Some(value), _) => Some(*value),
+            (None, Some(Value::Speed(value))) => Some(value),
+            _ => None,
+        };
+        holds(condition.strip_suffix("THEN").unwrap_or(&condition), value)
     }
 
     fn statement(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
@@ -247,7 +271,12 @@ impl Reader<'_> {
             }
             return Ok(());
         }
+        if let Some(value) = rest.strip_prefix(":=").and_then(number) {
+            self.values.insert(word.to_ascii_uppercase(), value);
+            return Ok(());
+        }
         if rest.starts_with(":=") || rest.starts_with(['.', '{']) {
+            self.values.remove(&word.to_ascii_uppercase());
             self.trace.note("an assignment", "is not followed", line);
             return Ok(());
         }
@@ -393,10 +422,17 @@ impl Reader<'_> {
     }
 }
 
-/// Where a loop begins or ends.
+/// Where a block begins or ends. An `IF` with a statement behind its condition is no block.
 fn mark(text: &str) -> Option<Mark> {
-    let begins = strip_word(text, "FOR").map(|_| Mark::Begin);
-    begins.or_else(|| strip_word(text, "ENDFOR").map(|_| Mark::End))
+    let is = |word: &str| strip_word(text, word).is_some();
+    let ends = |last: &str| text.get(text.len().saturating_sub(last.len())..).is_some_and(|t| t.eq_ignore_ascii_case(last));
+    if is("FOR") || (is("IF") && ends("THEN")) {
+        Some(Mark::Begin)
+    } else if is("ELSE") || is("ELSEIF") {
+        Some(Mark::Else)
+    } else {
+        (is("ENDFOR") || is("ENDIF")).then_some(Mark::End)
+    }
 }
 
 /// An argument without the optional ones behind it, as in `weld1\Weave:=wv`.

@@ -1,7 +1,7 @@
 //! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and the limits of its values.
 
 use super::write::AbbRapid;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -115,6 +115,12 @@ pub struct Rapid {
     pub crater: Vec<String>,
     /// Statements at the end of the main program.
     pub end: Vec<String>,
+    /// Lines of subprograms that the other lines call, in the main module, behind `main`, with the data that they declare; default none.
+    #[serde(default)]
+    pub routines: Vec<String>,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
 }
 
 /// Start and end of a seam, as in seamdata.
@@ -216,7 +222,16 @@ impl Section for Rapid {
             ("rapid.wire_feed", &self.wire_feed),
             ("rapid.crater", &self.crater),
             ("rapid.end", &self.end),
+            ("rapid.routines", &self.routines),
         ]
+    }
+
+    fn restarts(&self) -> bool {
+        true
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
     }
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
@@ -228,6 +243,7 @@ impl Section for Rapid {
     }
 
     fn dry_run(&mut self) {
+        self.hooks.dry_run();
         self.arc = RapidArc::Plain;
     }
 

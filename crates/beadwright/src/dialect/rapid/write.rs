@@ -6,20 +6,28 @@
 //! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, split};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split};
 use crate::number::fixed;
 use super::{data, names};
 use super::section::{Rapid, RapidArc, RapidModules};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use crate::weld::retract_time;
 use glam::DVec3;
+
+/// Comments are wrapped at this many characters.
+const MAX_COMMENT: usize = 76;
+
+/// Where to begin.
+const START: &str = "nStart";
 
 /// Writes RAPID.
 pub(super) struct AbbRapid {
     name: String,
     comment: String,
+    supplies: Vec<String>,
     rapid: Rapid,
+    program: ProgramSettings,
     process: Process,
     values: Values,
     travel_speed: f64,
@@ -46,7 +54,8 @@ impl AbbRapid {
         let orientation = data::quaternion(&rapid.orientation);
         let axes = data::external_axes(job.program.table_angle);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
-        Self { name, comment, rapid, process, values, travel_speed, orientation, axes, digits: 3 }
+        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
+        Self { name, comment, supplies, rapid, program, process, values, travel_speed, orientation, axes, digits: 3 }
     }
 
     fn numbered(&self, prefix: &str, index: usize) -> String {
@@ -57,11 +66,11 @@ impl AbbRapid {
         self.rapid.arc == RapidArc::Instructions
     }
 
-    /// The module for one part of a layer (`part` counts from 0), with the lines that run it.
+    /// The module for one part of a layer (`part` counts from 0; `last` if no other follows), with the lines that run it.
     fn module(
         &mut self,
         program: &LayerProgram,
-        part: usize,
+        (part, last): (usize, bool),
         moves: &[Instruction],
         speeds: &Speeds,
         feed: &mut f64,
@@ -75,9 +84,13 @@ impl AbbRapid {
         self.declare(&mut text, speeds);
         text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
         if part == 0 {
-            self.lines(&mut text, &self.rapid.layer_start);
+            let lines = self.rapid.hooks.before_layer(&self.rapid.layer_start, program.index, &self.program);
+            self.skippable(&mut text, restart::last(program), &lines);
         }
-        self.instructions(&mut text, moves, speeds, feed);
+        self.instructions(&mut text, program, moves, speeds, feed);
+        if last {
+            self.skippable(&mut text, restart::last(program), &self.rapid.hooks.layer_end);
+        }
         text.push_str("  ENDPROC\r\nENDMODULE\r\n");
         let listed = self.rapid.modules == RapidModules::Call;
         let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
@@ -95,6 +108,49 @@ impl AbbRapid {
 
     fn lines(&self, text: &mut String, template: &[String]) {
         self.values.expand(template).for_each(|line| statement(text, &line));
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&self, text: &mut String, number: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        self.begin_skippable(text, number);
+        self.lines(text, lines);
+        self.end_skippable(text);
+    }
+
+    fn begin_skippable(&self, text: &mut String, number: usize) {
+        if self.program.restart {
+            statement(text, &format!("IF {START}<={number} THEN"));
+        }
+    }
+
+    fn end_skippable(&self, text: &mut String) {
+        if self.program.restart {
+            statement(text, "ENDIF");
+        }
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.begin_skippable(text, number);
+        if self.program.restart {
+            statement(text, &format!("IF {START}>0 THEN"));
+            self.motion(text, "MoveJ", above, "vHome", false);
+            statement(text, &format!("{START}:=0;"));
+            statement(text, "ENDIF");
+        }
+        self.hook(text, &self.rapid.hooks.pass_start);
+    }
+
+    /// Lines where the torch stands, if there are any.
+    fn hook(&self, text: &mut String, lines: &[String]) {
+        if !lines.is_empty() {
+            self.switch(text, lines);
+        }
     }
 
     /// The speed as it is written, thousandths of a mm/s: the nominal one plus or minus whole steps.
@@ -172,7 +228,14 @@ impl AbbRapid {
     }
 
     /// `feed` is the fraction of the nominal wire feed that was set last.
-    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
+    fn instructions(
+        &mut self,
+        text: &mut String,
+        program: &LayerProgram,
+        all: &[Instruction],
+        speeds: &Speeds,
+        feed: &mut f64,
+    ) {
         for (i, &instruction) in all.iter().enumerate() {
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself moves there.
@@ -206,6 +269,13 @@ impl AbbRapid {
                     wait(text, seconds);
                 }
                 (Instruction::Dwell { seconds }, _) => wait(text, seconds),
+                (Instruction::PassStart { pass, above }, _) => {
+                    self.pass_start(text, restart::number(program, pass), pass, above);
+                }
+                (Instruction::PassEnd, _) => {
+                    self.hook(text, &self.rapid.hooks.pass_end);
+                    self.end_skippable(text);
+                }
                 (Instruction::ArcOff { .. }, _) => self.arc_off(text),
             }
         }
@@ -215,6 +285,7 @@ impl AbbRapid {
     fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
         if !self.with_arc() {
             self.switch(text, &self.rapid.arc_on);
+            self.lines(text, &self.rapid.hooks.arc_established);
         } else if let (Some(to), Some(number)) = (before.and_then(Instruction::target), first) {
             let between = format!("vTravel,smBead,wd{number}");
             self.motion(text, "ArcLStart", to, &between, false);
@@ -235,6 +306,7 @@ impl AbbRapid {
 
     fn arc_off(&self, text: &mut String) {
         if !self.with_arc() {
+            self.hook(text, &self.rapid.hooks.before_arc_off);
             self.switch(text, &self.rapid.arc_off);
         } else if self.process.arc_end_delay > 0.0 {
             statement(text, &format!("WaitTime \\InPos,{};", fixed(self.process.arc_end_delay, 3)));
@@ -276,10 +348,15 @@ impl AbbRapid {
 impl Writer for AbbRapid {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
+        self.values.set("layers", layers);
         // Room for "_L" and the number, and for that of a part: "_999".
         self.name.truncate(names::MAX_NAME - 2 - self.digits - 4);
         let mut text = format!("MODULE {}\r\n", self.name);
         text.push_str(&format!("  ! {}\r\n", self.comment));
+        self.supplies.iter().for_each(|line| text.push_str(&format!("  ! {line}\r\n")));
+        if self.program.restart {
+            text.push_str(&format!("  ! {}\r\n  PERS num {START}:=0;\r\n", restart::comment(START)));
+        }
         for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
             text.push_str(&format!("  {line}\r\n"));
         }
@@ -297,11 +374,11 @@ impl Writer for AbbRapid {
         if program.instructions.is_empty() {
             return Vec::new();
         }
-        self.values.set("layer", program.index + 1);
+        self.values.set_layer(program);
         let speeds = self.speeds(program);
         let parts = split::passes(&program.instructions, self.rapid.max_points);
-        let mut feed = 1.0;
-        let module = |(part, moves)| self.module(program, part, moves, &speeds, &mut feed);
+        let (mut feed, count) = (1.0, parts.len());
+        let module = |(part, moves)| self.module(program, (part, part + 1 == count), moves, &speeds, &mut feed);
         parts.into_iter().enumerate().flat_map(module).collect()
     }
 
@@ -309,7 +386,9 @@ impl Writer for AbbRapid {
         let mut text = String::new();
         self.lines(&mut text, &self.rapid.end);
         self.home(&mut text);
-        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        text.push_str("  ENDPROC\r\n");
+        self.values.expand(&self.rapid.routines).for_each(|line| text.push_str(&format!("  {line}\r\n")));
+        text.push_str("ENDMODULE\r\n");
         [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
     }
 }

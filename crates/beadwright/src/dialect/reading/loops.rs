@@ -3,56 +3,122 @@
 use super::ReadError;
 use super::words::{compact, number};
 
-/// What a line is to the loop around it.
+/// What a line is to the block around it: a loop, or a branch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Mark {
     Begin,
+    Else,
     End,
 }
 
-/// Runs `count` lines one after another, those of a loop as often as it turns. `mark` tells where loops begin and end;
-/// `step` runs a line and, where a loop begins, returns how often that turns.
+/// What comes after a line.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::dialect) enum Next {
+    /// The next line; where a block begins, one of which nothing is known: all its lines run once.
+    On,
+    /// The lines of the block that begins here, so many times; a branch is taken once or not at all.
+    Turns(u64),
+    /// The line with this index, further down.
+    To(usize),
+}
+
+impl Next {
+    /// Whether a branch is taken, where that is known.
+    pub(in crate::dialect) fn taken(known: Option<bool>) -> Self {
+        known.map_or(Self::On, |taken| Self::Turns(taken.into()))
+    }
+}
+
+/// A block that has begun.
+struct Open {
+    /// Its first line.
+    body: usize,
+    /// Turns that are left.
+    left: u64,
+    /// Whether it is known that it runs.
+    known: bool,
+}
+
+/// Runs `count` lines one after another, those of a block as often as it turns. `mark` tells where blocks begin and end;
+/// `step` runs a line and tells what comes after it.
 pub(in crate::dialect) fn unrolled(
     count: usize,
     mark: impl Fn(usize) -> Option<Mark>,
-    mut step: impl FnMut(usize) -> Result<u64, ReadError>,
+    mut step: impl FnMut(usize) -> Result<Next, ReadError>,
 ) -> Result<(), ReadError> {
-    // First line of the body, and turns that are left.
-    let mut open: Vec<(usize, u64)> = Vec::new();
+    let mut open: Vec<Open> = Vec::new();
     let mut at = 0;
     while at < count {
-        let turns = step(at)?;
-        at = match mark(at) {
-            Some(Mark::Begin) if turns == 0 => behind(at, count, &mark),
-            Some(Mark::Begin) => {
-                open.push((at + 1, turns));
+        let next = step(at)?;
+        at = match (mark(at), next) {
+            (_, Next::To(line)) => {
+                // Blocks that end on the way are left.
+                let left = (at..line).filter(|&i| mark(i) == Some(Mark::End)).count();
+                open.truncate(open.len().saturating_sub(left));
+                line.max(at + 1)
+            }
+            (Some(Mark::Begin), Next::Turns(0)) => {
+                let behind = behind(at + 1, count, &mark);
+                if behind > at + 1 && mark(behind - 1) == Some(Mark::Else) {
+                    open.push(Open { body: behind, left: 1, known: true });
+                }
+                behind
+            }
+            (Some(Mark::Begin), next) => {
+                let left = if let Next::Turns(turns) = next { turns } else { 1 };
+                open.push(Open { body: at + 1, left, known: next != Next::On });
                 at + 1
             }
-            Some(Mark::End) => match open.pop() {
-                Some((body, left)) if left > 1 => {
-                    open.push((body, left - 1));
+            (Some(Mark::Else), _) if open.last().is_some_and(|block| block.known) => {
+                open.pop();
+                let mut end = behind(at + 1, count, &mark);
+                while end < count && mark(end - 1) == Some(Mark::Else) {
+                    end = behind(end, count, &mark);
+                }
+                end
+            }
+            (Some(Mark::End), _) => match open.pop() {
+                Some(Open { body, left, known }) if left > 1 => {
+                    open.push(Open { body, left: left - 1, known });
                     body
                 }
                 _ => at + 1,
             },
-            None => at + 1,
+            _ => at + 1,
         };
     }
     Ok(())
 }
 
-/// The line behind the end of the loop that begins at a line.
-fn behind(begin: usize, count: usize, mark: impl Fn(usize) -> Option<Mark>) -> usize {
+/// The line behind the `Else` or the end of the block whose first line this is.
+pub(in crate::dialect) fn behind(first: usize, count: usize, mark: impl Fn(usize) -> Option<Mark>) -> usize {
     let mut depth = 0_usize;
-    for at in begin..count {
+    for at in first..count {
         match mark(at) {
             Some(Mark::Begin) => depth += 1,
-            Some(Mark::End) if depth <= 1 => return at + 1,
+            Some(Mark::Else | Mark::End) if depth == 0 => return at + 1,
             Some(Mark::End) => depth -= 1,
-            None => {}
+            Some(Mark::Else) | None => {}
         }
     }
     count
+}
+
+/// Whether a comparison of plain numbers and of variables whose values are known holds, such as `a <= 70003`; `None` for
+/// any other condition.
+pub(in crate::dialect) fn holds(condition: &str, value: impl Fn(&str) -> Option<f64>) -> Option<bool> {
+    const SIGNS: [&str; 8] = ["<=", ">=", "<>", "!=", "==", "=", "<", ">"];
+    let (at, sign) = SIGNS.iter().filter_map(|sign| Some((condition.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
+    let operand = |text: &str| number(text).or_else(|| value(text.trim()));
+    let (a, b) = (operand(&condition[..at])?, operand(&condition[at + sign.len()..])?);
+    Some(match sign {
+        "<=" => a <= b,
+        ">=" => a >= b,
+        "<>" | "!=" => a != b,
+        "<" => a < b,
+        ">" => a > b,
+        _ => a == b,
+    })
 }
 
 /// Which way a loop counts where it tells no step.

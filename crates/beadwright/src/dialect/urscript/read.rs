@@ -4,7 +4,7 @@
 //! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; if a file only defines a
 //! program, that program runs.
 
-use crate::dialect::reading::loops::{Mark, stepped, unrolled};
+use crate::dialect::reading::loops::{Mark, Next, behind, holds, stepped, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -13,7 +13,9 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Statements that affect neither position nor metal, by the beginning of their names.
-const HARMLESS: [&str; 18] = [
+const HARMLESS: [&str; 20] = [
+    "join",
+    "kill",
     "set_",
     "textmsg",
     "popup",
@@ -35,7 +37,7 @@ const HARMLESS: [&str; 18] = [
 ];
 
 /// Branches, loops and other blocks that `end` closes.
-const BLOCKS: [&str; 4] = ["if", "while", "thread", "sec"];
+const BLOCKS: [&str; 3] = ["if", "while", "sec"];
 
 /// Statements with their lines.
 type Body = Vec<(usize, String)>;
@@ -82,8 +84,9 @@ fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
     let mut open: Vec<(String, Body, usize)> = Vec::new();
     for (i, raw) in text.lines().enumerate() {
         let line = before_comment(raw, '#').trim();
-        if let Some(head) = strip_word(line, "def") {
-            first = first.or_else(|| Some(name(head).0.to_owned()));
+        let thread = strip_word(line, "thread");
+        if let Some(head) = strip_word(line, "def").or(thread) {
+            first = first.or_else(|| thread.is_none().then(|| name(head).0.to_owned()));
             open.push((name(head).0.to_owned(), Body::new(), 0));
             continue;
         }
@@ -95,7 +98,7 @@ fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
             match mark(line) {
                 Some(Mark::Begin) => *blocks += 1,
                 Some(Mark::End) => *blocks -= 1,
-                None => {}
+                Some(Mark::Else) | None => {}
             }
         }
         let body = open.last_mut().map_or(&mut top, |(_, body, _)| body);
@@ -123,20 +126,33 @@ impl Reader {
         unrolled(body.len(), |i| mark(&body[i].1), |i| {
             let (line, text) = &body[i];
             match mark(text) {
-                Some(Mark::Begin) => Ok(self.turns(&body[i..]).unwrap_or_else(|| {
-                    self.trace.note(name(text).0, "is not followed: its lines were read once", *line);
-                    1
-                })),
-                Some(Mark::End) => self.trace.turn(*line).map(|()| 0),
-                None => self.statement(text, *line, depth).map(|()| 0),
+                Some(Mark::Begin) => Ok(self.turns(&body[i..]).map_or_else(
+                    || {
+                        self.trace.note(name(text).0, "is not followed: its lines were read once", *line);
+                        Next::On
+                    },
+                    Next::Turns,
+                )),
+                Some(Mark::Else) => Ok(Next::On),
+                Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
+                None => self.statement(text, *line, depth).map(|()| Next::On),
             }
         })
     }
 
-    /// How often `while i < 5:` turns, at the start of these lines, where `i` is known and changes once a turn by a plain
-    /// number.
+    /// How often the block at the start of these lines turns: a branch whose condition is known, or that only asks an input
+    /// and moves nothing; `while i < 5:` where `i` is known and changes once a turn by a plain number.
     fn turns(&self, lines: &[(usize, String)]) -> Option<u64> {
-        let condition = strip_word(&lines.first()?.1, "while")?.trim_end_matches(':').trim();
+        let head = &lines.first()?.1;
+        let until = behind(1, lines.len(), |at| mark(&lines[at].1));
+        let moves = lines[1..until].iter().any(|(_, line)| line.starts_with("move"));
+        let (word, condition) = name(head);
+        let asked = input(condition).filter(|_| ["if", "while"].contains(&word) && !moves);
+        let branch = || holds(condition.trim_end_matches(':'), |name| self.number(name)).filter(|_| word == "if");
+        if let Some(taken) = asked.or_else(branch) {
+            return Some(taken.into());
+        }
+        let condition = strip_word(head, "while")?.trim_end_matches(':').trim();
         let condition = condition.strip_prefix('(').and_then(|c| c.strip_suffix(')')).unwrap_or(condition);
         let (variable, bound) = condition.split_once(['<', '>'])?;
         let (bound, ends) = bound.strip_prefix('=').map_or((bound, false), |bound| (bound, true));
@@ -174,8 +190,11 @@ impl Reader {
             let seconds = inside(rest);
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
             self.trace.dwell += wait.max(0.0);
-        } else if ["elif", "else", "run", "join", "kill"].contains(&word) {
-            self.trace.note(word, "is not followed: its lines were read once", line);
+        } else if let Some(thread) = started(text) {
+            let moves = |body: &Rc<Body>| body.iter().any(|(_, line)| line.starts_with("move"));
+            if self.functions.get(thread).is_none_or(moves) {
+                self.trace.note(thread, "runs beside the program and was left out", line);
+            }
         } else if rest.starts_with('(') && self.functions.contains_key(word) {
             return self.call(word, line, depth);
         } else if flat.contains("DIGITAL_OUT(") && flat.ends_with(",TRUE)") {
@@ -269,8 +288,26 @@ impl Reader {
     }
 }
 
+/// The thread that `run thread()` or `handle = run thread()` starts.
+fn started(text: &str) -> Option<&str> {
+    let text = text.split_once('=').map_or(text, |(_, text)| text.trim_start());
+    strip_word(text, "run").map(|thread| name(thread).0)
+}
+
+/// What a condition on an input alone is while all is well: inputs such as that of a burning arc are on.
+fn input(condition: &str) -> Option<bool> {
+    let condition = condition.trim_end_matches(':').trim();
+    let (condition, wanted) = strip_word(condition, "not").map_or((condition, true), |rest| (rest, false));
+    let (called, rest) = name(condition);
+    let reads = called.starts_with("get_") && called.ends_with("_in") && rest.starts_with('(') && rest.ends_with(')');
+    reads.then_some(wanted)
+}
+
 /// Where a block begins or ends.
 fn mark(line: &str) -> Option<Mark> {
+    if ["elif", "else"].iter().any(|word| strip_word(line, word).is_some()) {
+        return Some(Mark::Else);
+    }
     let begins = BLOCKS.iter().any(|block| strip_word(line, block).is_some());
     begins.then_some(Mark::Begin).or((line == "end").then_some(Mark::End))
 }
@@ -284,7 +321,7 @@ fn step(lines: &[(usize, String)], variable: &str) -> Option<f64> {
             Some(Mark::Begin) => depth += 1,
             Some(Mark::End) if depth == 1 => return found,
             Some(Mark::End) => depth -= 1,
-            None => {}
+            Some(Mark::Else) | None => {}
         }
         let assigned = line.split_once('=').filter(|(left, _)| left.split_whitespace().next_back() == Some(variable));
         if let Some((_, value)) = assigned.filter(|_| mark(line).is_none()) {

@@ -1,7 +1,7 @@
 //! The section `[urscript]`: a Universal Robots cell, and the limits of its values.
 
 use super::write::UniversalScript;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -58,6 +58,12 @@ pub struct Urscript {
     pub crater: Vec<String>,
     /// Statements at the end of the program.
     pub end: Vec<String>,
+    /// Lines of subprograms that the other lines call, at the head of the script; default none.
+    #[serde(default)]
+    pub routines: Vec<String>,
+    /// Lines at other places of the program; default none.
+    #[serde(default)]
+    pub hooks: Hooks,
 }
 
 fn two() -> f64 {
@@ -96,7 +102,20 @@ impl Section for Urscript {
             ("urscript.wire_feed", &self.wire_feed),
             ("urscript.crater", &self.crater),
             ("urscript.end", &self.end),
+            ("urscript.routines", &self.routines),
         ]
+    }
+
+    fn restarts(&self) -> bool {
+        true
+    }
+
+    fn hooks(&self) -> Option<&Hooks> {
+        Some(&self.hooks)
+    }
+
+    fn dry_run(&mut self) {
+        self.hooks.dry_run();
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {

@@ -5,10 +5,10 @@
 //! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, upper_name};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::section::Urscript;
-use crate::program::{Instruction, LayerProgram};
+use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 
 /// Words of the language and names of its functions that a part might happen to be called.
@@ -24,11 +24,19 @@ const BLEND_PART: f64 = 0.45;
 /// Smaller blends are left out, mm.
 const MIN_BLEND: f64 = 0.01;
 
+/// Comments are wrapped at this many characters.
+const MAX_COMMENT: usize = 76;
+
+/// Where to begin.
+const START: &str = "start_at";
+
 /// Writes URScript.
 pub(super) struct UniversalScript {
     name: String,
     comment: String,
+    supplies: Vec<String>,
     urscript: Urscript,
+    program: ProgramSettings,
     values: Values,
     travel_speed: f64,
     wire_feed_speed: f64,
@@ -52,13 +60,49 @@ impl UniversalScript {
         let values = Values::new(&name, job);
         let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
         let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
-        Self { name, comment, urscript, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None, volumes, main }
+        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
+        Self { name, comment, supplies, urscript, program, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None, volumes, main }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
         for line in self.values.expand(template) {
             text.push_str(&format!("{indent}{line}\n"));
         }
+    }
+
+    /// Lines that a program begun later than `number` leaves out.
+    fn skippable(&self, text: &mut String, indent: &str, number: usize, lines: &[String]) {
+        if lines.is_empty() {
+            return;
+        }
+        self.begin_skippable(text, indent, number);
+        self.lines(text, indent, lines);
+        self.end_skippable(text, indent);
+    }
+
+    fn begin_skippable(&self, text: &mut String, indent: &str, number: usize) {
+        if self.program.restart {
+            text.push_str(&format!("{indent}if {START} <= {number}:\n"));
+        }
+    }
+
+    fn end_skippable(&self, text: &mut String, indent: &str) {
+        if self.program.restart {
+            text.push_str(&format!("{indent}end\n"));
+        }
+    }
+
+    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    fn pass_start(&mut self, text: &mut String, indent: &str, number: usize, pass: usize, above: DVec3) {
+        self.values.set("pass", pass);
+        self.values.set("pass_number", number);
+        self.begin_skippable(text, indent, number);
+        if self.program.restart {
+            text.push_str(&format!("{indent}if {START} > 0:\n"));
+            self.instruction(text, indent, Instruction::Approach { to: above }, None);
+            text.push_str(&format!("{indent}global {START} = 0\n{indent}end\n"));
+        }
+        self.lines(text, indent, &self.urscript.hooks.pass_start);
     }
 
     fn home(&self, text: &mut String) {
@@ -120,6 +164,7 @@ impl UniversalScript {
                 self.values.set("pass", pass);
                 text.push_str(&format!("{indent}# pass {pass} {}\n", kind.name()));
                 self.lines(text, indent, &self.urscript.arc_on);
+                self.lines(text, indent, &self.urscript.hooks.arc_established);
             }
             Instruction::Weld { to, circle, speed, last } => {
                 let blend = if last { 0.0 } else { self.blend(to, next) };
@@ -138,7 +183,16 @@ impl UniversalScript {
                 wait(text, indent, seconds);
             }
             Instruction::Dwell { seconds } => wait(text, indent, seconds),
-            Instruction::ArcOff { .. } => self.lines(text, indent, &self.urscript.arc_off),
+            Instruction::ArcOff { .. } => {
+                self.lines(text, indent, &self.urscript.hooks.before_arc_off);
+                self.lines(text, indent, &self.urscript.arc_off);
+            }
+            // Begun where the number of the pass is known.
+            Instruction::PassStart { .. } => {}
+            Instruction::PassEnd => {
+                self.lines(text, indent, &self.urscript.hooks.pass_end);
+                self.end_skippable(text, indent);
+            }
         }
     }
 
@@ -152,6 +206,10 @@ impl UniversalScript {
         self.main = self.volumes.begin(&self.name);
         self.layers.clear();
         let mut text = format!("def {}():\n  # {}\n", self.main, self.comment);
+        self.supplies.iter().for_each(|line| text.push_str(&format!("  # {line}\n")));
+        if self.program.restart {
+            text.push_str(&format!("  # {}\n  global {START} = 0\n", restart::comment(START)));
+        }
         if let Some(frame) = &self.urscript.tool_frame {
             text.push_str(&format!("  set_tcp({})\n", frame_text(frame)));
         }
@@ -159,6 +217,7 @@ impl UniversalScript {
             text.push_str(&format!("  set_payload({})\n", fixed(mass, 3)));
         }
         text.push_str(&format!("  global part_frame = {}\n", frame_text(&self.urscript.part_frame)));
+        self.lines(&mut text, "  ", &self.urscript.routines);
         vec![self.chunk(text)]
     }
 
@@ -179,12 +238,19 @@ impl UniversalScript {
     fn function(&mut self, name: &str, program: &LayerProgram) -> String {
         let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
         text.reserve(program.instructions.len() * 120);
-        self.lines(&mut text, "    ", &self.urscript.layer_start);
+        let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
+        self.skippable(&mut text, "    ", restart::last(program), &lines);
         for (i, &instruction) in program.instructions.iter().enumerate() {
             let behind = program.instructions[i + 1..].iter();
             let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
-            self.instruction(&mut text, "    ", instruction, next);
+            match instruction {
+                Instruction::PassStart { pass, above } => {
+                    self.pass_start(&mut text, "    ", restart::number(program, pass), pass, above);
+                }
+                other => self.instruction(&mut text, "    ", other, next),
+            }
         }
+        self.skippable(&mut text, "    ", restart::last(program), &self.urscript.hooks.layer_end);
         text + "  end\n"
     }
 }
@@ -192,6 +258,7 @@ impl UniversalScript {
 impl Writer for UniversalScript {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
+        self.values.set("layers", layers);
         self.begin_volume()
     }
 
@@ -200,7 +267,7 @@ impl Writer for UniversalScript {
             return Vec::new();
         }
         let name = format!("layer_{:0digits$}", program.index + 1, digits = self.digits);
-        self.values.set("layer", program.index + 1);
+        self.values.set_layer(program);
         let (mut chunks, mut text) = (Vec::new(), self.function(&name, program));
         if !self.volumes.has_room(text.len()) {
             chunks = self.end_volume();

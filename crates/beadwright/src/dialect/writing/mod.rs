@@ -2,13 +2,16 @@
 //!
 //! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
+mod hooks;
 mod names;
 pub(super) mod needs;
 pub(super) mod orientation;
 mod placeholders;
+pub(super) mod restart;
 pub(super) mod split;
 pub(super) mod volumes;
 
+pub use hooks::Hooks;
 pub(super) use names::upper_name;
 pub use placeholders::PLACEHOLDERS;
 pub(super) use placeholders::Values;
@@ -17,7 +20,7 @@ use super::own::OwnError;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
 use crate::layer::Layer;
-use crate::program::{LayerProgram, ProgramSettings, Programmer};
+use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety};
 use crate::weld::WeldSettings;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
@@ -80,6 +83,8 @@ pub struct Job<'a> {
     pub weld: WeldSettings,
     /// How paths become moves.
     pub program: &'a ProgramSettings,
+    /// What the cell must supply.
+    pub safety: &'a Safety,
     /// Whether the program only moves: arc, gas and wire never on.
     pub dry_run: bool,
 }
@@ -93,6 +98,13 @@ impl Job<'_> {
     /// A comment for the head of files.
     pub(super) fn comment(&self) -> String {
         format!("{}, {}", ascii(&self.part), ascii(&self.profile))
+    }
+
+    /// Comments of at most so many characters that say what the cell must supply.
+    pub(super) fn supplies(&self, width: usize) -> Vec<String> {
+        let sentences = self.safety.supplies.iter().flat_map(|text| wrapped(text, width));
+        let head = (!self.safety.supplies.is_empty()).then(|| "The cell must supply:".to_owned());
+        head.into_iter().chain(sentences).collect()
     }
 }
 
@@ -171,6 +183,10 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     if job.program.table_angle.is_some() && !dialect.turns_table {
         return Err(DialectError::NoTable(dialect.name));
     }
+    if job.program.restart && !section.restarts() {
+        let remedy = "Take it out; a stopped build goes on with plan --from-layer N --from-pass N.";
+        return Err(DialectError::Cannot { dialect: dialect.name, what: "program.restart = true", remedy });
+    }
     section.writer(job)
 }
 
@@ -216,6 +232,21 @@ pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) ->
 pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
     let count = (seconds / most).ceil().max(1.0);
     (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
+}
+
+/// The words of a text in lines of at most so many characters; only a longer word makes a longer line.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut().filter(|line| line.len() + 1 + word.len() <= width) {
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Printable ASCII for comments; other characters become `_`.

@@ -2,6 +2,7 @@
 
 use super::Job;
 use crate::number::fixed;
+use crate::program::LayerProgram;
 use crate::template;
 use crate::weld::retract_time;
 
@@ -9,10 +10,15 @@ use crate::weld::retract_time;
 pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
 
 /// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program goes on.
-pub const PLACEHOLDERS: [Placeholder; 21] = [
+pub const PLACEHOLDERS: [Placeholder; 26] = [
     ("program", |job| job.part.clone()),
     ("layer", |_| String::new()),
     ("pass", |_| String::new()),
+    ("pass_number", |_| String::new()),
+    ("layers", |_| String::new()),
+    ("z", |_| String::new()),
+    ("arc_timeout", |job| job.safety.arc_timeout.to_string()),
+    ("arc_timeout_ms", |job| milliseconds(job.safety.arc_timeout)),
     ("wire_feed_speed", |job| job.weld.process.wire_feed_speed.to_string()),
     ("deposition_speed", |job| job.weld.process.deposition_speed.to_string()),
     ("arc_start_delay", |job| job.weld.process.arc_start_delay.to_string()),
@@ -50,6 +56,12 @@ impl Values {
         let mut values = Self(PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect());
         values.set("program", program);
         values
+    }
+
+    /// Sets number and height of the layer.
+    pub(in crate::dialect) fn set_layer(&mut self, layer: &LayerProgram) {
+        self.set("layer", layer.index + 1);
+        self.set("z", fixed(layer.z, 3));
     }
 
     /// Sets the wait for the next templates, s.

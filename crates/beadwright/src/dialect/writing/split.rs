@@ -6,9 +6,8 @@ use crate::program::Instruction;
 /// instructions; only a longer pass makes a longer part.
 pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
     let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);
-    let is_off = |i: &usize| matches!(instructions[*i], Instruction::ArcOff { .. });
-    let risen = |i: usize| i + 1 + usize::from(matches!(instructions.get(i + 1), Some(Instruction::Retract { .. })));
-    for end in (0..instructions.len()).filter(is_off).map(risen) {
+    let ends = |i: &usize| matches!(instructions[*i], Instruction::PassEnd);
+    for end in (0..instructions.len()).filter(ends).map(|i| i + 1) {
         if end - start > most && between > start {
             parts.push(&instructions[start..between]);
             start = between;
@@ -36,7 +35,7 @@ mod tests {
             head.into_iter()
                 .chain([on])
                 .chain(vec![weld; count])
-                .chain([Instruction::ArcOff { pass: 1 }, Instruction::Retract { to }])
+                .chain([Instruction::ArcOff { pass: 1 }, Instruction::Retract { to }, Instruction::PassEnd])
                 .collect::<Vec<_>>()
         };
         moves.iter().flat_map(pass).collect()
@@ -44,11 +43,11 @@ mod tests {
 
     #[test]
     fn whole_passes_stay_together() {
-        let sizes = |moves: &[usize]| passes(&layer(moves), 10).iter().map(|p| p.len()).collect::<Vec<_>>();
-        assert_eq!(sizes(&[3]), [7]);
-        assert_eq!(sizes(&[1, 1]), [10]);
-        assert_eq!(sizes(&[3, 3, 1]), [7, 7, 5]);
-        assert_eq!(sizes(&[25, 1, 25]), [29, 5, 29]);
+        let sizes = |moves: &[usize]| passes(&layer(moves), 12).iter().map(|p| p.len()).collect::<Vec<_>>();
+        assert_eq!(sizes(&[3]), [8]);
+        assert_eq!(sizes(&[1, 1]), [12]);
+        assert_eq!(sizes(&[3, 3, 1]), [8, 8, 6]);
+        assert_eq!(sizes(&[25, 1, 25]), [30, 6, 30]);
         assert_eq!(sizes(&[]), [0]);
     }
 }

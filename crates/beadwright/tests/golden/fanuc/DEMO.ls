@@ -2,16 +2,25 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "demo";
-LINE_COUNT = 6;
+LINE_COUNT = 15;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
-   1:  UFRAME_NUM=1 ;
-   2:  UTOOL_NUM=1 ;
-   3:J P[1] 20% FINE ;
-   4:  CALL DEMO_L001 ;
-   5:  CALL DEMO_L002 ;
-   6:J P[2] 20% FINE ;
+   1:  !The cell must supply: ;
+   2:  !The arc's signal is wired: FANUC ;
+   3:  !arc detect, Yaskawa arc ;
+   4:  !confirmation, UR input 0 (on ;
+   5:  !while current flows). ;
+   6:  !The emergency stop also switches ;
+   7:  !the power source off. ;
+   8:  !Shielding gas has pressure, and ;
+   9:  !the fume extraction runs. ;
+  10:  UFRAME_NUM=1 ;
+  11:  UTOOL_NUM=1 ;
+  12:J P[1] 20% FINE ;
+  13:  CALL DEMO_L001 ;
+  14:  CALL DEMO_L002 ;
+  15:J P[2] 20% FINE ;
 /POS
 P[1]{
    GP1:

@@ -1,0 +1,62 @@
+//! Lines of the profile at places of a program that the sections of robots and machines share: `[krl.hooks]` and the like.
+
+use crate::dialect::Templates;
+use crate::program::ProgramSettings;
+use serde::{Deserialize, Serialize};
+
+/// Lines at places of a program; each list is empty by default.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Hooks {
+    /// Lines behind `arc_on` that wait until the arc burns, for `{{arc_timeout}}` s at most, and say what happens if it does
+    /// not. Packages that light the arc themselves (ArcTech, RobotWare Arc, ArcTool) watch it too and need none.
+    pub arc_established: Vec<String>,
+    /// Lines before `arc_off` while the arc still burns, such as one that ends the watch over it.
+    pub before_arc_off: Vec<String>,
+    /// Lines before a pass, with the torch above the part: a touch of its start, a line in the log.
+    pub pass_start: Vec<String>,
+    /// Lines after a pass, with the torch above the part.
+    pub pass_end: Vec<String>,
+    /// Lines after a layer, with the torch above the part.
+    pub layer_end: Vec<String>,
+    /// Lines before every layer but the first, with the torch above the part: a wait until a pyrometer finds it cool enough.
+    pub interpass: Vec<String>,
+    /// Lines before every `program.measure_every`-th layer, with the torch above the part: a touch that finds how high it has
+    /// become.
+    pub measure: Vec<String>,
+}
+
+impl Hooks {
+    /// Names and lines.
+    pub(in crate::dialect) fn templates(&self) -> Templates<'_> {
+        vec![
+            ("arc_established", &self.arc_established),
+            ("before_arc_off", &self.before_arc_off),
+            ("pass_start", &self.pass_start),
+            ("pass_end", &self.pass_end),
+            ("layer_end", &self.layer_end),
+            ("interpass", &self.interpass),
+            ("measure", &self.measure),
+        ]
+    }
+
+    /// The lines before the layer with an index, behind those of `layer_start`.
+    pub(in crate::dialect) fn before_layer(
+        &self,
+        layer_start: &[String],
+        index: usize,
+        program: &ProgramSettings,
+    ) -> Vec<String> {
+        let none = Vec::new();
+        let interpass = if index > 0 { &self.interpass } else { &none };
+        let due = index > 0 && index.is_multiple_of(program.measure_every);
+        let measure = if due { &self.measure } else { &none };
+        [layer_start, interpass, measure].concat()
+    }
+
+    /// Removes, for a dry run, whatever deals with the arc.
+    pub(in crate::dialect) fn dry_run(&mut self) {
+        (self.arc_established, self.before_arc_off) = (Vec::new(), Vec::new());
+    }
+}
