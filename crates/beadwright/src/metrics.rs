@@ -102,7 +102,7 @@ impl Metrics {
         self.slice_area_mm2 += layer.slice_area;
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += layer.slice_area * layer.height;
-        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten() {
+        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten() {
             self.travel_length_mm += pause.length;
             self.dwell_time_s += pause.seconds;
             self.total_time_s += pause.moving + pause.seconds;

@@ -169,7 +169,8 @@ impl Programmer {
 
     /// Programs passes as they are welded; a dry run has the same moves and no arc.
     pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
-        let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker();
+        let other_layers = !weld.process.layers.is_empty();
+        let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let programmer = Self { torch, sets_feed, restarts, dry, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
@@ -203,7 +204,7 @@ impl Programmer {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
-        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer()).flatten();
+        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut pause, &mut instructions);
         }
@@ -252,7 +253,7 @@ impl Programmer {
         }
         let seconds = self.torch.weld(&moves).crater;
         if seconds > 0.0 {
-            let ratio = Some(self.torch.ends().crater_power).filter(|_| self.sets_feed);
+            let ratio = Some(self.torch.crater_feed()).filter(|_| self.sets_feed);
             self.feed = ratio;
             out.push(Instruction::Crater { seconds, ratio });
         }

@@ -48,7 +48,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     let found = studio.plans.own.layer(layer).and_then(|layer| layer.passes.get(pass));
     let (Some(found), Some(profile)) = (found, &studio.plans.own.profile) else { return };
     let Some(segment) = found.segments().nth(piece) else { return };
-    let process = &profile.process;
+    let process = &profile.process.at_layer(layer);
     let metal: f64 = found.segments().map(|s| s.length() / s.pace).sum();
     let wire = process.wire_feed_speed / 60.0 * metal;
     let heat = process.heat_at(segment.pace);

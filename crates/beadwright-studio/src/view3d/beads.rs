@@ -130,7 +130,7 @@ impl LayerBeads {
             boxes: Vec::new(),
             seconds: 0.0,
         };
-        if let Some(pause) = (!layer.passes.is_empty()).then(|| torch.begin_layer()).flatten() {
+        if let Some(pause) = (!layer.passes.is_empty()).then(|| torch.begin_layer(layer.index)).flatten() {
             beads.seconds = pause.moving + pause.seconds;
         }
         for pass in &layer.passes {

@@ -1,5 +1,6 @@
 //! Heat over the limit.
 
+use crate::process::Process;
 use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
@@ -14,12 +15,15 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (profile, limits) = (subject.profile, &subject.profile.check);
     let process = &profile.process;
-    let over = |pace: f64| process.heat_at(pace).zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit);
+    let over = |process: &Process, pace: f64| {
+        process.heat_at(pace).zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit)
+    };
     let sentence = |(heat, limit)| format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm.");
-    let everywhere = over(process.deposition_speed).map(|found| Finding::of_plan(&CHECK, sentence(found)));
+    let everywhere = over(process, process.deposition_speed).map(|found| Finding::of_plan(&CHECK, sentence(found)));
     // Wider beads have more metal and more heat.
     let wide = subject.passes().filter(|_| everywhere.is_none()).filter_map(|(layer, i, pass)| {
-        let (s, found) = pass.segments().find_map(|s| Some((s, over(s.pace)?)))?;
+        let process = process.at_layer(layer.index);
+        let (s, found) = pass.segments().find_map(|s| Some((s, over(&process, s.pace)?)))?;
         Some(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), sentence(found)))
     });
     let hot: Vec<Finding> = everywhere.clone().into_iter().chain(wide).collect();

@@ -18,6 +18,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (low, high) = (limits.min_speed.unwrap_or(0.25 * nominal), limits.max_speed.unwrap_or(4.0 * nominal));
     let mut findings = Vec::new();
     for (layer, i, pass) in subject.passes() {
+        let process = process.at_layer(layer.index);
         // A range does not hold NaN.
         let outside = |pace: f64| !(low..=high).contains(&process.speed_at(pace)) || !pace.is_finite();
         if let Some(s) = pass.segments().find(|s| outside(s.pace)) {

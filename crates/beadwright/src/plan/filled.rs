@@ -119,7 +119,7 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize,
     let (shortest, soonest) = (profile.fill.min_pass_length, profile.soonest_arc_end());
     stage.retain(|pass| {
         let length = pass.length();
-        let steady = length >= shortest && arc_time(pass, profile) >= soonest;
+        let steady = length >= shortest && arc_time(pass, profile, layer) >= soonest;
         let keep = steady && pass.points.len() >= 2;
         // A zigzag that touches a corner with a line of no length loses nothing.
         if !keep && length > 0.1 * shortest {
@@ -131,12 +131,13 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize,
 }
 
 /// How long the torch takes along a pass, s.
-fn arc_time(pass: &Path, profile: &Profile) -> f64 {
+fn arc_time(pass: &Path, profile: &Profile, layer: usize) -> f64 {
+    let process = profile.process.at_layer(layer);
     let (bead, nominal) = (profile.bead(), profile.process.deposition_speed);
     let path = pass.path();
     let time = |(i, ends): (usize, &[DVec2])| {
         let pace = nominal * profile.bead.law.pace(&bead, pass.width.after(i));
-        ends[0].distance(ends[1]) / profile.process.speed_at(pace)
+        ends[0].distance(ends[1]) / process.speed_at(pace)
     };
     path.windows(2).enumerate().map(time).sum()
 }

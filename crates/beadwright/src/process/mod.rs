@@ -1,7 +1,9 @@
 //! The process: wire, arc, speed, gas, moves with the arc off, and how passes begin and end; sections of a profile.
 
+mod by_layer;
 mod start_stop;
 
+pub use by_layer::LayerProcess;
 pub use start_stop::StartStop;
 
 use crate::limit::{Limit, TINY, limits};
@@ -64,6 +66,23 @@ pub struct Process {
     pub gas_postflow: f64,
     /// Contact tip to work distance, mm.
     pub ctwd: f64,
+    /// Job of the power source, `{{job}}` in templates; default 1.
+    #[serde(default = "first")]
+    pub job: u32,
+    /// Other speeds for some layers; default none.
+    #[serde(default)]
+    pub layers: Vec<LayerProcess>,
+    /// Speed and wire feed of the present layer as a multiple of the nominal ones.
+    #[serde(skip, default = "nominal")]
+    rate: f64,
+}
+
+fn first() -> u32 {
+    1
+}
+
+fn nominal() -> f64 {
+    1.0
 }
 
 impl Process {
@@ -99,16 +118,21 @@ impl Process {
     /// Speed of the torch at a given pace of the metal, mm/s.
     pub fn speed_at(&self, pace: f64) -> f64 {
         match self.follow {
-            Follow::Speed => pace,
-            Follow::WireFeed => self.deposition_speed,
+            Follow::Speed => pace * self.rate,
+            Follow::WireFeed => self.deposition_speed * self.rate,
         }
+    }
+
+    /// The nominal wire feed of the present layer, as a multiple of that of the process.
+    pub fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// Wire feed at a given pace of the metal (mm/s), as a multiple of the nominal wire feed.
     pub fn feed_at(&self, pace: f64) -> f64 {
         match self.follow {
-            Follow::Speed => 1.0,
-            Follow::WireFeed => self.deposition_speed / pace,
+            Follow::Speed => self.rate,
+            Follow::WireFeed => self.rate * self.deposition_speed / pace,
         }
     }
 
@@ -116,7 +140,7 @@ impl Process {
     /// whether the speed or the wire feed changes, since the current follows the wire feed in the arcs used here
     /// (synergic lines, CMT). `None` if current or voltage is not given.
     pub fn heat_at(&self, pace: f64) -> Option<f64> {
-        Some(self.current? * self.voltage? / pace)
+        Some(self.current? * self.voltage? / (pace * self.rate))
     }
 }
 

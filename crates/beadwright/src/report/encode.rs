@@ -105,6 +105,7 @@ fn body(layer: &Layer, process: &Process, origin: DVec2, resolution: f64) -> Vec
 }
 
 fn table(layer: &Layer, process: &Process) -> Vec<u32> {
+    let process = process.at_layer(layer.index);
     let mut table = vec![layer.islands.len() as u32];
     for island in &layer.islands {
         table.push(island.rings().count() as u32);

@@ -11,7 +11,9 @@ const WAIT_STEP: f64 = 0.01;
 /// Where the torch stands, and how long the layer has taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Torch {
+    /// As it is in the present layer, and as the profile has it.
     process: Option<Process>,
+    nominal: Option<Process>,
     ends: StartStop,
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
@@ -72,6 +74,7 @@ impl Torch {
     pub fn new(clearance: f64) -> Self {
         Self {
             process: None,
+            nominal: None,
             ends: StartStop::default(),
             motion: None,
             arc_end_time: None,
@@ -87,7 +90,8 @@ impl Torch {
     pub fn of(settings: &WeldSettings) -> Self {
         let WeldSettings { process, ends, travel, motion, arc_end_time } = settings.clone();
         Self {
-            process: Some(process),
+            process: Some(process.at_layer(0)),
+            nominal: Some(process),
             ends,
             motion,
             arc_end_time,
@@ -116,8 +120,14 @@ impl Torch {
         self.process.as_ref().map_or(1.0, |process| process.feed_at(pace))
     }
 
-    /// Begins a layer, with the wait that the previous layer needs.
-    pub fn begin_layer(&mut self) -> Option<Pause> {
+    /// Wire feed in a crater, as a multiple of the nominal one.
+    pub fn crater_feed(&self) -> f64 {
+        self.ends.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
+    }
+
+    /// Begins the layer with an index, with the wait that the previous layer needs.
+    pub fn begin_layer(&mut self, index: usize) -> Option<Pause> {
+        self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
         let missing = self.ends.min_layer_time - self.seconds;
         let seconds = (missing.max(self.ends.interpass_time).max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
         self.seconds = 0.0;
@@ -180,7 +190,8 @@ impl Torch {
             _ => steady,
         };
         let crater = self.ends.crater_fill_time;
-        let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + crater * self.ends.crater_power;
+        let filling = crater * self.crater_feed();
+        let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + filling;
         let [before, after] = self.delays();
         let welded = Welded {
             length: pieces().map(|p| p.0).sum(),

@@ -78,6 +78,9 @@ pub(super) fn check(job: &Job<'_>) -> Result<(), DialectError> {
     if job.weld.process.follow == Follow::WireFeed {
         return cannot("process.follow = \"wire-feed\" with arc = \"arctech\"", "Take process.follow = \"speed\".");
     }
+    if !job.weld.process.layers.is_empty() {
+        return cannot("[[process.layers]] with arc = \"arctech\"", "Take arc = \"outputs\", or the same speed for all layers.");
+    }
     if job.weld.ends.crater_fill_time > 0.0 {
         return cannot("a start_stop.crater_fill_time with arc = \"arctech\"", "Take krl.arctech.crater.time instead.");
     }

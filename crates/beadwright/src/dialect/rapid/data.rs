@@ -58,7 +58,7 @@ fn zone(radius: f64) -> String {
 }
 
 /// Arcdata with the fraction `part` of the process's wire feed.
-fn arc(process: &Process, rapid: &Rapid, part: f64) -> String {
+fn arc(process: &Process, rapid: &Rapid, part: f64, schedule: u32) -> String {
     let feed = part * process.wire_feed_speed;
     let feed = match rapid.wire_feed_unit {
         WireFeedUnit::MetresPerMinute => feed,
@@ -66,14 +66,14 @@ fn arc(process: &Process, rapid: &Rapid, part: f64) -> String {
     };
     let numbers = [rapid.voltage, feed, rapid.control, process.current.unwrap_or(0.0)];
     let [voltage, feed, control, current] = numbers.map(|v| fixed(v, 3));
-    format!("[{},{},{voltage},{feed},{control},{current},0,0,0]", rapid.schedule, rapid.mode)
+    format!("[{schedule},{},{voltage},{feed},{control},{current},0,0,0]", rapid.mode)
 }
 
 /// Seamdata.
 fn seam(process: &Process, rapid: &Rapid) -> String {
     let seam = &rapid.seam;
     let time = |seconds: f64| fixed(seconds, 3);
-    let main = arc(process, rapid, 1.0);
+    let main = arc(process, rapid, 1.0, rapid.schedule);
     [
         time(seam.purge_time),
         time(process.gas_preflow),
@@ -83,10 +83,10 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
         fixed(seam.heat_speed, 3),
         time(seam.heat_time),
         fixed(seam.heat_distance, 3),
-        arc(process, rapid, seam.heat_feed),
+        arc(process, rapid, seam.heat_feed, rapid.schedule),
         time(seam.cool_time),
         time(seam.fill_time),
-        arc(process, rapid, seam.fill_feed),
+        arc(process, rapid, seam.fill_feed, rapid.schedule),
         time(seam.burnback_time),
         time(seam.rollback_time),
         main,
@@ -96,9 +96,10 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
 }
 
 /// Welddata for a deposition speed, mm/s, and the fraction `feed` of the wire feed. The tuning values are 0, as in
-/// ABB's examples.
-pub(super) fn weld(speed: f64, feed: f64, process: &Process, rapid: &Rapid) -> String {
-    format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed))
+/// ABB's examples. `process` is that of the layer; a job of its own takes the place of the schedule.
+pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, rapid: &Rapid) -> String {
+    let schedule = if process.job == nominal.job { rapid.schedule } else { process.job };
+    format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
 }
 
 /// The data of the main module: tool, part, home, speeds, zone and seam, one declaration each.

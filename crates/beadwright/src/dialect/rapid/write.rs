@@ -81,7 +81,7 @@ impl AbbRapid {
         let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
         text.reserve(moves.len() * 150);
         let z = fixed(program.z, 3);
-        self.declare(&mut text, speeds);
+        self.declare(&mut text, program.index, speeds);
         text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
         if part == 0 {
             let lines = self.rapid.hooks.before_layer(&self.rapid.layer_start, program.index, &self.program);
@@ -184,12 +184,13 @@ impl AbbRapid {
         speeds
     }
 
-    fn declare(&self, text: &mut String, speeds: &Speeds) {
+    fn declare(&self, text: &mut String, layer: usize, speeds: &Speeds) {
+        let process = self.process.at_layer(layer);
         for (i, &(speed, pace)) in speeds.iter().enumerate() {
             let speed = speed as f64 / 1000.0;
             let declaration = if self.with_arc() {
                 let feed = pace.map_or(1.0, |pace| self.process.deposition_speed * 1000.0 / pace as f64);
-                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &self.process, &self.rapid))
+                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &process, &self.process, &self.rapid))
             } else {
                 format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
             };

@@ -2,6 +2,7 @@
 
 use super::Job;
 use crate::number::fixed;
+use crate::process::Process;
 use crate::program::LayerProgram;
 use crate::template;
 use crate::weld::retract_time;
@@ -10,11 +11,12 @@ use crate::weld::retract_time;
 pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
 
 /// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program goes on.
-pub const PLACEHOLDERS: [Placeholder; 26] = [
+pub const PLACEHOLDERS: [Placeholder; 27] = [
     ("program", |job| job.part.clone()),
     ("layer", |_| String::new()),
     ("pass", |_| String::new()),
     ("pass_number", |_| String::new()),
+    ("job", |job| job.weld.process.job.to_string()),
     ("layers", |_| String::new()),
     ("z", |_| String::new()),
     ("arc_timeout", |job| job.safety.arc_timeout.to_string()),
@@ -48,20 +50,25 @@ fn retract(job: &Job<'_>) -> f64 {
 }
 
 /// The values of the placeholders as a program goes on.
-pub(in crate::dialect) struct Values(Vec<(&'static str, String)>);
+pub(in crate::dialect) struct Values {
+    values: Vec<(&'static str, String)>,
+    process: Process,
+}
 
 impl Values {
     /// The values at the beginning; `program` is the name of the program in the dialect.
     pub(in crate::dialect) fn new(program: &str, job: &Job<'_>) -> Self {
-        let mut values = Self(PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect());
+        let values = PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect();
+        let mut values = Self { values, process: job.weld.process.clone() };
         values.set("program", program);
         values
     }
 
-    /// Sets number and height of the layer.
+    /// Sets number, height and job of the layer.
     pub(in crate::dialect) fn set_layer(&mut self, layer: &LayerProgram) {
         self.set("layer", layer.index + 1);
         self.set("z", fixed(layer.z, 3));
+        self.set("job", self.process.at_layer(layer.index).job);
     }
 
     /// Sets the wait for the next templates, s.
@@ -77,12 +84,12 @@ impl Values {
     }
 
     pub(in crate::dialect) fn set(&mut self, name: &str, value: impl ToString) {
-        for (_, v) in self.0.iter_mut().filter(|(known, _)| *known == name) {
+        for (_, v) in self.values.iter_mut().filter(|(known, _)| *known == name) {
             *v = value.to_string();
         }
     }
 
     pub(in crate::dialect) fn expand<'a>(&'a self, lines: &'a [String]) -> impl Iterator<Item = String> + 'a {
-        lines.iter().map(|line| template::expand(line, &self.0))
+        lines.iter().map(|line| template::expand(line, &self.values))
     }
 }
