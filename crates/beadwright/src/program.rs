@@ -8,9 +8,11 @@
 mod safety;
 mod settings;
 mod spread;
+mod weave;
 
 pub use safety::Safety;
 pub use settings::ProgramSettings;
+pub use weave::Weave;
 
 use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};

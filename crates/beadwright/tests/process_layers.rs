@@ -12,7 +12,8 @@ use common::{planned, profile};
 /// The first two layers at 1.25 times the speed, with job 7.
 fn faster(mut profile: Profile) -> Profile {
     let speed = 1.25 * profile.process.deposition_speed;
-    profile.process.layers = vec![LayerProcess { from: 1, to: 2, deposition_speed: speed, current: None, job: Some(7) }];
+    profile.process.layers =
+        vec![LayerProcess { from: 1, to: 2, deposition_speed: speed, current: None, job: Some(7) }];
     profile
 }
 
@@ -24,7 +25,9 @@ fn the_beads_stay_the_same_and_take_less_time() {
         let [plain, other] = [profile.clone(), faster(profile)].map(|profile| planned("cross", &profile));
         assert_eq!(plain.layers, other.layers);
         let [a, b] = [&plain.summary.metrics, &other.summary.metrics];
-        assert!((a.wire_length_m / b.wire_length_m - 1.0).abs() < 1e-12 && a.deposited_volume_mm3 == b.deposited_volume_mm3);
+        assert!(
+            (a.wire_length_m / b.wire_length_m - 1.0).abs() < 1e-12 && a.deposited_volume_mm3 == b.deposited_volume_mm3
+        );
         // Two of the layers take a fifth less time with the arc on.
         let arc = |layers: usize| -> f64 {
             let seconds = |s: beadwright::pass::Segment| s.length() / plain_speed(follow, s.pace);

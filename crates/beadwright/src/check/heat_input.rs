@@ -1,7 +1,7 @@
 //! Heat over the limit.
 
-use crate::process::Process;
 use super::{Check, Finding, Subject};
+use crate::process::Process;
 
 pub(super) const CHECK: Check = Check {
     name: "heat-input",

@@ -62,6 +62,16 @@ pub trait Section {
         false
     }
 
+    /// Whether its layers can have heights to be added (`program.layer_offsets`).
+    fn offsets_layers(&self) -> bool {
+        false
+    }
+
+    /// Whether its controller weaves by itself (`[weave]`).
+    fn weaves(&self) -> bool {
+        false
+    }
+
     /// The lines at other places of programs, if the dialect has them.
     fn hooks(&self) -> Option<&Hooks> {
         None

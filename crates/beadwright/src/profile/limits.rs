@@ -35,6 +35,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.travel.limits(),
         p.program.limits(w),
         p.safety.limits(),
+        p.weave.iter().flat_map(|weave| weave.limits()).collect(),
         p.one_loop.limits(),
         p.start_stop.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),

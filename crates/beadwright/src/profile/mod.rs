@@ -38,7 +38,7 @@ use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop, Travel, Wire};
-use crate::program::{ProgramSettings, Programmer, Safety};
+use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
 use glam::DVec2;
@@ -121,6 +121,8 @@ pub struct Profile {
     /// What the cell must supply; optional.
     #[serde(default)]
     pub safety: Safety,
+    /// How the torch swings along a pass; optional.
+    pub weave: Option<Weave>,
     /// How passes begin and end, and how long layers wait; optional.
     #[serde(default)]
     pub start_stop: StartStop,
@@ -339,6 +341,7 @@ impl Profile {
             weld: self.weld_settings(),
             program: &self.program,
             safety: &self.safety,
+            weave: self.weave.as_ref(),
             dry_run: self.dry_run,
         }
     }

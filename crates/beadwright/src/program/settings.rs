@@ -32,6 +32,10 @@ pub struct ProgramSettings {
     /// head, holds the layer times 10000 plus the pass at which to begin, and 0 to begin at the beginning. For robots and
     /// LinuxCNC; others take `plan --from-layer --from-pass`. Default false.
     pub restart: bool,
+    /// Whether every layer has a height of its own to be added, 0 mm to begin with, that can be set in the program between
+    /// layers: an array in KRL, RAPID and URScript, a line in each layer's program for FANUC; other posts refuse it. Default
+    /// false.
+    pub layer_offsets: bool,
     /// Before every how many layers the lines of `hooks.measure` are written; default 10.
     pub measure_every: usize,
 }
@@ -46,6 +50,7 @@ impl Default for ProgramSettings {
             torch_angle: 0.0,
             table_angle: None,
             restart: false,
+            layer_offsets: false,
             measure_every: 10,
         }
     }

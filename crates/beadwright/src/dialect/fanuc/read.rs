@@ -71,6 +71,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         off: Patterns::new(&options.arc.off),
         frame: None,
         registers: HashMap::new(),
+        unshifted: false,
     };
     let main = reader.listing(None, text)?;
     if main.statements.is_empty() {
@@ -90,6 +91,8 @@ struct Reader<'a> {
     frame: Option<u32>,
     /// Registers with a plain number, such as `R[1]`.
     registers: HashMap<String, f64>,
+    /// Whether the offset of motions is known to be 0.
+    unshifted: bool,
 }
 
 impl Reader<'_> {
@@ -175,6 +178,10 @@ impl Reader<'_> {
             if let Some((_, called)) = text.split_once("CALL ").filter(|_| is(&"IF")) {
                 return self.call(called, line, depth);
             }
+        } else if let Some((_, value)) = flat.split_once(",3]=").filter(|_| flat.starts_with("PR[")) {
+            // The height that is added to a layer; ours is 0 until somebody sets it.
+            self.unshifted = number(value) == Some(0.0);
+        } else if flat.starts_with("OFFSETCONDITION") {
         } else if let Some((register, value)) = flat.split_once('=').filter(|_| flat.starts_with("R[")) {
             match number(value) {
                 Some(value) => self.registers.insert(register.to_owned(), value),
@@ -233,7 +240,7 @@ impl Reader<'_> {
         }
         let flat = compact(rest);
         let relative = rest.split_whitespace().any(|w| w.eq_ignore_ascii_case("INC"));
-        if flat.contains("OFFSET") {
+        if flat.contains("OFFSET") && !self.unshifted {
             self.trace.note("an offset of a motion", "is not applied", line);
         }
         let speed = rest.split_whitespace().next().unwrap_or_default();

@@ -68,6 +68,9 @@ pub struct Fanuc {
     /// Register that holds where to begin, for `program.restart`; default 90.
     #[serde(default = "ninety")]
     pub restart_register: u32,
+    /// Position register that holds the height to be added to a layer, for `program.layer_offsets`; default 90.
+    #[serde(default = "ninety")]
+    pub offset_register: u32,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
@@ -85,6 +88,7 @@ impl Section for Fanuc {
             "fanuc.home_speed": self.home_speed, 1.0, 100.0, "%", CONTROLLER;
             "fanuc.continuity": self.continuity.into(), 0.0, 100.0, "(CNT)", CONTROLLER;
             "fanuc.restart_register": self.restart_register.into(), 1.0, 1500.0, "(register)", CONTROLLER;
+            "fanuc.offset_register": self.offset_register.into(), 1.0, 100.0, "(position register)", CONTROLLER;
             "fanuc.max_points": self.max_points as f64, 10.0, 3000.0, "moves per program",
                 "larger programs do not load into the controller";
         };
@@ -113,6 +117,14 @@ impl Section for Fanuc {
     }
 
     fn restarts(&self) -> bool {
+        true
+    }
+
+    fn weaves(&self) -> bool {
+        true
+    }
+
+    fn offsets_layers(&self) -> bool {
         true
     }
 

@@ -8,7 +8,7 @@ use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, r
 use crate::number::fixed;
 use super::section::{Fanuc, FanucSpeed};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram, ProgramSettings};
+use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -34,6 +34,7 @@ pub(super) struct FanucTp {
     supplies: Vec<String>,
     fanuc: Fanuc,
     program: ProgramSettings,
+    weave: Option<Weave>,
     values: Values,
     travel_speed: f64,
     nominal_speed: f64,
@@ -97,8 +98,8 @@ impl FanucTp {
         let travel_speed = job.weld.travel.speed;
         let comment = ascii(&job.part).replace('"', "_");
         let main = Program::default();
-        let (supplies, program) = (job.supplies(MAX_REMARK), job.program.clone());
-        Self { name, comment, supplies, fanuc, program, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
+        let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave.cloned());
+        Self { name, comment, supplies, fanuc, program, weave, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
@@ -137,6 +138,22 @@ impl FanucTp {
         self.lines(program, &self.fanuc.hooks.pass_start);
     }
 
+    /// The height to be added to a layer, which is set in its program.
+    fn offset(&self, program: &mut Program) {
+        if self.program.layer_offsets {
+            let register = self.fanuc.offset_register;
+            program.line("  !mm added to this layer");
+            program.line(&format!("  PR[{register}]=LPOS-LPOS"));
+            program.line(&format!("  PR[{register},3]=0"));
+            program.line(&format!("  OFFSET CONDITION PR[{register}]"));
+        }
+    }
+
+    /// What a motion ends with where its layer has a height to be added.
+    fn offset_word(&self) -> &'static str {
+        if self.program.layer_offsets { " Offset" } else { "" }
+    }
+
     fn frames(&self, program: &mut Program) {
         program.line(&format!("  UFRAME_NUM={}", self.fanuc.user_frame));
         program.line(&format!("  UTOOL_NUM={}", self.fanuc.tool_frame));
@@ -171,24 +188,29 @@ impl FanucTp {
         match instruction {
             Instruction::Approach { to } => {
                 let number = self.pose(program, to);
-                program.line(&format!("J P[{number}] {}% FINE", fixed(self.fanuc.home_speed, 0)));
+                program.line(&format!("J P[{number}] {}% FINE{}", fixed(self.fanuc.home_speed, 0), self.offset_word()));
             }
             Instruction::Travel { to } | Instruction::Retract { to } => {
                 let number = self.pose(program, to);
                 // L takes at most 2000 mm/sec.
-                program.line(&format!("L P[{number}] {}mm/sec FINE", fixed(self.travel_speed.clamp(0.1, 2000.0), 1)));
+                program.line(&format!("L P[{number}] {}mm/sec FINE{}", fixed(self.travel_speed.clamp(0.1, 2000.0), 1), self.offset_word()));
             }
             Instruction::ArcOn { pass, kind } => {
                 self.values.set("pass", pass);
                 program.line(&format!("  !pass {pass} {}", kind.name()));
                 self.lines(program, &self.fanuc.arc_on);
                 self.lines(program, &self.fanuc.hooks.arc_established);
+                if let Some(weave) = &self.weave {
+                    let [hertz, amplitude] = [self.nominal_speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
+                    let dwell = fixed(weave.dwell, 3);
+                    program.line(&format!("  Weave Sine[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]"));
+                }
             }
             Instruction::Weld { to, circle, speed, last } => {
                 let via = circle.map(|circle| self.pose(program, circle.via));
                 let number = self.pose(program, to);
                 let end = if last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
-                let end = format!("P[{number}] {} {end}", self.speed(speed));
+                let end = format!("P[{number}] {} {end}{}", self.speed(speed), self.offset_word());
                 match via {
                     Some(via) => program.line(&format!("C P[{via}]\r\n    :  {end}")),
                     None => program.line(&format!("L {end}")),
@@ -207,6 +229,9 @@ impl FanucTp {
             }
             Instruction::Dwell { seconds } => wait(program, seconds),
             Instruction::ArcOff { .. } => {
+                if self.weave.is_some() {
+                    program.line("  Weave End");
+                }
                 self.lines(program, &self.fanuc.hooks.before_arc_off);
                 self.lines(program, &self.fanuc.arc_off);
             }
@@ -255,6 +280,7 @@ impl Writer for FanucTp {
             let name = format!("{}_L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut program = Program::default();
             self.frames(&mut program);
+            self.offset(&mut program);
             if i == 0 {
                 program.line(&format!("  !layer {}, z {} mm", layer.index + 1, fixed(layer.z, 3)));
                 let lines = self.fanuc.hooks.before_layer(&self.fanuc.layer_start, layer.index, &self.program);

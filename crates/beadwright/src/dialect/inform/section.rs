@@ -128,6 +128,10 @@ impl Section for Inform {
         true
     }
 
+    fn weaves(&self) -> bool {
+        true
+    }
+
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
     }

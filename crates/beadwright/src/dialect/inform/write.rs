@@ -8,7 +8,7 @@
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Inform, InformSpeed};
-use crate::program::{Instruction, LayerProgram, ProgramSettings};
+use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -28,6 +28,7 @@ pub(super) struct YaskawaInform {
     supplies: Vec<String>,
     inform: Inform,
     program: ProgramSettings,
+    weave: Option<Weave>,
     values: Values,
     travel_speed: f64,
     wire_feed_speed: f64,
@@ -75,6 +76,7 @@ impl YaskawaInform {
             supplies: job.supplies(MAX_COMMENT),
             inform,
             program: job.program.clone(),
+            weave: job.weave.cloned(),
             values,
             travel_speed,
             wire_feed_speed: job.weld.process.wire_feed_speed,
@@ -164,6 +166,7 @@ impl YaskawaInform {
                 job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
                 self.lines(&mut job.instructions, &self.inform.arc_on);
                 self.lines(&mut job.instructions, &self.inform.hooks.arc_established);
+                self.weave.iter().for_each(|weave| job.line(&format!("WVON WEV#({})", weave.file)));
             }
             Instruction::Weld { to, circle, speed, last } => {
                 let level = if last { 0 } else { self.inform.position_level };
@@ -190,6 +193,7 @@ impl YaskawaInform {
             }
             Instruction::Dwell { seconds } => wait(job, seconds),
             Instruction::ArcOff { .. } => {
+                self.weave.iter().for_each(|_| job.line("WVOF"));
                 self.lines(&mut job.instructions, &self.inform.hooks.before_arc_off);
                 self.lines(&mut job.instructions, &self.inform.arc_off);
             }

@@ -11,6 +11,7 @@ use crate::number::{fixed, push_fixed};
 use super::arctech_section::ArcTech;
 use super::section::Krl;
 use crate::dialect::{DialectError, Job};
+use crate::program::Weave;
 use crate::process::{Follow, Process};
 use std::fmt::Write as _;
 
@@ -65,6 +66,8 @@ pub(super) struct Forms {
     postflow: f64,
     /// Speed without arc, m/s.
     travel: String,
+    /// Contents of the weave's data.
+    weave: String,
     /// Contents of the weld data sets so far, in order: set n is at index n − 1.
     sets: Vec<String>,
     points: usize,
@@ -93,7 +96,7 @@ pub(super) fn check(job: &Job<'_>) -> Result<(), DialectError> {
 
 impl Forms {
     /// Forms of a module; `travel_speed` in mm/s.
-    pub(super) fn new(arctech: &ArcTech, krl: &Krl, process: &Process, travel_speed: f64) -> Self {
+    pub(super) fn new(arctech: &ArcTech, krl: &Krl, process: &Process, weave: Option<&Weave>, travel_speed: f64) -> Self {
         Self {
             version: arctech.number().unwrap_or_default(),
             arctech: arctech.clone(),
@@ -104,6 +107,7 @@ impl Forms {
             preflow: process.gas_preflow,
             postflow: process.gas_postflow,
             travel: fixed(travel_speed / 1000.0, 6),
+            weave: pattern(weave),
             sets: Vec::new(),
             points: 0,
             data: String::new(),
@@ -144,12 +148,12 @@ impl Forms {
     fn weld_set(&self, speed: f64) -> String {
         let ArcTech { weld, .. } = &self.arctech;
         format!(
-            "Weld {{JobModeId[] \"{}\",ParamSetId[] \"{}\",Velocity {},{}}},Weave {{Pattern #None,Length 4.00000,\
-             Amplitude 2.00000,Angle 0.0,LeftSideDelay 0.0,RightSideDelay 0.0}}",
+            "Weld {{JobModeId[] \"{}\",ParamSetId[] \"{}\",Velocity {},{}}},Weave {{{}}}",
             weld.mode,
             weld.set,
             fixed(speed / 1000.0, 6),
-            channels(&weld.channels)
+            channels(&weld.channels),
+            self.weave
         )
     }
 
@@ -261,6 +265,19 @@ fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
             trigger(&path("OnTheFlyArcOff"), "0", "ArcOffMoveStd");
         }
     }
+}
+
+/// How the torch swings; the lengths of no pattern are those of the package.
+fn pattern(weave: Option<&Weave>) -> String {
+    let (name, length, amplitude, dwell) = match weave {
+        Some(weave) => ("Triangle", weave.length, weave.amplitude, weave.dwell),
+        None => ("None", 4.0, 2.0, 0.0),
+    };
+    let dwell = fixed(dwell, if weave.is_some() { 3 } else { 1 });
+    let [length, amplitude] = [length, amplitude].map(|v| fixed(v, 5));
+    format!(
+        "Pattern #{name},Length {length},Amplitude {amplitude},Angle 0.0,LeftSideDelay {dwell},RightSideDelay {dwell}"
+    )
 }
 
 fn channels(values: &[f64; 8]) -> String {

@@ -7,7 +7,7 @@ mod section;
 mod write;
 
 pub use arctech_section::{ArcTech, ArcTechCrater, ArcTechStrike, ArcTechWeld, KrlArc};
-pub use section::Krl;
+pub use section::{Krl, KrlMotion};
 
 use super::Dialect;
 

@@ -199,7 +199,12 @@ impl Reader<'_> {
     fn declaration(&mut self, line: &str, number: usize, source: &mut Source) -> Result<(), ReadError> {
         let Some((left, value)) = line.split_once('=') else { return Ok(()) };
         let mut words = left.split_whitespace().rev();
-        let (Some(variable), Some(kind)) = (words.next(), words.next()) else { return Ok(()) };
+        let Some(variable) = words.next() else { return Ok(()) };
+        let Some(kind) = words.next() else {
+            // An element of an array.
+            self.values.extend(words::number(value).map(|value| (variable.to_ascii_uppercase(), value)));
+            return Ok(());
+        };
         let is = |name: &str| kind.eq_ignore_ascii_case(name);
         if ["E6POS", "POS", "FRAME", "E6AXIS", "AXIS"].into_iter().any(is) {
             let target = self.aggregate(value, number)?;
@@ -312,6 +317,11 @@ impl Reader<'_> {
             self.trace.note(&word.to_ascii_uppercase(), "is not followed: its lines were read once", number);
         } else if rest.starts_with('(') && !SYSTEM.iter().any(is) {
             return self.call(word, rest, number, source, depth);
+        } else if let Some(component) = flat.split_once("_SHIFT.Z=").map(|(_, component)| component) {
+            // A height to be added to a layer; ours are 0 until somebody sets them.
+            if self.values.get(component) != Some(&0.0) {
+                self.trace.note("a height added to a layer", "is not applied", number);
+            }
         } else if rest.starts_with(['.', '[', '=']) {
             if let Some(value) = rest.strip_prefix('=') {
                 self.assign(word, value);

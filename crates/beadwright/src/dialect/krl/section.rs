@@ -34,6 +34,10 @@ pub struct Krl {
     /// with a main program of its own, which are loaded and run one after another; default 4.
     #[serde(default = "four")]
     pub max_megabytes: f64,
+    /// How the pieces of a pass are run: `lin` (LIN and CIRC, blended by C_DIS) or `slin` (SLIN and SCIRC, blended by C_SPL,
+    /// which keep the speed better); default lin.
+    #[serde(default)]
+    pub motion: KrlMotion,
     /// What switches the arc: `outputs` (the lines `arc_on` and `arc_off`) or `arctech` (the inline forms of ArcTech
     /// Basic); default outputs.
     #[serde(default)]
@@ -66,6 +70,18 @@ pub struct Krl {
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
+}
+
+/// How KRL runs the pieces of a pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum KrlMotion {
+    /// `LIN … C_DIS`
+    #[default]
+    Lin,
+    /// `SLIN … C_SPL`
+    Slin,
 }
 
 fn four() -> f64 {
@@ -118,6 +134,14 @@ impl Section for Krl {
     }
 
     fn restarts(&self) -> bool {
+        true
+    }
+
+    fn weaves(&self) -> bool {
+        self.arc == KrlArc::Arctech
+    }
+
+    fn offsets_layers(&self) -> bool {
         true
     }
 

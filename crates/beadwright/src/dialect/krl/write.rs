@@ -9,9 +9,9 @@ use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
-use super::section::Krl;
+use super::section::{Krl, KrlMotion};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram, ProgramSettings};
+use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
 
 /// Module names may have this many characters.
@@ -30,12 +30,14 @@ pub(super) struct KukaKrl {
     supplies: Vec<String>,
     krl: Krl,
     program: ProgramSettings,
+    weave: Option<Weave>,
     process: Process,
     values: Values,
     travel_speed: f64,
     /// Angle of the turn table, E1, °.
     table: Option<f64>,
     digits: usize,
+    layers: usize,
     /// Speed set last in the module, mm/s.
     speed: f64,
     volumes: Volumes,
@@ -52,8 +54,8 @@ impl KukaKrl {
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let table = job.program.table_angle;
         let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
-        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { name, comment, supplies, krl, program, process, values, travel_speed, table, digits: 3, speed: 0.0, volumes, main }
+        let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
+        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, digits: 3, layers: 0, speed: 0.0, volumes, main }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -68,6 +70,11 @@ impl KukaKrl {
         let mut text = self.head(&module);
         text.reserve(moves.len() * 70);
         text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
+        if self.program.layer_offsets {
+            let (main, base) = (&self.main, self.krl.base);
+            text.push_str(&format!("{main}_SHIFT.Z = {main}_DZ[{}]\r\n", program.index + 1));
+            text.push_str(&format!("$BASE = BASE_DATA[{base}]:{main}_SHIFT\r\n"));
+        }
         if part == 0 {
             let lines = self.krl.hooks.before_layer(&self.krl.layer_start, program.index, &self.program);
             self.skippable(&mut text, restart::last(program), &lines);
@@ -157,7 +164,7 @@ impl KukaKrl {
 
     fn forms(&self) -> Option<Forms> {
         let arctech = self.krl.arctech.as_ref().filter(|_| self.krl.arc == KrlArc::Arctech)?;
-        Some(Forms::new(arctech, &self.krl, &self.process, self.travel_speed))
+        Some(Forms::new(arctech, &self.krl, &self.process, self.weave.as_ref(), self.travel_speed))
     }
 
     /// Writes one instruction of a layer when ArcTech forms switch the arc; a form includes the move to its point.
@@ -193,15 +200,20 @@ impl KukaKrl {
         text
     }
 
+    /// Whether the pieces of passes are spline motions.
+    fn splines(&self) -> bool {
+        self.krl.motion == KrlMotion::Slin
+    }
+
     fn lin(&self, text: &mut String, to: DVec3, blend: bool) {
-        text.push_str("LIN ");
+        text.push_str(if self.splines() { "SLIN " } else { "LIN " });
         self.pose(text, to);
         self.end_move(text, blend);
     }
 
     /// `via` lies on the arc, less than half a turn from start and end.
     fn circ(&self, text: &mut String, via: DVec3, to: DVec3, blend: bool) {
-        text.push_str("CIRC ");
+        text.push_str(if self.splines() { "SCIRC " } else { "CIRC " });
         self.pose(text, via);
         text.push(',');
         self.pose(text, to);
@@ -209,7 +221,9 @@ impl KukaKrl {
     }
 
     fn end_move(&self, text: &mut String, blend: bool) {
-        text.push_str(if blend && self.krl.blend > 0.0 { " C_DIS\r\n" } else { "\r\n" });
+        let word = if self.splines() { " C_SPL" } else { " C_DIS" };
+        text.push_str(if blend && self.krl.blend > 0.0 { word } else { "" });
+        text.push_str("\r\n");
     }
 
     fn pose(&self, text: &mut String, to: DVec3) {
@@ -288,9 +302,9 @@ impl KukaKrl {
         let data = format!(
             "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}{}\r\nDECL E6AXIS XHOME={{{}}}\r\n{}ENDDAT\r\n",
             self.comment,
-            if self.program.restart { " PUBLIC" } else { "" },
+            if self.program.restart || self.program.layer_offsets { " PUBLIC" } else { "" },
             krl.home,
-            self.start_variable()
+            self.start_variable() + &if self.program.layer_offsets { self.offsets() } else { String::new() }
         );
         let mut text = self.head(name);
         self.supplies.iter().for_each(|line| text.push_str(&format!("; {line}\r\n")));
@@ -303,6 +317,14 @@ impl KukaKrl {
         self.lines(&mut text, &self.krl.start);
         text.push_str("PTP XHOME\r\n");
         vec![Chunk::new(format!("{name}.dat"), data), Chunk::new(format!("{name}.src"), text)]
+    }
+
+    /// The heights to be added to the layers.
+    fn offsets(&self) -> String {
+        let main = &self.main;
+        let mut text = format!("; mm to be added to the height of each layer\r\nDECL GLOBAL REAL {main}_DZ[{}]\r\n", self.layers);
+        (1..=self.layers).for_each(|layer| text.push_str(&format!("{main}_DZ[{layer}]=0.0\r\n")));
+        text + &format!("DECL GLOBAL FRAME {main}_SHIFT={{X 0.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}}\r\n")
     }
 
     /// The declaration of where to begin.
@@ -333,6 +355,7 @@ impl Writer for KukaKrl {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.values.set("layers", layers);
+        self.layers = layers;
         // Room for "_L" and the number, and for that of a part.
         self.name.truncate(MAX_NAME - 2 - self.digits - PART);
         self.begin_volume()

@@ -2,6 +2,7 @@
 
 use crate::number::{fixed, push_fixed};
 use super::section::{Rapid, WireFeedUnit};
+use crate::program::Weave;
 use crate::process::Process;
 use glam::DVec3;
 
@@ -100,6 +101,12 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
 pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, rapid: &Rapid) -> String {
     let schedule = if process.job == nominal.job { rapid.schedule } else { process.job };
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
+}
+
+/// Weavedata: a zigzag with all axes; RobotWare counts its width from side to side, and what it stays there as a way, mm.
+pub(super) fn weave(weave: &Weave, speed: f64) -> String {
+    let [length, width, dwell] = [weave.length, 2.0 * weave.amplitude, weave.dwell * speed].map(|v| fixed(v, 3));
+    format!("TASK PERS weavedata wvBead:=[1,0,{length},{width},0,{dwell},0,{dwell},0,0,0,0,0,0,0];")
 }
 
 /// The data of the main module: tool, part, home, speeds, zone and seam, one declaration each.

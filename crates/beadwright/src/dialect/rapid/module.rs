@@ -90,6 +90,17 @@ impl Module {
         self.statements.iter().filter_map(declaration).collect()
     }
 
+    /// Whether the array of that name has zeros only.
+    pub(super) fn zeros(&self, array: &str) -> bool {
+        let of = |(range, _): &(Range<usize>, usize)| {
+            let (left, value) = self.text[range.clone()].split_once(":=")?;
+            let name = left.split_whitespace().next_back()?.split('{').next()?;
+            name.eq_ignore_ascii_case(array).then_some(value)
+        };
+        let value = self.statements.iter().find_map(of);
+        value.is_some_and(|value| value.trim_matches(['[', ']', ' ']).split(',').all(|v| number(v) == Some(0.0)))
+    }
+
     pub(super) fn set(&mut self, variable: &str, value: Value) {
         self.data.insert(variable.to_ascii_uppercase(), value);
     }

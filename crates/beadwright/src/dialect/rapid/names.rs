@@ -8,7 +8,8 @@ pub(crate) const MAX_NAME: usize = 32;
 pub(crate) const MAX_FOLDER: usize = 40;
 
 /// Data that the post declares; welddata are `wd1`, `wd2`, …, speeddata of the plain variant `vd1`, `vd2`, ….
-pub(crate) const OWN: [&str; 7] = ["jHome", "vHome", "vTravel", "zBead", "smBead", "nStart", "main"];
+pub(crate) const OWN: [&str; 9] =
+    ["jHome", "vHome", "vTravel", "zBead", "smBead", "wvBead", "nStart", "nDz", "main"];
 
 /// Words of the language, and system data and types that a part might happen to be named after.
 const RESERVED: &str = "\

@@ -264,6 +264,14 @@ impl Reader<'_> {
             }
             return self.call(called, line, module, depth);
         }
+        if word.eq_ignore_ascii_case("PDispSet") {
+            // Heights added to layers are 0 until somebody sets them.
+            let ours = flat.to_ascii_uppercase().starts_with("PDISPSET[[0,0,NDZ{") && self.offsets_are_zero();
+            if !ours {
+                self.trace.note("PDispSet", "is not applied", line);
+            }
+            return Ok(());
+        }
         if HARMLESS.iter().any(|h| h.eq_ignore_ascii_case(word)) || word.is_empty() {
             let lights = flat.starts_with("SETDO") && flat.ends_with(",1");
             if lights || (flat.starts_with("SET") && !flat.contains(',')) {
@@ -286,6 +294,12 @@ impl Reader<'_> {
         }
         self.trace.note(word, "is not understood and was left out", line);
         Ok(())
+    }
+
+    /// Whether the heights that the main module adds to layers are all 0.
+    fn offsets_are_zero(&self) -> bool {
+        let zero = |module: &Rc<Module>| module.zeros("nDz");
+        self.modules.first().is_some_and(zero)
     }
 
     fn load_file(&mut self, text: &str, line: usize) -> Result<(), ReadError> {

@@ -230,6 +230,14 @@ impl Section for Rapid {
         true
     }
 
+    fn weaves(&self) -> bool {
+        self.arc == RapidArc::Instructions
+    }
+
+    fn offsets_layers(&self) -> bool {
+        true
+    }
+
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
     }

@@ -11,7 +11,7 @@ use crate::number::fixed;
 use super::{data, names};
 use super::section::{Rapid, RapidArc, RapidModules};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram, ProgramSettings};
+use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use crate::weld::retract_time;
 use glam::DVec3;
 
@@ -28,6 +28,7 @@ pub(super) struct AbbRapid {
     supplies: Vec<String>,
     rapid: Rapid,
     program: ProgramSettings,
+    weave: Option<Weave>,
     process: Process,
     values: Values,
     travel_speed: f64,
@@ -54,8 +55,8 @@ impl AbbRapid {
         let orientation = data::quaternion(&rapid.orientation);
         let axes = data::external_axes(job.program.table_angle);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
-        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { name, comment, supplies, rapid, program, process, values, travel_speed, orientation, axes, digits: 3 }
+        let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
+        Self { name, comment, supplies, rapid, program, weave, process, values, travel_speed, orientation, axes, digits: 3 }
     }
 
     fn numbered(&self, prefix: &str, index: usize) -> String {
@@ -83,6 +84,10 @@ impl AbbRapid {
         let z = fixed(program.z, 3);
         self.declare(&mut text, program.index, speeds);
         text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
+        if self.program.layer_offsets {
+            let shift = format!("PDispSet [[0,0,nDz{{{}}}],[1,0,0,0]];", program.index + 1);
+            statement(&mut text, &shift);
+        }
         if part == 0 {
             let lines = self.rapid.hooks.before_layer(&self.rapid.layer_start, program.index, &self.program);
             self.skippable(&mut text, restart::last(program), &lines);
@@ -288,21 +293,28 @@ impl AbbRapid {
             self.switch(text, &self.rapid.arc_on);
             self.lines(text, &self.rapid.hooks.arc_established);
         } else if let (Some(to), Some(number)) = (before.and_then(Instruction::target), first) {
-            let between = format!("vTravel,smBead,wd{number}");
+            let between = format!("vTravel,smBead,{}", self.weld_data(number));
             self.motion(text, "ArcLStart", to, &between, false);
         }
     }
 
     fn weld(&self, text: &mut String, via: Option<DVec3>, to: DVec3, number: usize, last: bool) {
+        let with_data = || format!("vTravel,smBead,{}", self.weld_data(number));
         let (word, between) = match (self.with_arc(), via.is_some(), last) {
-            (true, false, false) => ("ArcL", format!("vTravel,smBead,wd{number}")),
-            (true, false, true) => ("ArcLEnd", format!("vTravel,smBead,wd{number}")),
-            (true, true, false) => ("ArcC", format!("vTravel,smBead,wd{number}")),
-            (true, true, true) => ("ArcCEnd", format!("vTravel,smBead,wd{number}")),
+            (true, false, false) => ("ArcL", with_data()),
+            (true, false, true) => ("ArcLEnd", with_data()),
+            (true, true, false) => ("ArcC", with_data()),
+            (true, true, true) => ("ArcCEnd", with_data()),
             (false, false, _) => ("MoveL", format!("vd{number}")),
             (false, true, _) => ("MoveC", format!("vd{number}")),
         };
         self.motion_over(text, word, via, to, &between, !last);
+    }
+
+    /// The welddata of that number, and the weavedata where the torch swings.
+    fn weld_data(&self, number: usize) -> String {
+        let weave = if self.weave.is_some() { "\\Weave:=wvBead" } else { "" };
+        format!("wd{number}{weave}")
     }
 
     fn arc_off(&self, text: &mut String) {
@@ -358,8 +370,16 @@ impl Writer for AbbRapid {
         if self.program.restart {
             text.push_str(&format!("  ! {}\r\n  PERS num {START}:=0;\r\n", restart::comment(START)));
         }
+        if self.program.layer_offsets {
+            let zeros = vec!["0"; layers].join(",");
+            text.push_str("  ! mm to be added to the height of each layer\r\n");
+            text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
+        }
         for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
             text.push_str(&format!("  {line}\r\n"));
+        }
+        if let Some(weave) = self.weave.as_ref().filter(|_| self.with_arc()) {
+            text.push_str(&format!("  {}\r\n", data::weave(weave, self.process.deposition_speed)));
         }
         text.push_str("  PROC main()\r\n");
         statement(&mut text, "ConfL \\Off;");
@@ -385,6 +405,9 @@ impl Writer for AbbRapid {
 
     fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
+        if self.program.layer_offsets {
+            statement(&mut text, "PDispOff;");
+        }
         self.lines(&mut text, &self.rapid.end);
         self.home(&mut text);
         text.push_str("  ENDPROC\r\n");

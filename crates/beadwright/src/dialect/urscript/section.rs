@@ -110,6 +110,10 @@ impl Section for Urscript {
         true
     }
 
+    fn offsets_layers(&self) -> bool {
+        true
+    }
+
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
     }

@@ -41,6 +41,8 @@ pub(super) struct UniversalScript {
     travel_speed: f64,
     wire_feed_speed: f64,
     digits: usize,
+    /// Number of layers.
+    count: usize,
     /// Names of the layers' functions.
     layers: Vec<String>,
     at: Option<DVec3>,
@@ -61,7 +63,7 @@ impl UniversalScript {
         let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
         let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
         let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { name, comment, supplies, urscript, program, values, travel_speed, wire_feed_speed, digits: 3, layers, at: None, volumes, main }
+        Self { name, comment, supplies, urscript, program, values, travel_speed, wire_feed_speed, digits: 3, count: 0, layers, at: None, volumes, main }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
@@ -216,7 +218,14 @@ impl UniversalScript {
         if let Some(mass) = self.urscript.payload {
             text.push_str(&format!("  set_payload({})\n", fixed(mass, 3)));
         }
-        text.push_str(&format!("  global part_frame = {}\n", frame_text(&self.urscript.part_frame)));
+        let frame = frame_text(&self.urscript.part_frame);
+        text.push_str(&format!("  global part_frame = {frame}\n"));
+        if self.program.layer_offsets {
+            let zeros = vec!["0.0"; self.count].join(", ");
+            text.push_str(&format!("  # mm to be added to the height of each layer\n  global layer_dz = [{zeros}]\n"));
+            text.push_str(&format!("  global place = {frame}\n  def lifted(height):\n"));
+            text.push_str("    return pose_trans(place, p[0.0,0.0,height/1000.0,0.0,0.0,0.0])\n  end\n");
+        }
         self.lines(&mut text, "  ", &self.urscript.routines);
         vec![self.chunk(text)]
     }
@@ -238,6 +247,9 @@ impl UniversalScript {
     fn function(&mut self, name: &str, program: &LayerProgram) -> String {
         let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
         text.reserve(program.instructions.len() * 120);
+        if self.program.layer_offsets {
+            text.push_str(&format!("    global part_frame = lifted(layer_dz[{}])\n", program.index));
+        }
         let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
         self.skippable(&mut text, "    ", restart::last(program), &lines);
         for (i, &instruction) in program.instructions.iter().enumerate() {
@@ -259,6 +271,7 @@ impl Writer for UniversalScript {
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.values.set("layers", layers);
+        self.count = layers;
         self.begin_volume()
     }
 

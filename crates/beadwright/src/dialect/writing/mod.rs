@@ -20,7 +20,7 @@ use super::own::OwnError;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
 use crate::layer::Layer;
-use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety};
+use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Weave};
 use crate::weld::WeldSettings;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
@@ -85,6 +85,8 @@ pub struct Job<'a> {
     pub program: &'a ProgramSettings,
     /// What the cell must supply.
     pub safety: &'a Safety,
+    /// How the torch swings along a pass, if it does.
+    pub weave: Option<&'a Weave>,
     /// Whether the program only moves: arc, gas and wire never on.
     pub dry_run: bool,
 }
@@ -186,6 +188,14 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     if job.program.restart && !section.restarts() {
         let remedy = "Take it out; a stopped build goes on with plan --from-layer N --from-pass N.";
         return Err(DialectError::Cannot { dialect: dialect.name, what: "program.restart = true", remedy });
+    }
+    if job.program.layer_offsets && !section.offsets_layers() {
+        let remedy = "Take it out; KRL, RAPID, FANUC and URScript have it.";
+        return Err(DialectError::Cannot { dialect: dialect.name, what: "program.layer_offsets = true", remedy });
+    }
+    if job.weave.is_some() && !job.dry_run && !section.weaves() {
+        let remedy = "Controllers weave with ArcTech, RobotWare Arc, FANUC and Yaskawa; take [weave] out for others.";
+        return Err(DialectError::Cannot { dialect: dialect.name, what: "[weave]", remedy });
     }
     section.writer(job)
 }

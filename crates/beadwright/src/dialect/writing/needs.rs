@@ -36,7 +36,12 @@ pub(in crate::dialect) fn lines(
     let jobs = job.weld.process.layers.iter().any(|row| row.job.is_some_and(|own| own != job.weld.process.job));
     if jobs && !templates.iter().any(|(_, lines)| lines.iter().any(|line| line.contains("{{job}}"))) {
         let remedy = "Put the line there that selects a job of the power source.";
-        return Err(no_key(job, format!("{dialect}.layer_start with {{{{job}}}}"), "[[process.layers]]", remedy.to_owned()));
+        return Err(no_key(
+            job,
+            format!("{dialect}.layer_start with {{{{job}}}}"),
+            "[[process.layers]]",
+            remedy.to_owned(),
+        ));
     }
     if ends.wire_retract > 0.0 && !lines_of("arc_off").any(|line| line.contains("{{wire_retract")) {
         let remedy = "Use {{wire_retract}} (mm), {{wire_retract_time}} (s) or {{wire_retract_time_ms}} in its lines.";
