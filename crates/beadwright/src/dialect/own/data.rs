@@ -8,7 +8,7 @@ use minijinja::{Error, ErrorKind, Value};
 use std::sync::Arc;
 
 /// Placeholders of the other dialects that are no values of a whole job.
-const CHANGING: [&str; 10] =
+const CHANGING: [&str; 11] =
     ["program", "layer", "layers", "z", "pass", "pass_number", "dwell", "dwell_ms", "wire_feed", "wire_feed_ratio"];
 
 /// What is the same all through a program.
