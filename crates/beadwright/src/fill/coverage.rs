@@ -30,20 +30,21 @@ pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
     for path in paths {
         let line = path.path();
         for (i, ends) in line.windows(2).enumerate() {
-            let radius = path.width.after(i) * (0.5 + TOUCHING / 2.0);
-            let (low, high) = (ends[0].y.min(ends[1].y) - radius, ends[0].y.max(ends[1].y) + radius);
+            let strip = Strip::new(ends[0], ends[1], path.width.after(i) * (0.5 + TOUCHING / 2.0));
             let row = |y: f64| ((y - first) / step).clamp(0.0, count as f64);
-            let from = row(low).ceil() as usize;
-            let rows = covered.iter_mut().enumerate().take((row(high).floor() as usize + 1).min(count)).skip(from);
-            for (k, covered) in rows {
-                covered.extend(across(ends[0], ends[1], radius, first + k as f64 * step));
+            let to = (row(strip.high).floor() as usize + 1).min(count);
+            let from = (row(strip.low).ceil() as usize).min(to);
+            for (k, covered) in (from..).zip(&mut covered[from..to]) {
+                if let Some(span) = strip.across(first + k as f64 * step) {
+                    add(covered, span);
+                }
             }
         }
     }
     let inside = region.rows(first, step, count);
     let (mut found, mut widest) = (Bare::default(), 0.0);
     for (k, (inside, covered)) in inside.iter().zip(&mut covered).enumerate() {
-        covered.sort_by(|a, b| a.0.total_cmp(&b.0));
+        covered.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for span in inside.chunks_exact(2) {
             let mut from = span[0];
             for (low, high) in covered.iter().copied().chain([(span[1], f64::INFINITY)]) {
@@ -64,31 +65,60 @@ pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
     found
 }
 
-/// Where a row crosses the strip with round ends around a piece.
-fn across(a: DVec2, b: DVec2, radius: f64, y: f64) -> Option<(f64, f64)> {
-    let mut span: Option<(f64, f64)> = None;
-    let mut add = |x: f64| span = Some(span.map_or((x, x), |(low, high)| (low.min(x), high.max(x))));
-    for end in [a, b] {
-        let half = radius * radius - (y - end.y) * (y - end.y);
-        if half >= 0.0 {
-            add(end.x - half.sqrt());
-            add(end.x + half.sqrt());
-        }
+/// Adds a span to those of a row. Neighbouring passes are laid one after another, so most spans continue the last one.
+fn add(spans: &mut Vec<(f64, f64)>, (low, high): (f64, f64)) {
+    match spans.last_mut() {
+        Some(last) if low <= last.1 && high >= last.0 => *last = (last.0.min(low), last.1.max(high)),
+        _ => spans.push((low, high)),
     }
-    // The long sides of the strip.
-    let side = (b - a).perp().normalize_or_zero() * radius;
-    for (from, to) in [(a + side, b + side), (a - side, b - side)] {
-        let (rise, part) = (to.y - from.y, (y - from.y) / (to.y - from.y));
-        if rise != 0.0 && (0.0..=1.0).contains(&part) {
-            add(from.x + part * (to.x - from.x));
-        }
+}
+
+/// The strip with round ends that a straight piece covers.
+struct Strip {
+    ends: [DVec2; 2],
+    radius: f64,
+    /// The long sides: lowest and highest y, x at the lowest, and how x grows with y. None along a row.
+    sides: Option<[(f64, f64, f64, f64); 2]>,
+    low: f64,
+    high: f64,
+}
+
+impl Strip {
+    fn new(a: DVec2, b: DVec2, radius: f64) -> Self {
+        let out = (b - a).perp().normalize_or_zero() * radius;
+        let side = |out: DVec2| {
+            let (from, to) = if a.y < b.y { (a + out, b + out) } else { (b + out, a + out) };
+            let lean = (to.x - from.x) / (to.y - from.y);
+            (from.y, to.y, from.x, lean)
+        };
+        let sides = (a.y != b.y).then(|| [side(out), side(-out)]);
+        Self { ends: [a, b], radius, sides, low: a.y.min(b.y) - radius, high: a.y.max(b.y) + radius }
     }
-    span
+
+    /// Where a row crosses it.
+    #[inline]
+    fn across(&self, y: f64) -> Option<(f64, f64)> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for end in self.ends {
+            let square = self.radius * self.radius - (y - end.y) * (y - end.y);
+            if square >= 0.0 {
+                let half = square.sqrt();
+                (low, high) = (low.min(end.x - half), high.max(end.x + half));
+            }
+        }
+        for (from, to, x, lean) in self.sides.into_iter().flatten() {
+            if from <= y && y <= to {
+                let x = x + (y - from) * lean;
+                (low, high) = (low.min(x), high.max(x));
+            }
+        }
+        (low <= high).then_some((low, high))
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{across, bare};
+    use super::{Strip, bare};
     use crate::fill::Path;
     use crate::pass::{Along, PassKind};
     use glam::DVec2;
@@ -132,9 +162,9 @@ mod tests {
 
     #[test]
     fn a_row_crosses_a_slanted_strip_between_its_sides() {
-        let (low, high) = across(DVec2::new(0.0, 0.0), DVec2::new(10.0, 10.0), 1.0, 5.0).unwrap_or_default();
+        let (low, high) = Strip::new(DVec2::new(0.0, 0.0), DVec2::new(10.0, 10.0), 1.0).across(5.0).unwrap_or_default();
         let half = 2.0_f64.sqrt();
         assert!((low - (5.0 - half)).abs() < 1e-12 && (high - (5.0 + half)).abs() < 1e-12);
-        assert_eq!(across(DVec2::ZERO, DVec2::X, 1.0, 2.0), None);
+        assert_eq!(Strip::new(DVec2::ZERO, DVec2::X, 1.0).across(2.0), None);
     }
 }
