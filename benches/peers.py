@@ -45,7 +45,7 @@ def model(name, scale, work):
 def ours(binary, part, bead, perimeters, work):
     profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
     (work / "profile.toml").write_text(profile)
-    return [binary, "plan", part, "-p", work / "profile.toml", "--no-deposit", "-o", work / "ours"]
+    return [binary, "plan", part, "-p", work / "profile.toml", "--no-deposit", "--allow-findings", "-o", work / "ours"]
 
 
 def prusa(part, bead, perimeters, work):
@@ -54,7 +54,7 @@ def prusa(part, bead, perimeters, work):
         "infill-extrusion-width solid-infill-extrusion-width top-infill-extrusion-width nozzle-diameter"
     widths = [arg for key in keys.split() for arg in (f"--{key}", str(width))]
     return ["prusa-slicer", "--export-gcode", part, "-o", work / "prusa.gcode", "--layer-height", str(height),
-            "--first-layer-height", str(height), *widths, "--filament-diameter", "1.75", "--perimeters", str(perimeters),
+            "--first-layer-height", str(2 * height), *widths, "--filament-diameter", "1.75", "--perimeters", str(perimeters),
             "--fill-density", "100%", "--fill-pattern", "rectilinear", "--skirts", "0",
             "--bed-shape", "0x0,600x0,600x600,0x600", "--max-print-height", "600"]
 

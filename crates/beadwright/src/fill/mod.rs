@@ -90,6 +90,11 @@ pub trait Strategy: Sync {
         settings.wall.width_limits.0
     }
 
+    /// Whether it lays the same on every layer of the same shape and raster angle, whatever its number.
+    fn repeats(&self) -> bool {
+        false
+    }
+
     /// Whether narrower features are welded all the same, with beads that then reach beyond them.
     fn welds_thin_walls(&self) -> bool {
         false
