@@ -10,6 +10,7 @@ import argparse, array, json, math, os, pathlib, subprocess, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROFILE = ROOT / "crates/beadwright/benches/fdm-5.39x2.toml"
+FINE = ROOT / "crates/beadwright/benches/fdm-0.45x0.2.toml"
 
 
 def triangles_of_prism(ring, height, cap):
@@ -43,6 +44,11 @@ def disc(count, height=6.0):
 
 def tower(layers):
     return triangles_of_prism(circle(0, 0, 25, 32), 2.0 * layers, fan(32))
+
+
+def thread(layers):
+    """As high as coordinates reach: 20 m are 100,000 layers of 0.2 mm."""
+    return triangles_of_prism(circle(0, 0, 2, 16), 0.2 * layers, fan(16))
 
 
 def islands(count):
@@ -126,11 +132,11 @@ SERIES = {
     "vertices": (disc, [3_200, 6_400, 12_800, 25_600, 51_200, 102_400]),
     "holes": (holes, [125, 250, 500, 1_000, 2_000]),
 }
-HUGE = {"20 million triangles": (ball, [20_000_000]), "100,000 layers": (tower, [100_000])}
+HUGE = {"20 million triangles": (ball, [20_000_000]), "100 thousand layers": (thread, [99_900])}
 
 
-def measured(binary, part, work):
-    command = [binary, "plan", part, "-p", PROFILE, "--no-deposit", "--allow-findings", "-o", work / "out"]
+def measured(binary, part, profile, work):
+    command = [binary, "plan", part, "-p", profile, "--no-deposit", "--allow-findings", "-o", work / "out"]
     process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
     return None if status else (used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
@@ -161,7 +167,7 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 part = pathlib.Path(folder) / "part.stl"
                 write(make(size), part)
-                found = measured(given.binary, part, pathlib.Path(folder))
+                found = measured(given.binary, part, FINE if make is thread else PROFILE, pathlib.Path(folder))
             told = f"{found[0]:9.2f} s {found[1]:7.0f} MB" if found else "  refused"
             print(f"{name:<22}{size:>12,}{told}", flush=True)
             rows += [(size, *found)] if found else []
