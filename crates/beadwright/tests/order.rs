@@ -5,7 +5,7 @@ mod solids;
 
 use beadwright::fill::{Fill, FillSettings, Path, STRATEGIES};
 
-use beadwright::order::{OrderSettings, Seam, order};
+use beadwright::order::{Memory, OrderSettings, Seam, order};
 use beadwright::pass::Along;
 use beadwright::pass::PassKind;
 use beadwright::planar::{DVec2, Polygon, Ring};
@@ -276,4 +276,28 @@ fn seams_that_wander_do_so_on_alternating_layers_too() {
         order(vec![fill], &settings, &mut None)[0].points[0]
     };
     (0..6).for_each(|layer| assert_eq!(start(true, layer), start(false, layer)));
+}
+
+/// Two kinds of layers take turns, with seams of each kind: what is remembered must not show.
+#[test]
+fn remembered_layers_are_laid_as_if_each_were_new() {
+    let ring = |x: f64, y: f64| closed(&[(x, y), (x + 6.0, y), (x + 6.0, y + 4.0), (x, y + 4.0)]);
+    let layer = |lean: f64| {
+        let rings = (0..7).map(|k| ring(f64::from(k * 5 % 7) * 10.0, f64::from(k) * lean)).collect();
+        let lines =
+            (0..6).map(|k| open(&[(lean, f64::from(k) * 3.0), (40.0, f64::from(k) * 3.0 + lean)], true)).collect();
+        vec![Fill { stages: vec![rings, lines], fixed_order: false }]
+    };
+    for (seam, alternate) in
+        [(Seam::Nearest, false), (Seam::Aligned, false), (Seam::Rotate, false), (Seam::Nearest, true)]
+    {
+        let (mut memory, mut torch, mut alone) = (Memory::default(), None, None);
+        for index in 0..14 {
+            let settings = OrderSettings { seam, alternate, layer: index, bead_width: 3.0, ..OrderSettings::default() };
+            let fills = || layer(if index % 2 == 0 { 8.0 } else { 3.0 });
+            let laid = memory.order(fills(), true, &settings, &mut torch);
+            assert_eq!(laid, order(fills(), &settings, &mut alone), "layer {index}, {seam:?}, alternate {alternate}");
+            assert_eq!(torch, alone);
+        }
+    }
 }

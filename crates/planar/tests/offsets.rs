@@ -196,3 +196,37 @@ fn round_joins_keep_their_tolerance() {
         }
     }
 }
+
+/// A plate with a fin on its right side.
+fn plate_with_fin(width: f64, length: f64) -> planar::Polygon {
+    let points = [
+        (0.0, 0.0),
+        (20.0, 0.0),
+        (20.0, 5.0),
+        (20.0 + length, 5.0),
+        (20.0 + length, 5.0 + width),
+        (20.0, 5.0 + width),
+        (20.0, 12.0),
+        (0.0, 12.0),
+    ];
+    planar::Polygon::simple(planar::Ring::new(points.map(DVec2::from).to_vec()))
+}
+
+/// A rectangle loses (4 − π) r² in its corners, wherever the disc rolls.
+#[test]
+fn a_disc_reaches_all_of_a_rectangle_but_its_corners() {
+    let rectangle = plate_with_fin(3.0, 0.0);
+    for r in [0.5, 1.0, 2.5] {
+        let reached = rectangle.reached_by_disc(r, &rectangle.offset(-r, Join::ROUND)).unwrap();
+        let exact = 240.0 - (4.0 - std::f64::consts::PI) * r * r;
+        assert!((reached - exact).abs() < 0.01, "{reached} for {exact}");
+    }
+}
+
+/// Corners do not count, however many: a fin that holds no disc does.
+#[test]
+fn a_part_is_roomy_unless_it_has_a_fin() {
+    let roomy = |width: f64, length: f64| plate_with_fin(width, length).is_roomy_for_disc(1.0, 0.25, Join::ROUND);
+    assert!(roomy(4.5, 0.0) && roomy(4.5, 6.0), "nothing is thin");
+    assert!(!roomy(1.5, 6.0) && !roomy(1.9, 4.0) && !roomy(0.3, 3.0), "a fin is thin");
+}

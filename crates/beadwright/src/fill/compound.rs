@@ -18,6 +18,10 @@ impl Strategy for Compound {
         "compound"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
         thin::around(island, settings, thick)
     }

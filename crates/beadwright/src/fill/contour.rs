@@ -12,6 +12,10 @@ impl Strategy for Contour {
         "contour"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
         thin::around(island, settings, rings_only)
     }

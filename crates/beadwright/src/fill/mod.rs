@@ -19,6 +19,7 @@
 //! | [`wall`] | thin walls along their middle, in the fewest paths that do not cross (Li et al.) |
 
 pub mod angle;
+mod bands;
 pub mod compound;
 pub mod contour;
 pub mod coverage;
@@ -87,6 +88,11 @@ pub trait Strategy: Sync {
     /// Features narrower than this get no metal, mm.
     fn narrowest(&self, settings: &FillSettings) -> f64 {
         settings.wall.width_limits.0
+    }
+
+    /// Whether it lays the same on every layer of the same shape and raster angle, whatever its number.
+    fn repeats(&self) -> bool {
+        false
     }
 
     /// Whether narrower features are welded all the same, with beads that then reach beyond them.

@@ -12,6 +12,10 @@ impl Strategy for Raster {
         "raster"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
         self.lines(&self.infill(island, settings), settings)
     }

@@ -3,16 +3,18 @@
 //! Every fill is checked, whatever strategy it is of, so that a fault of a strategy never reaches a robot.
 
 use super::Path;
+use super::bands::{Bands, Piece};
 use glam::DVec2;
 use planar::Polygon;
-use rstar::primitives::{GeomWithData, Line};
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use planar::polyline::distance_squared_to_segment;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 /// Centre-lines may leave the outline by this much, mm: coordinates are rounded.
 pub const TOLERANCE_MM: f64 = 0.01;
 
 /// A piece of a path: number of the path, number of the piece in it.
-type Piece = GeomWithData<Line<[f64; 2]>, (usize, usize)>;
+type Number = (usize, usize);
 
 /// What is wrong with the passes of an island.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,41 +35,52 @@ pub enum Fault {
 
 /// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm.
 pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
-    outside(paths, island, allowance).or_else(|| {
-        let lines: Vec<Vec<DVec2>> = paths.iter().map(|path| path.path()).collect();
-        crossings(&lines).next().map(|(_, _, place)| Fault::Crossing { place })
-    })
+    let lines: Vec<Vec<DVec2>> = paths.iter().map(|path| path.path()).collect();
+    if let Some(&place) = lines.iter().flatten().find(|p| !p.is_finite()) {
+        return Some(Fault::Outside { place, by: f64::INFINITY });
+    }
+    let edges: Vec<Piece> = island.rings().flat_map(|ring| ring.edges()).map(|(a, b)| [a, b]).collect();
+    let (numbers, laid) = pieces(&lines);
+    let bands = Bands::new([edges.as_slice(), &laid].concat());
+    let (mut cuts, mut found): (BTreeMap<Number, Vec<f64>>, Vec<_>) = (BTreeMap::new(), Vec::new());
+    bands.pairs(|i, j| match (i.checked_sub(edges.len()), j.checked_sub(edges.len())) {
+        (None, None) => {}
+        (Some(i), Some(j)) => found.extend(crossing((numbers[i], laid[i]), (numbers[j], laid[j]))),
+        (Some(piece), None) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[j])),
+        (None, Some(piece)) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[i])),
+    });
+    let inside = |p: DVec2| bands.inside(p, edges.len());
+    outside(&lines, &cuts, &edges, inside, allowance)
+        .or_else(|| first(found).map(|(_, _, place)| Fault::Crossing { place }))
 }
 
-/// The place where a path is farthest outside.
-fn outside(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
-    let edges = island.rings().flat_map(|ring| ring.edges()).map(|(a, b)| Line::new(a.to_array(), b.to_array()));
-    let tree: RTree<Line<[f64; 2]>> = RTree::bulk_load(edges.collect());
-    let by = |p: DVec2| {
-        let outside = p.is_finite() && !island.contains(p);
-        let distance = || tree.nearest_neighbor(&p.to_array()).map_or(0.0, |edge| edge.distance_2(&p.to_array()));
-        if outside { distance().sqrt() } else { 0.0 }
-    };
-    let suspects = paths.iter().flat_map(|path| {
-        let path = path.path();
-        let cuts: Vec<Vec<f64>> = path.windows(2).map(|w| cuts(&tree, w[0], w[1])).collect();
-        // A path that crosses no edge lies inside as its first point does.
-        let pieces = if cuts.iter().all(Vec::is_empty) { 0 } else { cuts.len() };
-        let near = path.windows(2).zip(&cuts).take(pieces).flat_map(|(w, cuts)| places(w[0], w[1], cuts));
-        path.first().copied().into_iter().chain(near).collect::<Vec<_>>()
-    });
-    let worst = suspects.map(|p| (p, by(p))).max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let lost = paths.iter().flat_map(|path| &path.points).find(|p| !p.is_finite());
-    match lost {
-        Some(&place) => Some(Fault::Outside { place, by: f64::INFINITY }),
-        None => (worst.1 > allowance.max(0.0) + TOLERANCE_MM).then_some(Fault::Outside { place: worst.0, by: worst.1 }),
+fn note(cuts: &mut BTreeMap<Number, Vec<f64>>, piece: Number, cut: Option<f64>) {
+    if let Some(cut) = cut {
+        cuts.entry(piece).or_default().push(cut);
     }
 }
 
-/// Where on a piece, from 0 to 1, it crosses the edges.
-fn cuts(edges: &RTree<Line<[f64; 2]>>, from: DVec2, to: DVec2) -> Vec<f64> {
-    let piece = Line::new(from.to_array(), to.to_array());
-    edges.locate_in_envelope_intersecting(&piece.envelope()).filter_map(|edge| cut(&piece, edge)).collect()
+/// The place where a path is farthest outside.
+fn outside(
+    lines: &[Vec<DVec2>],
+    cuts: &BTreeMap<Number, Vec<f64>>,
+    edges: &[Piece],
+    inside: impl Fn(DVec2) -> bool,
+    allowance: f64,
+) -> Option<Fault> {
+    let square =
+        |p: DVec2| edges.iter().map(|&[a, b]| distance_squared_to_segment(p, a, b)).fold(f64::INFINITY, f64::min);
+    let by = |p: DVec2| if inside(p) { 0.0 } else { square(p).sqrt() };
+    let suspects = lines.iter().enumerate().flat_map(|(number, line)| {
+        // A path that crosses no edge lies inside as its first point does.
+        let crosses = cuts.range((number, 0)..(number + 1, 0)).next().is_some();
+        let pieces = if crosses { line.len() } else { 0 };
+        let cuts = move |k: usize| cuts.get(&(number, k)).map_or(&[][..], Vec::as_slice);
+        let near = line.windows(2).enumerate().take(pieces).flat_map(move |(k, w)| places(w[0], w[1], cuts(k)));
+        line.first().copied().into_iter().chain(near)
+    });
+    let worst = suspects.map(|p| (p, by(p))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (worst.1 > allowance.max(0.0) + TOLERANCE_MM).then_some(Fault::Outside { place: worst.0, by: worst.1 })
 }
 
 /// Places at which a piece may lie farthest outside: between two cuts it lies either inside or outside, and one without cuts
@@ -86,8 +99,7 @@ fn places(from: DVec2, to: DVec2, cuts: &[f64]) -> Vec<DVec2> {
 }
 
 /// Where on a piece it crosses an edge.
-fn cut(piece: &Line<[f64; 2]>, edge: &Line<[f64; 2]>) -> Option<f64> {
-    let [p, q, r, s] = [piece.from, piece.to, edge.from, edge.to].map(DVec2::from);
+fn cut([p, q]: Piece, [r, s]: Piece) -> Option<f64> {
     let (u, v) = (q - p, s - r);
     let across = u.perp_dot(v);
     let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
@@ -103,36 +115,47 @@ const MOST_SAMPLES: f64 = 4000.0;
 
 /// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
 /// Neighbouring pieces, and touching ends, do not count.
-pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DVec2)> {
-    let pieces = lines.iter().enumerate().flat_map(|(i, line)| {
-        let ends =
-            move |(k, w): (usize, &[DVec2])| GeomWithData::new(Line::new(w[0].to_array(), w[1].to_array()), (i, k));
-        line.windows(2).filter(|w| w[0].is_finite() && w[1].is_finite()).enumerate().map(ends)
-    });
-    let tree: RTree<Piece> = RTree::bulk_load(pieces.collect());
-    let mut found: Vec<(usize, usize, DVec2)> = Vec::new();
-    for piece in &tree {
-        let around: AABB<[f64; 2]> = piece.envelope();
-        for other in tree.locate_in_envelope_intersecting(&around) {
-            let ((i, k), (j, l)) = (piece.data, other.data);
-            if (j < i || (j == i && l + 1 < k))
-                && let Some(place) = crossing(piece, other)
-            {
-                found.push((i, j, place));
-            }
-        }
-    }
-    found.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.x.total_cmp(&b.2.x)));
+pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = Crossing> {
+    let (numbers, pieces) = pieces(lines);
+    let mut found = Vec::new();
+    let bands = Bands::new(pieces.clone());
+    bands.pairs(|i, j| found.extend(crossing((numbers[i], pieces[i]), (numbers[j], pieces[j]))));
+    found.sort_by(by_line);
     found.into_iter()
 }
 
-/// Where two pieces cross, their ends not counted.
-fn crossing(a: &Piece, b: &Piece) -> Option<DVec2> {
+/// Where two lines cross: their numbers, the higher one first, and the place.
+type Crossing = (usize, usize, DVec2);
+
+fn by_line(a: &Crossing, b: &Crossing) -> Ordering {
+    (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.x.total_cmp(&b.2.x)).then(a.2.y.total_cmp(&b.2.y))
+}
+
+fn first(found: Vec<Crossing>) -> Option<Crossing> {
+    found.into_iter().min_by(by_line)
+}
+
+/// The pieces of some lines with their numbers; those that are not finite are left out.
+fn pieces(lines: &[Vec<DVec2>]) -> (Vec<Number>, Vec<Piece>) {
+    let of = |(i, line): (usize, &'_ Vec<DVec2>)| {
+        let numbered = line.windows(2).enumerate().map(move |(k, w)| ((i, k), [w[0], w[1]]));
+        numbered.filter(|(_, [a, b])| a.is_finite() && b.is_finite()).collect::<Vec<_>>()
+    };
+    lines.iter().enumerate().flat_map(of).unzip()
+}
+
+/// Where two pieces cross, their ends not counted; neighbours on one line do not count.
+fn crossing(((i, k), [p, q]): (Number, Piece), ((j, l), [r, s]): (Number, Piece)) -> Option<Crossing> {
     const INNER: f64 = 1e-6;
-    let [p, q, r, s] = [a.geom().from, a.geom().to, b.geom().from, b.geom().to].map(DVec2::from);
+    if (j, l) > (i, k) {
+        return crossing(((j, l), [r, s]), ((i, k), [p, q]));
+    }
+    if j == i && l + 1 >= k {
+        return None;
+    }
     let (u, v) = (q - p, s - r);
     let across = u.perp_dot(v);
     let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
     let inside = |x: f64| (INNER..1.0 - INNER).contains(&x);
-    (across != 0.0 && inside(t) && inside(w)).then(|| p + u * t)
+    (across != 0.0 && inside(t) && inside(w)).then(|| (i, j, p + u * t))
 }

@@ -11,6 +11,7 @@ use super::nearest;
 use super::random::Random;
 use super::tour::{self, Ends, Gate, Stop, Visit, gap, neighbours};
 use glam::DVec2;
+use planar::Bounds;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -46,6 +47,8 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
 struct Search<'a> {
     stops: &'a [Stop],
     gates: Vec<Vec<Gate>>,
+    /// A circle around the gates of each stop.
+    circles: Vec<Circle>,
     ends: Ends,
     tour: Vec<Visit>,
     /// Place of each stop on the tour.
@@ -59,8 +62,9 @@ impl<'a> Search<'a> {
     fn new(stops: &'a [Stop], ends: Ends, tour: Vec<Visit>) -> Self {
         let place = vec![0; stops.len()];
         let all_reversible = stops.iter().all(Stop::reversible);
-        let gates = stops.iter().map(|s| s.gates().collect()).collect();
-        let mut search = Self { stops, gates, ends, tour, place, near: near(stops), all_reversible };
+        let gates: Vec<Vec<Gate>> = stops.iter().map(|s| s.gates().collect()).collect();
+        let circles = gates.iter().map(|gates| Circle::around(gates)).collect();
+        let mut search = Self { stops, gates, circles, ends, tour, place, near: near(stops), all_reversible };
         search.number(0, stops.len());
         search
     }
@@ -156,8 +160,12 @@ impl<'a> Search<'a> {
     fn other_gate(&mut self, i: usize) -> Option<f64> {
         let (before, after, visit) = (self.before(i), self.after(i), self.tour[i]);
         let way = |enter, leave| gap(before, Some(enter)) + gap(Some(leave), after);
+        let now = way(visit.enter, visit.leave);
+        if now - self.circles[visit.stop].least_way(before, after).max(straight(before, after, &visit)) <= LEAST_GAIN {
+            return None;
+        }
         let gate = self.best_gate(visit.stop, before, after);
-        let gain = way(visit.enter, visit.leave) - way(gate.enter, gate.leave);
+        let gain = now - way(gate.enter, gate.leave);
         (gain > LEAST_GAIN).then(|| {
             self.tour[i] = Visit::new(visit.stop, gate);
             gain
@@ -217,6 +225,11 @@ impl<'a> Search<'a> {
                 let previous = if self.follows(j, to) { before } else { self.before(to) };
                 (previous, Some(self.tour[to].enter))
             };
+            // Most stops lie too far off, whichever gate is taken.
+            let least = if i == j { self.circles[self.tour[i].stop].least_way(from, into) } else { 0.0 };
+            if freed - (least - gap(from, into)) <= LEAST_GAIN {
+                continue;
+            }
             let (gate, backwards) = self.best_stretch(i, j, from, into);
             let cost = gap(from, Some(gate.enter)) + gap(Some(gate.leave), into) - gap(from, into);
             if freed - cost > LEAST_GAIN {
@@ -364,6 +377,34 @@ impl<'a> Search<'a> {
                 break;
             }
         }
+    }
+}
+
+/// No way through a stop that is left where it is entered is shorter than the straight one past it, mm.
+fn straight(before: Option<DVec2>, after: Option<DVec2>, visit: &Visit) -> f64 {
+    if visit.enter == visit.leave { gap(before, after) } else { 0.0 }
+}
+
+/// A circle around the gates of a stop.
+struct Circle {
+    middle: DVec2,
+    radius: f64,
+}
+
+impl Circle {
+    fn around(gates: &[Gate]) -> Self {
+        let places = || gates.iter().flat_map(|gate| [gate.enter, gate.leave]);
+        let middle = Bounds::of(places()).map(|bounds| bounds.center()).unwrap_or_default();
+        // Greater by what rounding may take away.
+        let radius = places().map(|p| p.distance(middle)).fold(0.0, f64::max) + 1e-9 * (1.0 + middle.length());
+        Self { middle, radius }
+    }
+
+    /// A way through any gate is at least as long, mm.
+    fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
+        let middle = Some(self.middle);
+        let off = |way: f64| (way - self.radius).max(0.0);
+        off(gap(from, middle)) + off(gap(middle, to))
     }
 }
 

@@ -25,6 +25,7 @@ pub mod tour;
 use crate::fill::{Fill, Path};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 use tour::{Ends, Stop, Visit};
 
 /// How the order is found.
@@ -90,6 +91,11 @@ pub struct OrderSettings {
 }
 
 impl OrderSettings {
+    /// Whether passes are laid alike on every layer.
+    fn repeats(&self) -> bool {
+        !self.alternate && matches!(self.seam, Seam::Nearest | Seam::Aligned)
+    }
+
     /// Where a closed pass must begin; `None` where the order may choose.
     fn seam_of(&self, pass: &Path) -> Option<DVec2> {
         /// One minus the golden section: its multiples spread evenly.
@@ -132,6 +138,49 @@ pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Optio
     }
     direction::turn_closed(&mut ordered, settings);
     ordered
+}
+
+/// The order of the last layers whose passes other layers have too: what begins at the same place is not searched again.
+#[derive(Debug, Clone, Default)]
+pub struct Memory {
+    known: VecDeque<Known>,
+}
+
+#[derive(Debug, Clone)]
+struct Known {
+    islands: Vec<Fill>,
+    settings: OrderSettings,
+    from: Option<DVec2>,
+    ordered: Vec<Path>,
+    to: Option<DVec2>,
+}
+
+/// Scan lines turn from layer to layer: the same passes come again after two of them, or a few more.
+const REMEMBERED: usize = 6;
+
+impl Memory {
+    /// [`order`]; `shared` tells that other layers have the same passes.
+    pub fn order(
+        &mut self,
+        islands: Vec<Fill>,
+        shared: bool,
+        settings: &OrderSettings,
+        torch: &mut Option<DVec2>,
+    ) -> Vec<Path> {
+        if !shared || !settings.repeats() {
+            return order(islands, settings, torch);
+        }
+        let (settings, from) = (OrderSettings { layer: 0, ..*settings }, *torch);
+        let same = |known: &&Known| known.from == from && known.settings == settings && known.islands == islands;
+        if let Some(known) = self.known.iter().find(same) {
+            *torch = known.to;
+            return known.ordered.clone();
+        }
+        let ordered = order(islands.clone(), &settings, torch);
+        self.known.truncate(REMEMBERED - 1);
+        self.known.push_front(Known { islands, settings, from, ordered: ordered.clone(), to: *torch });
+        ordered
+    }
 }
 
 /// Islands are visited like closed passes: wherever a pass of their first stage may begin.

@@ -143,8 +143,12 @@ fn thinned(path: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// Distance between two places, mm; 0 where either is free.
+#[inline]
 pub fn gap(from: Option<DVec2>, to: Option<DVec2>) -> f64 {
-    from.zip(to).map_or(0.0, |(a, b)| a.distance(b))
+    match (from, to) {
+        (Some(a), Some(b)) => a.distance(b),
+        _ => 0.0,
+    }
 }
 
 /// Nearest point of a straight edge.

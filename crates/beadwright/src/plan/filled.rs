@@ -8,28 +8,84 @@ use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
 use crate::slice::Slice;
+use crate::task::{Cancelled, Task};
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::{Bounds, Join, Polygon, Region};
+use rayon::prelude::*;
 
 /// A slice with the passes of its islands, not yet in order.
+#[derive(Clone)]
 pub(super) struct Filled {
     pub(super) slice: Slice,
     pub(super) fills: Vec<Fill>,
     pub(super) planned_area: f64,
+    /// Number of warnings that the slice came with.
+    pub(super) known: usize,
+    /// Whether other layers have the same passes.
+    pub(super) shared: bool,
+}
+
+/// Fills a batch of slices in parallel; `datum` is the place of the part. A slice like one before it takes its passes from
+/// there, where the strategy lays the same on every layer: prismatic parts are filled once.
+pub(super) fn fill_batch(
+    batch: Vec<Planned>,
+    strategy: &dyn Strategy,
+    profile: &Profile,
+    datum: DVec2,
+    task: &Task,
+) -> Result<Vec<Filled>, Cancelled> {
+    let like: Vec<usize> = (0..batch.len()).map(|i| first_like(&batch, i, strategy, profile)).collect();
+    let fill = |(i, layer): (usize, &Planned)| {
+        task.check()?;
+        Ok((like[i] == i).then(|| fill_planned(layer, strategy, profile, datum)))
+    };
+    let mut filled: Vec<Option<Filled>> = batch.par_iter().enumerate().map(fill).collect::<Result<_, _>>()?;
+    for (i, &first) in like.iter().enumerate().filter(|(i, first)| i != *first) {
+        filled[i] = filled[first].as_mut().map(|first| first.shared_with(&batch[i].slice));
+    }
+    Ok(filled.into_iter().flatten().collect())
+}
+
+/// The first slice of a batch that is filled like the one of number `i`; that may be itself.
+fn first_like(batch: &[Planned], i: usize, strategy: &dyn Strategy, profile: &Profile) -> usize {
+    let settings = |i: usize| FillSettings { layer: 0, ..settings_of(&batch[i], profile) };
+    // Short passes are told by the time that they take.
+    let rate = |i: usize| profile.process.at_layer(batch[i].slice.index).rate();
+    let alike = |k: &usize| {
+        batch[*k].slice.islands == batch[i].slice.islands
+            && batch[*k].slice.height == batch[i].slice.height
+            && settings(*k) == settings(i)
+            && rate(*k) == rate(i)
+    };
+    if strategy.repeats() { (0..i).find(alike).unwrap_or(i) } else { i }
+}
+
+impl Filled {
+    /// The same passes on another slice of the same shape.
+    fn shared_with(&mut self, slice: &Slice) -> Self {
+        self.shared = true;
+        let told = self.slice.warnings.iter().skip(self.known).map(|w| Warning { layer: slice.index, ..*w });
+        let warnings = slice.warnings.iter().copied().chain(told).collect();
+        Self { slice: Slice { warnings, ..slice.clone() }, known: slice.warnings.len(), ..self.clone() }
+    }
+}
+
+fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a> {
+    let mut settings = profile.fill_settings(layer.slice.index);
+    settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
+    settings.solid = layer.solid.as_ref();
+    settings
 }
 
 /// Fills a slice; `datum` is the place of the part.
-pub(super) fn fill_planned(layer: Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
-    let mut settings = profile.fill_settings(layer.slice.index);
-    settings.datum = datum;
-    settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
-    settings.solid = layer.solid.as_ref();
-    fill_layer(layer.slice, strategy, profile, &settings)
+pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
+    let settings = FillSettings { datum, ..settings_of(layer, profile) };
+    fill_layer(layer.slice.clone(), strategy, profile, &settings)
 }
 
 fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, settings: &FillSettings) -> Filled {
-    let (mut fills, mut planned_area) = (Vec::with_capacity(slice.islands.len()), 0.0);
+    let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
     for island in &slice.islands {
         let thin = strategy.welds_thin_walls();
         let known = slice.warnings.len();
@@ -60,7 +116,7 @@ fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, sett
         }
         fills.push(fill);
     }
-    Filled { slice, fills, planned_area }
+    Filled { slice, fills, planned_area, known: came_with, shared: false }
 }
 
 /// What beads leave bare is told when it is more than this part of an island.
@@ -148,8 +204,7 @@ const THIN_FEATURE: f64 = 0.25;
 /// Area of an island that a bead of the given width can reach without leaving it, mm²; warns of places it cannot reach.
 ///
 /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
-/// centre-lines and r half a width, it is area(C) + r · perimeter(C) + π r² · euler(C) (Steiner), as long as C is
-/// connected like the island; where C has come apart at a neck, its parts may reach the same points. So the shapes are
+/// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes are
 /// computed only at necks, and where this figure shows that something is lost.
 fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
     let r = width / 2.0;
@@ -161,13 +216,8 @@ fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>
         return 0.0;
     }
     let smallest = THIN_FEATURE * width * width;
-    if let [part] = centre.polygons()
-        && part.holes.len() == island.holes.len()
-    {
-        let opened = centre.area() + r * centre.perimeter() + std::f64::consts::PI * r * r * centre.euler() as f64;
-        if area - opened <= smallest {
-            return opened.clamp(0.0, area);
-        }
+    if let Some(opened) = island.reached_by_disc(r, &centre).filter(|opened| area - opened <= smallest) {
+        return opened.clamp(0.0, area);
     }
     let opened = centre.offset(r, Join::ROUND);
     let lost = Region::from(island.clone()).difference(&opened);

@@ -37,12 +37,11 @@ use crate::slice::{self, BATCH, LayerFit, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, WarningSummary, Warnings};
 use crate::weld;
-use filled::{Filled, drop_short, fill_planned};
+use filled::{Filled, drop_short};
 use glam::{DVec2, DVec3};
 use planar::medial::Node;
 use planar::{Bounds, Polygon};
 use rayon::prelude::*;
-use scan_lines::Planned;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -251,11 +250,7 @@ pub fn plan_with<S: Sink + Send>(
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
-        let fill = |layer: Planned| {
-            task.check()?;
-            Ok(fill_planned(layer, strategy, profile, datum))
-        };
-        planned.into_par_iter().map(fill).collect()
+        filled::fill_batch(planned, strategy, profile, datum, task)
     };
     let mut summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
@@ -424,6 +419,7 @@ fn run<S: Sink + Send>(
         profile,
         sink,
         torch: None,
+        memory: order::Memory::default(),
         below: Vec::new(),
         built: 0.0,
         points: 0,
@@ -477,7 +473,7 @@ fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile)
     }
     let planned_area = (covered.area() - bare.area).max(0.0);
     slice.islands = covered.into_polygons();
-    Filled { slice, fills: vec![fill], planned_area }
+    Filled { slice, fills: vec![fill], planned_area, known: 0, shared: false }
 }
 
 /// What is left bare of curves is told from this area on, in squared bead widths.
@@ -500,6 +496,7 @@ struct Emitter<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
     torch: Option<DVec2>,
+    memory: order::Memory,
     /// Outlines of the layer below, of the islands that are welded.
     below: Vec<Polygon>,
     /// Top of the highest layer with beads, mm.
@@ -511,7 +508,7 @@ struct Emitter<'a, S> {
 
 impl<S: Sink> Emitter<'_, S> {
     fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
-        let Filled { slice, fills, planned_area } = filled;
+        let Filled { slice, fills, planned_area, shared, .. } = filled;
         let Slice { index, z, height, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
@@ -519,7 +516,9 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let passes = passes(fills, index, (z, height), self.profile, &mut self.torch);
+        let order = self.profile.order_settings(index);
+        let paths = self.memory.order(fills, shared, &order, &mut self.torch);
+        let passes = lifted(paths, index, (z, height), self.profile);
         let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
         relight::relight(&mut layer, self.profile);
         self.doubts(&mut layer);
@@ -559,14 +558,19 @@ impl<S: Sink> Emitter<'_, S> {
     }
 }
 
-/// What is laid on a layer, in order and at its height; `top` and `thickness` of the layer, mm.
+/// What is laid on a layer, in order and at its height; top and thickness of the layer, mm.
 fn passes(
     fills: Vec<Fill>,
     layer: usize,
-    (top, thickness): (f64, f64),
+    heights: (f64, f64),
     profile: &Profile,
     torch: &mut Option<DVec2>,
 ) -> Vec<Pass> {
+    lifted(order::order(fills, &profile.order_settings(layer), torch), layer, heights, profile)
+}
+
+/// Paths at the height of their layer; its top and its thickness, mm.
+fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
     let lift = |path: Path| Pass {
         kind: path.kind,
         closed: path.closed,
@@ -575,7 +579,7 @@ fn passes(
         pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
         width: path.width,
     };
-    order::order(fills, &profile.order_settings(layer), torch).into_iter().map(lift).collect()
+    paths.into_iter().map(lift).collect()
 }
 
 /// A gap below a layer counts from this part of its thickness on.

@@ -4,6 +4,7 @@ use super::filled::{Filled, fill_planned};
 use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_of, strategy_of, weld_curves};
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
+use crate::order::Memory;
 use crate::profile::{Profile, RasterTurn};
 use crate::slice::{BATCH, Slab, Slicer};
 use crate::task::Task;
@@ -33,8 +34,17 @@ pub fn preview(
     let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
     // The layers below are taken for granted.
     let built = f64::INFINITY;
-    let mut emitter =
-        Emitter { profile, sink: &mut last, torch: None, below: Vec::new(), built, points: 0, metrics, warnings };
+    let mut emitter = Emitter {
+        profile,
+        sink: &mut last,
+        torch: None,
+        memory: Memory::default(),
+        below: Vec::new(),
+        built,
+        points: 0,
+        metrics,
+        warnings,
+    };
     filled.map(|filled| emitter.emit(filled)).transpose().map_err(PlanError::Sink)?;
     Ok(last.0)
 }
@@ -49,7 +59,7 @@ fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
         layer.slice.index = index;
         layer.slice.warnings.iter_mut().for_each(|warning| warning.layer = index);
-        fill_planned(layer, strategy, profile, super::middle(mesh))
+        fill_planned(&layer, strategy, profile, super::middle(mesh))
     });
     Ok(layer)
 }

@@ -91,6 +91,9 @@ pub(super) fn around<'a>(
     let limits = ThinLimits { bead_width: w, single: (single.0, single.1.min(DOUBLE * w)), double: DOUBLE * w };
     let mut result = Fill::default();
     for grown in island.offset(settings.machining_allowance, Join::ROUND).polygons() {
+        if limits.single.1 <= limits.double && is_thick(grown, &limits) {
+            return fill(island, settings);
+        }
         let split = split(grown, &limits);
         if split.thin.is_empty() {
             // Nothing was cut off.
@@ -141,6 +144,12 @@ fn nearest_stage(stages: &[Vec<Path>], walls: &[ThinWall]) -> usize {
     };
     let distances: Vec<f64> = stages.iter().map(distance).collect();
     (0..stages.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0)
+}
+
+/// Whether [`split`] would surely find no thin wall, told by one offset.
+fn is_thick(island: &Polygon, limits: &ThinLimits) -> bool {
+    let smallest = SMALLEST * limits.bead_width * limits.bead_width;
+    island.is_roomy_for_disc(limits.double / 2.0, smallest, Join::Round(ACCURACY * limits.bead_width))
 }
 
 /// Takes an island apart.

@@ -20,6 +20,10 @@ impl Strategy for Zigzag {
         "zigzag"
     }
 
+    fn repeats(&self) -> bool {
+        true
+    }
+
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
         thin::around(island, settings, |part, settings| self.lines(&self.infill(part, settings), settings))
     }

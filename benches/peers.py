@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""CPU seconds and peak memory of whole processes beside PrusaSlicer and CuraEngine, where these are installed.
+
+Solid prints, same layers and line widths for all: perimeters as the case says, 100 % rectilinear inside. CPU is user and
+system time together, so other jobs on the machine hardly matter; each figure is the median of RUNS by CPU.
+
+Debian: apt-get install prusa-slicer cura-engine cura   (cura holds the definitions, else $CURA_DEFINITIONS)
+Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--json FILE] [--binary target/release/beadwright]
+"""
+import argparse, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+MODELS = pathlib.Path(os.environ.get("BEADWRIGHT_MODELS", ROOT / "../shared/models"))
+DEFINITIONS = pathlib.Path(os.environ.get("CURA_DEFINITIONS", "/usr/share/cura/resources/definitions"))
+PROFILES = {
+    (0.45, 0.2): ROOT / "crates/beadwright/benches/fdm-0.45x0.2.toml",
+    (5.39, 2.0): ROOT / "crates/beadwright/benches/fdm-5.39x2.toml",
+}
+# Name, model, scale, (line width, layer height) in mm, perimeters.
+CASES = [
+    ("plate_holes", "plate_holes.stl", 1, (0.45, 0.2), 2),
+    ("openthruster", "openthruster_prop_cw.stl", 1, (0.45, 0.2), 1),
+    ("rear_case", "rear_case.stl", 1, (0.45, 0.2), 1),
+    ("bunny_70k", "bunny_closed.stl", 1, (0.45, 0.2), 1),
+    ("bunny_1.1M", "bunny_1114k.stl.gz", 1, (0.45, 0.2), 1),
+    ("bunny_1.1M_5.39", "bunny_1114k.stl.gz", 1, (5.39, 2.0), 1),
+    ("propeller_5.39", "bladex_propeller_zup.stl", 1, (5.39, 2.0), 1),
+    ("openthruster_x3.66_5.39", "openthruster_prop_cw.stl", 3.66, (5.39, 2.0), 1),
+]
+
+
+def model(name, scale, work):
+    """The model as a plain STL file of the wanted size."""
+    data = (MODELS / name).read_bytes()
+    data = bytearray(gzip.decompress(data) if name.endswith(".gz") else data)
+    if scale != 1:
+        for at in range(84, len(data) - 49, 50):
+            corners = struct.unpack_from("<9f", data, at + 12)
+            struct.pack_into("<9f", data, at + 12, *[scale * c for c in corners])
+    path = work / "model.stl"
+    path.write_bytes(data)
+    return path
+
+
+def ours(binary, part, bead, perimeters, work):
+    profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
+    (work / "profile.toml").write_text(profile)
+    return [binary, "plan", part, "-p", work / "profile.toml", "--no-deposit", "--allow-findings", "-o", work / "ours"]
+
+
+def prusa(part, bead, perimeters, work):
+    width, height = bead
+    keys = "extrusion-width first-layer-extrusion-width perimeter-extrusion-width external-perimeter-extrusion-width " \
+        "infill-extrusion-width solid-infill-extrusion-width top-infill-extrusion-width nozzle-diameter"
+    widths = [arg for key in keys.split() for arg in (f"--{key}", str(width))]
+    return ["prusa-slicer", "--export-gcode", part, "-o", work / "prusa.gcode", "--layer-height", str(height),
+            "--first-layer-height", str(2 * height), *widths, "--filament-diameter", "1.75", "--perimeters", str(perimeters),
+            "--fill-density", "100%", "--fill-pattern", "rectilinear", "--skirts", "0",
+            "--bed-shape", "0x0,600x0,600x600,0x600", "--max-print-height", "600"]
+
+
+def cura(part, bead, perimeters, work):
+    width, height = bead
+    values = {key: width for key in "line_width wall_line_width wall_line_width_0 wall_line_width_x skin_line_width "
+              "infill_line_width machine_nozzle_size".split()}
+    values |= dict(machine_width=600, machine_depth=600, machine_height=600, center_object="true", mesh_position_x=0,
+                   mesh_position_y=0, mesh_position_z=0, machine_center_is_zero="true", material_diameter=1.75,
+                   layer_height=height, layer_height_0=height, initial_layer_line_width_factor=100,
+                   wall_line_count=perimeters, wall_thickness=perimeters * width, bottom_layers=99999,
+                   initial_bottom_layers=99999, top_layers=0, top_bottom_pattern="zigzag", top_bottom_pattern_0="zigzag",
+                   skin_outline_count=0, infill_line_distance=0, adhesion_type="none", skirt_line_count=0,
+                   roofing_layer_count=0, cool_min_layer_time=0, prime_blob_enable="false")
+    settings = [arg for key, value in values.items() for arg in ("-s", f"{key}={value}")]
+    return ["CuraEngine", "slice", "-j", DEFINITIONS / "fdmprinter.def.json", *settings, "-e0", "-s",
+            "material_diameter=1.75", "-l", part, "-o", work / "cura.gcode"]
+
+
+def measured(command, runs):
+    """CPU s and peak MB: the median of some runs by CPU."""
+    figures = []
+    for _ in range(runs):
+        process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        _, status, used = os.wait4(process.pid, 0)
+        if status:
+            return None
+        figures.append((used.ru_utime + used.ru_stime, used.ru_maxrss / 1024))
+    cpu, peak = sorted(figures)[len(figures) // 2]
+    return {"cpu_s": round(cpu, 3), "peak_mb": round(peak, 1)}
+
+
+def version(command):
+    """What a program calls itself."""
+    told = subprocess.run(command, capture_output=True, text=True)
+    return next((line for line in (told.stdout + told.stderr).splitlines() if any(c.isdigit() for c in line)), "")
+
+
+def mean_ratio(rows, peer, key):
+    """Geometric mean of a peer's figure over ours."""
+    ratios = [row[peer][key] / row["beadwright"][key] for row in rows if row.get(peer) and row.get("beadwright")]
+    return math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else None
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--runs", type=int, default=3)
+    arguments.add_argument("--cases", default="")
+    arguments.add_argument("--json", type=pathlib.Path)
+    arguments.add_argument("--binary", type=pathlib.Path)
+    arguments.add_argument("--alone", action="store_true", help="leave the peers out")
+    given = arguments.parse_args()
+    if not given.binary:
+        subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "beadwright-cli"], cwd=ROOT, check=True)
+    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    binary = given.binary or target / "release/beadwright"
+    peers = {"PrusaSlicer": (prusa, "prusa-slicer"), "CuraEngine": (cura, "CuraEngine")}
+    peers = {} if given.alone else {name: of for name, (of, command) in peers.items() if shutil.which(command)}
+    rows = []
+    print(f"{'case':<26}" + "".join(f"{name:>22}" for name in [*peers, "beadwright"]) + "   (CPU s, peak MB)")
+    for name, file, scale, bead, perimeters in CASES:
+        if given.cases and name not in given.cases.split(","):
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            work = pathlib.Path(folder)
+            part = model(file, scale, work)
+            row = {"case": name} | {peer: measured(of(part, bead, perimeters, work), given.runs) for peer, of in peers.items()}
+            row["beadwright"] = measured(ours(binary, part, bead, perimeters, work), given.runs)
+        rows.append(row)
+        cells = [row[who] for who in [*peers, "beadwright"]]
+        print(f"{name:<26}" + "".join(f"{c['cpu_s']:>14.2f}{c['peak_mb']:>8.0f}" if c else f"{'refused':>22}" for c in cells), flush=True)
+    means = {peer: {key: mean_ratio(rows, peer, key) for key in ("cpu_s", "peak_mb")} for peer in peers}
+    for peer, mean in means.items():
+        if mean["cpu_s"]:
+            print(f"{peer}: {mean['cpu_s']:.2f} × our CPU, {mean['peak_mb']:.2f} × our memory (geometric mean)")
+    if given.json:
+        table = {"runs": given.runs, "beadwright": version([str(binary), "--version"]), "rows": rows, "means": means}
+        given.json.write_text(json.dumps(table, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
