@@ -8,8 +8,19 @@ use minijinja::{Error, ErrorKind, Value};
 use std::sync::Arc;
 
 /// Placeholders of the other dialects that are no values of a whole job.
-const CHANGING: [&str; 11] =
-    ["program", "layer", "layers", "z", "pass", "pass_number", "dwell", "dwell_ms", "wire_feed", "wire_feed_ratio"];
+const CHANGING: [&str; 11] = [
+    "program",
+    "layer",
+    "layers",
+    "z",
+    "pass",
+    "pass_number",
+    "job",
+    "dwell",
+    "dwell_ms",
+    "wire_feed",
+    "wire_feed_ratio",
+];
 
 /// What is the same all through a program.
 pub(super) fn job(job: &Job<'_>) -> Vec<(&'static str, Value)> {
