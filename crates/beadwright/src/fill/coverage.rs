@@ -300,7 +300,7 @@ mod tests {
             let at = |k: usize, t: f64| DVec2::new(30.0, 30.0) + way * t + way.perp() * (k % 23) as f64;
             let ends = |k: usize| {
                 let reach = 4.0 + (k * 7 % 11) as f64;
-                if k % 2 == 0 { [at(k, -reach), at(k, reach)] } else { [at(k, reach), at(k, 1.0 - reach)] }
+                if k.is_multiple_of(2) { [at(k, -reach), at(k, reach)] } else { [at(k, reach), at(k, 1.0 - reach)] }
             };
             let points: Vec<DVec2> = (0..40).flat_map(ends).collect();
             let path = |points: &[DVec2]| Path { points: points.to_vec(), ..line((0.0, 0.0), (0.0, 0.0), width) };
