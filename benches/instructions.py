@@ -16,7 +16,6 @@ MOST = 1.2
 CASES = [
     ("propeller, compound", "propeller", "crates/beadwright/benches/fdm-5.39x2.toml"),
     ("vase, compound", "vase", "crates/beadwright/benches/fdm-5.39x2.toml"),
-    ("gear, loop", "gear", "crates/beadwright/profiles/cmt-al2319-kuka.toml"),
 ]
 
 
