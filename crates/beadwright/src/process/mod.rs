@@ -70,7 +70,7 @@ pub struct Process {
     #[serde(default = "first")]
     pub job: u32,
     /// Other speeds for some layers; default none.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layers: Vec<LayerProcess>,
     /// Speed and wire feed of the present layer as a multiple of the nominal ones.
     #[serde(skip, default = "nominal")]
