@@ -42,7 +42,8 @@ fn agree(name: &str, settings: DepositSettings, [quick, slow]: &[Judgement; 2]) 
     near("low %", a.low_percent(), b.low_percent(), 0.3);
     near("mean", a.mean(), b.mean(), 1e-3 * h);
     near("deviation", a.deviation(), b.deviation(), 1e-3 * h);
-    near("max", a.max, b.max, 1e-4 * h);
+    // Crowns and hollows between points are found too.
+    assert!(a.max >= b.max - 1e-4 * h && a.max <= b.max + 0.01 * h, "{name}, max: {} for {}", a.max, b.max);
     assert!(a.min <= b.min + 1e-4 * h && a.min >= b.min - 0.05 * h, "{name}, min: {} for {}", a.min, b.min);
     let largest = |judged: &Judgement| judged.voids.first().map_or(0.0, |void| void.area);
     near("largest void mm²", largest(quick), largest(slow), 4.0 * settings.step * settings.step);

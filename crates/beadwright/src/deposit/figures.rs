@@ -1,6 +1,7 @@
 //! Areas and heights of a layer, or of many.
 
 use super::field::{Band, Grid, Height};
+use super::patch::Run;
 use super::ridges::Ridges;
 use super::stroke::Nominal;
 use super::tiles::Square;
@@ -58,12 +59,18 @@ impl Figures {
         Self { outside: outside as f64 * cell, ..tally.figures(cell) }
     }
 
-    /// The figures of a square of ridges.
-    pub(super) fn of_ridges(square: &Square, ridges: &Ridges, grid: &Grid) -> Self {
-        let area = (square.rows.len() * square.columns.len()) as f64 * grid.step * grid.step;
+    /// The figures of a square of ridges with its voids and humps.
+    pub(super) fn of_ridges(square: &Square, ridges: &Ridges, runs: &[Run], grid: &Grid) -> Self {
+        let cell = grid.step * grid.step;
+        let area = (square.rows.len() * square.columns.len()) as f64 * cell;
+        let of = |overfilled: bool| runs.iter().filter(move |run| run.overfilled == overfilled);
+        let points = |overfilled: bool| of(overfilled).map(|run| run.columns.len()).sum::<usize>();
+        let void = points(false) as f64 * cell;
         Self {
             area,
-            low: ridges.low * area,
+            void,
+            low: (ridges.low * area - void).max(0.0),
+            overfill: points(true) as f64 * cell,
             min: ridges.least,
             max: ridges.greatest,
             sum: ridges.mean * area,

@@ -91,7 +91,9 @@ impl Piece {
             (false, false) => places.for_each(|(value, t, y)| {
                 let inside = (1.0 - y * y).max(0.0);
                 let chord = 1.0 / inside.max(f32::MIN_POSITIVE).sqrt();
-                *value += height * (F::swept(inside, (length - t) * chord) - F::swept(inside, -t * chord));
+                let swept = F::swept(inside, (length - t) * chord) - F::swept(inside, -t * chord);
+                // Rounding must not take metal away.
+                *value += height * swept.max(0.0);
             }),
         }
     }
@@ -108,7 +110,7 @@ trait Pool {
     fn one_end(inside: f32, t: f32) -> f32 {
         let inside = inside.max(0.0);
         let chord = inside.max(f32::MIN_POSITIVE).sqrt();
-        0.5 * Self::whole(inside) + Self::swept(inside, t / chord)
+        (0.5 * Self::whole(inside) + Self::swept(inside, t / chord)).max(0.0)
     }
 }
 

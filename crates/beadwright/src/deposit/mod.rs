@@ -234,10 +234,12 @@ impl Eye<'_> {
             |seen, part| match part {
                 tiles::Part::Band(band) => self.take(seen, &band),
                 tiles::Part::Ridges(square, ridges) => {
-                    seen.figures.add(&Figures::of_ridges(&square, &ridges, self.grid));
+                    let runs = patch::runs_of_ridges(&square, &ridges, self.grid);
+                    seen.figures.add(&Figures::of_ridges(&square, &ridges, &runs, self.grid));
                     if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
-                        canvas.paint_ridges(strip, &square, &ridges);
+                        canvas.paint_ridges(strip, &square, &ridges, &runs);
                     }
+                    seen.runs.extend(runs);
                 }
             },
         )
@@ -299,11 +301,7 @@ impl Mask {
     }
 }
 
-fn columns<'a>(
-    crossings: &'a [Vec<f64>],
-    grid: &'a Grid,
-    row: usize,
-) -> impl Iterator<Item = Range<usize>> + 'a {
+fn columns<'a>(crossings: &'a [Vec<f64>], grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
     let pairs = crossings.get(row).map_or(&[][..], Vec::as_slice).chunks_exact(2);
     let mut end = 0;
     let columns = pairs.map(move |pair| {

@@ -88,14 +88,19 @@ impl Canvas {
                 }
             }
         }
+        self.paint_voids(strip, runs);
+    }
+
+    fn paint_voids(&self, strip: &mut Strip, runs: &[Run]) {
         for run in runs.iter().filter(|run| !run.overfilled) {
             let line = self.line(strip, run.row);
             self.pixels(&run.columns).for_each(|(pixel, _)| line[pixel].void = true);
         }
     }
 
-    /// Adds a square of ridges.
-    pub(super) fn paint_ridges(&self, strip: &mut Strip, square: &Square, ridges: &Ridges) {
+    /// Adds a square of ridges, and of the voids in it.
+    pub(super) fn paint_ridges(&self, strip: &mut Strip, square: &Square, ridges: &Ridges, runs: &[Run]) {
+        self.paint_voids(strip, runs);
         let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
         let center = DVec2::new(middle(&square.columns), middle(&square.rows));
         for (_, rows) in self.pixels(&square.rows) {

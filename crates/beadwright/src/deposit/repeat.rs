@@ -39,7 +39,8 @@ impl Known {
 }
 
 fn same_layer(a: &Layer, b: &Layer, near: f64) -> bool {
-    all(&a.passes, &b.passes, |a, b| same_pass(a, b, near)) && all(&a.islands, &b.islands, |a, b| same_island(a, b, near))
+    all(&a.passes, &b.passes, |a, b| same_pass(a, b, near))
+        && all(&a.islands, &b.islands, |a, b| same_island(a, b, near))
 }
 
 fn same_pass(a: &Pass, b: &Pass, near: f64) -> bool {

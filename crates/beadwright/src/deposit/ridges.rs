@@ -7,6 +7,7 @@
 use super::stroke::Frame;
 use super::{LOW, OVERFILL, VOID};
 use glam::DVec2;
+use std::ops::Range;
 
 /// More beads than these beside each other are not taken together.
 pub(super) const MOST: usize = 12;
@@ -14,7 +15,7 @@ pub(super) const MOST: usize = 12;
 const SAMPLES: usize = 64;
 const LANES: usize = 8;
 
-/// A square crossed by parallel beads that leave neither void nor hump in it.
+/// A square crossed by parallel beads. Their voids and humps are stripes along them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ridges {
     /// Where the crests lie across the beads, in half bead widths from the middle of the square, rising.
@@ -31,20 +32,45 @@ pub(super) struct Ridges {
     /// Least and greatest height, mm.
     pub(super) least: f64,
     pub(super) greatest: f64,
+    stripes: [Stripe; MOST_STRIPES],
+    stripe_count: usize,
+}
+
+/// More voids and humps beside each other are not taken together.
+const MOST_STRIPES: usize = 2 * MOST;
+
+/// Where the beads leave a void or a hump between them: places across in half bead widths.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stripe {
+    low: f64,
+    high: f64,
+    /// Where it is deepest or highest.
+    extreme: f64,
+    overfilled: bool,
 }
 
 impl Ridges {
     /// The beads like `frame` whose crests lie at `offsets` (mm across, from the middle of the square, in any order), over
-    /// a square that reaches `half` mm to every side of its middle, half a step of the grid included. `None` where a place in it, or between its crests,
-    /// might be a void or overfilled for a nominal bead of that height.
+    /// a square that reaches `half` mm to every side of its middle, half a step of the grid included. `None` where more
+    /// than two beads meet or none does, or where a void lies beyond the last crest, for a nominal bead of that height.
     pub(super) fn of(frame: &Frame, offsets: &mut [f64], half: f64, nominal_height: f64) -> Option<Self> {
         let (a, scale) = (frame.a, nominal_height / frame.height);
         let reach = half * (frame.along.x.abs() + frame.along.y.abs()) / a;
         offsets.sort_unstable_by(f64::total_cmp);
         offsets.iter_mut().for_each(|offset| *offset /= a);
         let (least, greatest) = extremes(offsets, reach)?;
+        let mut stripes = [Stripe::default(); MOST_STRIPES];
+        let mut stripe_count = 0;
         if least <= VOID * scale || greatest >= OVERFILL * scale {
-            return None;
+            let (first, last) = (offsets.first()?, offsets.last()?);
+            let edge = (1.0 - VOID * scale).max(0.0).sqrt();
+            if first + reach >= edge || reach - last >= edge {
+                return None;
+            }
+            for stripe in offsets.windows(2).flat_map(|pair| between(pair[0], pair[1], scale)).flatten() {
+                *stripes.get_mut(stripe_count)? = stripe;
+                stripe_count += 1;
+            }
         }
         let mut crests = [0.0; MOST];
         crests.get_mut(..offsets.len())?.iter_mut().zip(&*offsets).for_each(|(c, offset)| *c = *offset as f32);
@@ -60,7 +86,38 @@ impl Ridges {
             square: h * h * means.square,
             least: h * least,
             greatest: h * greatest,
+            stripes,
+            stripe_count,
         })
+    }
+
+    /// The voids and humps along a row of points, the first of them `start` mm across from the middle of the square and
+    /// each next one `step` mm farther: whether it is a hump, which points, the deepest or highest of them, its height in mm.
+    pub(super) fn stripes(
+        &self,
+        start: f64,
+        step: f64,
+        points: usize,
+    ) -> impl Iterator<Item = (bool, Range<usize>, usize, f64)> {
+        let (start, step) = (start / self.half_width, step / self.half_width);
+        self.stripes[..self.stripe_count].iter().filter_map(move |stripe| {
+            let at = |place: f64| ((place - start) / step).clamp(-1.0, points as f64);
+            let found = if step.abs() < 1e-9 {
+                if stripe.low < start && start < stripe.high { 0..points } else { 0..0 }
+            } else {
+                let (a, b) = (at(stripe.low), at(stripe.high));
+                (a.min(b).floor() + 1.0) as usize..a.max(b).ceil() as usize
+            };
+            let last = found.end.checked_sub(1).filter(|last| *last >= found.start)?;
+            let extreme = (at(stripe.extreme).round().max(0.0) as usize).clamp(found.start, last);
+            Some((stripe.overfilled, found, extreme, self.height_at(start + extreme as f64 * step)))
+        })
+    }
+
+    /// The height, mm, at a place across in half bead widths.
+    fn height_at(&self, place: f64) -> f64 {
+        let bead = |crest: &f32| (1.0 - (place - f64::from(*crest)).powi(2)).max(0.0);
+        self.crests[..self.count].iter().map(bead).sum::<f64>() * self.height
     }
 
     /// Mean height, mm, over a stretch of `length` mm across the beads around `middle`.
@@ -75,16 +132,46 @@ impl Ridges {
     }
 }
 
+/// The voids and humps between two crests, 1 to 2 half bead widths apart.
+fn between(a: f64, b: f64, scale: f64) -> [Option<Stripe>; 2] {
+    let (half, middle) = ((b - a) / 2.0, (a + b) / 2.0);
+    let crown = 2.0 - 2.0 * half * half;
+    // Within this distance of the middle both beads add up to more than a limit.
+    let above = |limit: f64| ((crown - limit * scale) / 2.0).max(0.0).sqrt();
+    if crown > OVERFILL * scale {
+        let reach = above(OVERFILL);
+        return [Some(Stripe { low: middle - reach, high: middle + reach, extreme: middle, overfilled: true }), None];
+    }
+    // A bead alone is too low within `edge` of the middle; the deepest place is where the other begins.
+    let (edge, deepest) = (half - (1.0 - VOID * scale).max(0.0).sqrt(), 1.0 - half);
+    if edge <= deepest {
+        return [None, None];
+    }
+    match above(VOID) {
+        0.0 => [
+            Some(Stripe { low: middle - edge, high: middle + edge, extreme: middle - deepest, overfilled: false }),
+            None,
+        ],
+        inner => [-1.0, 1.0].map(|side| {
+            let (p, q) = (middle + side * inner, middle + side * edge);
+            Some(Stripe { low: p.min(q), high: p.max(q), extreme: middle + side * deepest, overfilled: false })
+        }),
+    }
+}
+
 /// Bounds of the height over `reach` to both sides of the middle; `None` where more than two beads meet, or none does.
 fn extremes(crests: &[f64], reach: f64) -> Option<(f64, f64)> {
     let (first, last) = (crests.first()?, crests.last()?);
     // Beyond the outer crests one bead stands alone.
     let alone = |distance: f64| 1.0 - distance.max(0.0).powi(2);
     let mut bounds = (alone(first + reach).min(alone(reach - last)), 1.0_f64);
-    for pair in crests.windows(2).filter(|pair| pair[0] < reach && pair[1] > -reach) {
+    for pair in crests.windows(2) {
         let gap = pair[1] - pair[0];
         if !(1.0..2.0).contains(&gap) {
             return None;
+        }
+        if pair[0] >= reach || pair[1] <= -reach {
+            continue;
         }
         bounds = (bounds.0.min(alone(gap - 1.0)), bounds.1.max(2.0 - gap * gap / 2.0));
     }

@@ -86,7 +86,10 @@ impl Excess {
             for columns in mask.core(band.grid, row) {
                 let columns = band.within(&columns);
                 let target = &mut values[k * width..][columns.clone()];
-                target.iter_mut().zip(&heights[columns]).for_each(|(value, height)| *value = (height.mm() - rise) as f32);
+                target
+                    .iter_mut()
+                    .zip(&heights[columns])
+                    .for_each(|(value, height)| *value = (height.mm() - rise) as f32);
             }
         }
         Self { first: band.first, columns: band.columns.clone(), values }

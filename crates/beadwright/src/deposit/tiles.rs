@@ -1,10 +1,11 @@
 //! The quick way over a layer: squares of the grid, row after row of them, each judged as cheaply as it allows.
 //!
 //! A square without metal outside the outline is passed over. One inside it that parallel beads cross from side to side
-//! without void or hump is known in closed form ([`Ridges`]). All others, at edges, ends and turns, are computed point
-//! by point ([`lay`]). So voids, overfill and metal outside are counted on the same points as by the reference
+//! is known from a line across it ([`Ridges`]). All others, at edges, ends and turns, are computed point by point
+//! ([`lay`]). So voids, overfill and metal outside are counted on the same points as by the reference
 //! ([`field`](super::field)), and differ only where single precision puts a height on the other side of a limit; only the
-//! mean, deviation and low area of ridges are taken along a line across them, and their least height is the true one.
+//! mean, deviation and low area of ridges are taken along a line across them, and their least and
+//! greatest heights are the true ones, wherever the points lie.
 
 use super::field::{self, Band, Grid};
 use super::lay;
