@@ -48,7 +48,7 @@ impl Grid {
     /// The columns whose points lie from `low` to `high` (mm).
     pub(super) fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
         let column = |x: f64| (x / self.step - self.low.x as f64).clamp(0.0, self.columns as f64);
-        column(low).ceil() as usize..(column(high).floor() as usize + 1).min(self.columns)
+        up(column(low))..(column(high) as usize + 1).min(self.columns)
     }
 
     /// Rows of one band.
@@ -59,6 +59,12 @@ impl Grid {
     pub(super) fn row_at(&self, y: f64) -> f64 {
         y / self.step - self.low.y as f64
     }
+}
+
+/// Rounded up, for what is not negative; without a call into the library of mathematics.
+pub(super) fn up(x: f64) -> usize {
+    let down = x as usize;
+    down + usize::from(x > down as f64)
 }
 
 /// A height in double or in single precision, mm.
