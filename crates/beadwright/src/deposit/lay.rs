@@ -2,7 +2,8 @@
 //! [`stroke`](super::stroke) with lengths in half bead widths, straight-line code that becomes vector instructions.
 //!
 //! Places are taken in double precision at the beginning of each row and stepped from there, so that a part far from
-//! the origin loses nothing. The error of a piece stays below 1e-5 of its height.
+//! the origin loses nothing. The error of a piece stays below 1e-4 of its height: a piece of 1000 half
+//! bead widths has the place of its far end to 6e-5 of one.
 
 use super::field::Band;
 use super::stroke::{Domed, Even, Frame, Rimmed};
@@ -129,7 +130,7 @@ impl Pool for Domed {
 impl Pool for Even {
     #[inline(always)]
     fn swept(inside: f32, u: f32) -> f32 {
-        0.5 * inside.sqrt() * u.max(-1.0).min(1.0)
+        0.5 * inside.sqrt() * u.clamp(-1.0, 1.0)
     }
 
     #[inline(always)]
@@ -142,7 +143,7 @@ impl Pool for Rimmed {
     #[inline(always)]
     fn swept(inside: f32, u: f32) -> f32 {
         // Off the bead there is nothing to sweep.
-        if inside > 0.0 { FRAC_1_PI * asin(u.max(-1.0).min(1.0)) } else { 0.0 }
+        if inside > 0.0 { FRAC_1_PI * asin(u.clamp(-1.0, 1.0)) } else { 0.0 }
     }
 
     #[inline(always)]
@@ -155,7 +156,7 @@ impl Pool for Rimmed {
 /// fitted at Chebyshev points; error 6e-7.
 #[inline(always)]
 fn swept(u: f32) -> f32 {
-    const P: [f32; 5] = [FRAC_PI_2, 0.356_161_73, -0.054_236_05, 0.016_898_216, -0.004_072_184_4];
+    const P: [f32; 5] = [FRAC_PI_2, 0.356_161_73, -0.054_236_05, 0.016_898_216, -0.004_072_184];
     let x = u.abs().min(1.0);
     let rest = 1.0 - x;
     let series = P.iter().rev().fold(0.0, |sum, p| sum * x + p);

@@ -232,12 +232,12 @@ impl Eye<'_> {
             strokes,
             |rows| self.begin(rows),
             |seen, part| match part {
-                tiles::Part::Band(band) => self.take(seen, &band),
+                tiles::Part::Band(band) => self.take(seen, band),
                 tiles::Part::Ridges(square, ridges) => {
-                    let runs = patch::runs_of_ridges(&square, &ridges, self.grid);
-                    seen.figures.add(&Figures::of_ridges(&square, &ridges, &runs, self.grid));
+                    let runs = patch::runs_of_ridges(square, ridges, self.grid);
+                    seen.figures.add(&Figures::of_ridges(square, ridges, &runs, self.grid));
                     if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
-                        canvas.paint_ridges(strip, &square, &ridges, &runs);
+                        canvas.paint_ridges(strip, square, ridges, &runs);
                     }
                     seen.runs.extend(runs);
                 }

@@ -104,19 +104,18 @@ impl Ridges {
     ) -> impl Iterator<Item = (bool, Range<usize>, usize, f64)> {
         let (start, step) = (start / self.half_width, step / self.half_width);
         let end = start + step * (points - 1) as f64;
-        let (low, high, columns) = (start.min(end) - ALONG, start.max(end) + ALONG, 1.0 / step);
+        let (low, high, columns) = (start.min(end), start.max(end), 1.0 / step);
         let at = move |place: f64| ((place - start) * columns).clamp(-1.0, points as f64);
         let met = self.stripes[..self.stripe_count].iter().filter(move |s| s.low < high && s.high > low);
         met.filter_map(move |stripe| {
-            let found = if step.abs() < ALONG {
-                if stripe.low < start && start < stripe.high { 0..points } else { 0..0 }
-            } else {
-                let (a, b) = (at(stripe.low), at(stripe.high));
-                // The next whole number above the lower end, and the first one at the upper end or above.
-                (a.min(b) + 1.0) as usize..field::up(a.max(b).max(0.0))
-            };
-            let last = found.end.checked_sub(1).filter(|last| *last >= found.start)?;
-            let extreme = (at(stripe.extreme).max(0.0).round() as usize).clamp(found.start, last);
+            let (a, b) = if step.abs() < ALONG { (-1.0, points as f64) } else { (at(stripe.low), at(stripe.high)) };
+            let (first, end) = ((a.min(b) + 1.0) as u32, a.max(b));
+            // Most stripes are so narrow that no point of the row lies in them.
+            if f64::from(first) >= end {
+                return None;
+            }
+            let found = first as usize..field::up(end);
+            let extreme = (at(stripe.extreme).max(0.0).round() as usize).clamp(found.start, found.end - 1);
             Some((stripe.overfilled, found, extreme, self.height_at(start + extreme as f64 * step)))
         })
     }
@@ -131,7 +130,7 @@ impl Ridges {
     pub(super) fn mean_around(&self, middle: f64, length: f64) -> f64 {
         let (middle, half) = ((middle / self.half_width) as f32, (0.5 * length / self.half_width) as f32);
         let swept = |s: f32| {
-            let s = s.max(-1.0).min(1.0);
+            let s = s.clamp(-1.0, 1.0);
             s - s * s * s / 3.0
         };
         let of = |crest: &f32| swept(middle + half - crest) - swept(middle - half - crest);

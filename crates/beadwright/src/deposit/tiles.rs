@@ -33,9 +33,9 @@ pub(super) struct Field<'a> {
 /// A part of a layer that has been looked at.
 pub(super) enum Part<'a> {
     /// Computed point by point.
-    Band(Band<'a, f32>),
+    Band(&'a Band<'a, f32>),
     /// A whole square of ridges.
-    Ridges(Square, Ridges),
+    Ridges(&'a Square, &'a Ridges),
 }
 
 /// A square of the grid.
@@ -89,12 +89,12 @@ impl Field<'_> {
                 let mut band = Band::bare(self.grid, rows.clone(), columns);
                 let near = pieces.iter().filter(|(_, under)| under.start < at && under.end > start);
                 near.for_each(|(frame, _)| lay::add(frame, &mut band));
-                take(Part::Band(band));
+                take(Part::Band(&band));
                 continue;
             }
-            if let (Some(ridges), Some(frame)) = (ridges[at], cells[at].first) {
+            if let (Some(ridges), Some(frame)) = (&ridges[at], cells[at].first) {
                 let columns = at * SIDE..(at * SIDE + SIDE).min(self.grid.columns);
-                take(Part::Ridges(Square { rows: rows.clone(), columns, along: frame.along }, ridges));
+                take(Part::Ridges(&Square { rows: rows.clone(), columns, along: frame.along }, ridges));
             }
             at += 1;
         }
