@@ -1,11 +1,14 @@
-//! The height field of a layer on a grid, computed in bands of rows: each band looks only at the pieces of bead that
-//! reach it, bands run in parallel, and none is kept unless asked for.
+//! The height field of a layer on a grid, every point in double precision, computed in bands of rows: each band looks
+//! only at the pieces of bead that reach it, bands run in parallel, and none is kept unless asked for.
+//!
+//! This is the reference: a [`Judge`](super::Judge) takes the quick way ([`tiles`](super::tiles)) to the same figures.
 
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
 use crate::bead::Section;
 use glam::{DVec2, I64Vec2};
 use planar::Bounds;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A band holds about this many points, so that it stays in the cache.
 const BAND_POINTS: usize = 1 << 14;
@@ -43,9 +46,9 @@ impl Grid {
     }
 
     /// The columns whose points lie from `low` to `high` (mm).
-    pub(super) fn columns_between(&self, low: f64, high: f64) -> std::ops::Range<usize> {
+    pub(super) fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
         let column = |x: f64| (x / self.step - self.low.x as f64).clamp(0.0, self.columns as f64);
-        column(low).ceil() as usize..(column(high).floor() as usize + 1).min(self.columns)
+        up(column(low))..(column(high) as usize + 1).min(self.columns)
     }
 
     /// Rows of one band.
@@ -53,28 +56,76 @@ impl Grid {
         (BAND_POINTS / self.columns.max(1)).clamp(1, self.rows.max(1))
     }
 
-    fn row_at(&self, y: f64) -> f64 {
+    pub(super) fn row_at(&self, y: f64) -> f64 {
         y / self.step - self.low.y as f64
     }
 }
 
-/// Some rows of a height field.
+/// Rounded up, for what is not negative; without a call into the library of mathematics.
+pub(super) fn up(x: f64) -> usize {
+    let down = x as usize;
+    down + usize::from(x > down as f64)
+}
+
+/// A height in double or in single precision, mm.
+pub trait Height: Copy + PartialOrd + Default + Send + Sync {
+    /// From double precision.
+    fn of(height: f64) -> Self;
+    /// In double precision.
+    fn mm(self) -> f64;
+}
+
+impl Height for f64 {
+    fn of(height: f64) -> Self {
+        height
+    }
+
+    fn mm(self) -> f64 {
+        self
+    }
+}
+
+impl Height for f32 {
+    fn of(height: f64) -> Self {
+        height as Self
+    }
+
+    fn mm(self) -> f64 {
+        self.into()
+    }
+}
+
+/// A rectangle of a height field.
 #[derive(Debug)]
-pub struct Band<'a> {
+pub struct Band<'a, H = f64> {
     /// The whole grid.
     pub grid: &'a Grid,
     /// The first row.
     pub first: usize,
+    /// The columns.
+    pub columns: Range<usize>,
     /// Heights, mm, row after row.
-    pub heights: Vec<f64>,
+    pub heights: Vec<H>,
     /// Number of points computed, summed over the pieces.
     pub work: usize,
 }
 
-impl Band<'_> {
+impl<'a, H: Height> Band<'a, H> {
+    /// Without metal.
+    pub(super) fn bare(grid: &'a Grid, rows: Range<usize>, columns: Range<usize>) -> Self {
+        let heights = vec![H::default(); rows.len() * columns.len()];
+        Self { grid, first: rows.start, columns, heights, work: 0 }
+    }
+
     /// The rows with their numbers.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        self.heights.chunks(self.grid.columns.max(1)).enumerate().map(|(k, row)| (self.first + k, row))
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &[H])> {
+        self.heights.chunks(self.columns.len().max(1)).enumerate().map(|(k, row)| (self.first + k, row))
+    }
+
+    /// The part of some columns of the grid that lies in the band, counted from the band's first.
+    pub(super) fn within(&self, columns: &Range<usize>) -> Range<usize> {
+        let at = |column: usize| column.clamp(self.columns.start, self.columns.end) - self.columns.start;
+        at(columns.start)..at(columns.end).max(at(columns.start))
     }
 }
 
@@ -83,19 +134,11 @@ impl Band<'_> {
 pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) -> R + Sync) -> Vec<R> {
     let frames: Vec<Frame> = strokes.iter().filter_map(Stroke::frame).collect();
     let height = grid.band_rows();
-    let mut reaching: Vec<Vec<u32>> = vec![Vec::new(); grid.rows.div_ceil(height)];
-    for (i, frame) in frames.iter().enumerate() {
-        let (a, b) = (frame.from.y, frame.from.y + frame.along.y * frame.length);
-        let low = grid.row_at(a.min(b) - frame.a).max(0.0) as usize / height;
-        let high = grid.row_at(a.max(b) + frame.a).max(0.0) as usize / height;
-        reaching.iter_mut().take(high + 1).skip(low).for_each(|band| band.push(i as u32));
-    }
-    let answer = |(k, reaching): (usize, &Vec<u32>)| {
-        let first = k * height;
-        let rows = height.min(grid.rows - first);
-        let mut band = Band { grid, first, heights: vec![0.0; rows * grid.columns], work: 0 };
-        for &i in reaching {
-            let frame = &frames[i as usize];
+    let reaching = reaching(&frames, grid, height);
+    let answer = |(k, reaching): (usize, &Vec<&Frame>)| {
+        let rows = k * height..(k * height + height).min(grid.rows);
+        let mut band = Band::bare(grid, rows, 0..grid.columns);
+        for frame in reaching {
             match frame.section {
                 Section::Parabola => lay::<Domed>(frame, &mut band),
                 Section::Ellipse => lay::<Even>(frame, &mut band),
@@ -105,6 +148,18 @@ pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) 
         visit(band)
     };
     reaching.par_iter().enumerate().map(answer).collect()
+}
+
+/// The pieces that reach each band of `height` rows.
+pub(super) fn reaching<'f>(frames: &'f [Frame], grid: &Grid, height: usize) -> Vec<Vec<&'f Frame>> {
+    let mut reaching: Vec<Vec<&Frame>> = vec![Vec::new(); grid.rows.div_ceil(height)];
+    for frame in frames {
+        let (a, b) = (frame.from.y, frame.from.y + frame.along.y * frame.length);
+        let low = grid.row_at(a.min(b) - frame.a).max(0.0) as usize / height;
+        let high = grid.row_at(a.max(b) + frame.a).max(0.0) as usize / height;
+        reaching.iter_mut().take(high + 1).skip(low).for_each(|band| band.push(frame));
+    }
+    reaching
 }
 
 fn lay<F: Footprint>(frame: &Frame, band: &mut Band<'_>) {

@@ -1,7 +1,10 @@
 //! Areas and heights of a layer, or of many.
 
-use super::field::Band;
+use super::field::{Band, Grid, Height};
+use super::patch::Run;
+use super::ridges::Ridges;
 use super::stroke::Nominal;
+use super::tiles::Square;
 use super::{LOW, Mask, OUTSIDE, OVERFILL, VOID};
 use serde::Serialize;
 
@@ -42,39 +45,37 @@ pub struct Figures {
 
 impl Figures {
     /// The figures of a band.
-    pub(super) fn of(band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Self {
+    pub(super) fn of<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal) -> Self {
         let h = nominal.bead.height;
-        let mut count = Counts::default();
-        let (mut sum, mut squares, mut min, mut max) = (0.0, 0.0, f64::INFINITY, 0.0_f64);
+        let mut tally = Tally::new(nominal);
+        let metal = |heights: &[H]| heights.iter().map(|&height| u32::from(height > H::of(OUTSIDE * h))).sum::<u32>();
+        let mut outside = 0_i64;
         for (row, heights) in band.rows() {
-            for columns in mask.core(band.grid, row) {
-                for &height in &heights[columns] {
-                    count.core += 1;
-                    count.void += usize::from(height < VOID * h);
-                    count.low += usize::from(height < LOW * h);
-                    count.overfill += usize::from(height > OVERFILL * h);
-                    sum += height;
-                    squares += height * height;
-                    min = min.min(height);
-                    max = max.max(height);
-                }
-            }
-            let metal = |heights: &[f64]| heights.iter().filter(|&&height| height > OUTSIDE * h).count();
-            let allowed: usize = mask.allowed(band.grid, row).map(|columns| metal(&heights[columns])).sum();
-            count.outside += metal(heights) - allowed;
+            mask.core(band.grid, row).for_each(|columns| tally.add(&heights[band.within(&columns)]));
+            let allowed = |columns| i64::from(metal(&heights[band.within(&columns)]));
+            outside += i64::from(metal(heights)) - mask.allowed(band.grid, row).map(allowed).sum::<i64>();
         }
         let cell = band.grid.step * band.grid.step;
+        Self { outside: outside as f64 * cell, ..tally.figures(cell) }
+    }
+
+    /// The figures of a square of ridges with its voids and humps.
+    pub(super) fn of_ridges(square: &Square, ridges: &Ridges, runs: &[Run], grid: &Grid) -> Self {
+        let cell = grid.step * grid.step;
+        let area = (square.rows.len() * square.columns.len()) as f64 * cell;
+        let of = |overfilled: bool| runs.iter().filter(move |run| run.overfilled == overfilled);
+        let points = |overfilled: bool| of(overfilled).map(|run| run.columns.len()).sum::<usize>();
+        let void = points(false) as f64 * cell;
         Self {
-            area: count.core as f64 * cell,
-            void: count.void as f64 * cell,
-            low: (count.low - count.void) as f64 * cell,
-            overfill: count.overfill as f64 * cell,
-            outside: count.outside as f64 * cell,
-            deposited_volume: 0.0,
-            min: if count.core > 0 { min } else { 0.0 },
-            max,
-            sum: sum * cell,
-            squares: squares * cell,
+            area,
+            void,
+            low: (ridges.low * area - void).max(0.0),
+            overfill: points(true) as f64 * cell,
+            min: ridges.least,
+            max: ridges.greatest,
+            sum: ridges.mean * area,
+            squares: ridges.square * area,
+            ..Self::default()
         }
     }
 
@@ -144,11 +145,70 @@ impl Figures {
     }
 }
 
-#[derive(Default)]
-struct Counts {
-    core: usize,
-    void: usize,
-    low: usize,
-    overfill: usize,
-    outside: usize,
+/// Heights are added up side by side in so many sums, as the processor does; the order never changes.
+const LANES: usize = 8;
+
+/// The points of the judged area.
+struct Tally<H> {
+    /// Below which a point is a void, below which it is low, and above which it is overfilled.
+    limits: [H; 3],
+    points: usize,
+    counts: [[u32; LANES]; 3],
+    sums: [f64; LANES],
+    squares: [f64; LANES],
+    min: [H; LANES],
+    max: [H; LANES],
+}
+
+impl<H: Height> Tally<H> {
+    fn new(nominal: &Nominal) -> Self {
+        Self {
+            limits: [VOID, LOW, OVERFILL].map(|limit| H::of(limit * nominal.bead.height)),
+            points: 0,
+            counts: Default::default(),
+            sums: Default::default(),
+            squares: Default::default(),
+            min: [H::of(f64::INFINITY); LANES],
+            max: Default::default(),
+        }
+    }
+
+    fn add(&mut self, heights: &[H]) {
+        self.points += heights.len();
+        let (whole, rest) = heights.as_chunks::<LANES>();
+        whole.iter().for_each(|heights| self.add_lanes(heights, LANES));
+        let mut last = [H::default(); LANES];
+        last[..rest.len()].copy_from_slice(rest);
+        self.add_lanes(&last, rest.len());
+    }
+
+    #[inline(always)]
+    fn add_lanes(&mut self, heights: &[H; LANES], lanes: usize) {
+        let [void, low, overfill] = self.limits;
+        for (k, &height) in heights.iter().enumerate().take(lanes) {
+            self.counts[0][k] += u32::from(height < void);
+            self.counts[1][k] += u32::from(height < low);
+            self.counts[2][k] += u32::from(height > overfill);
+            self.sums[k] += height.mm();
+            self.squares[k] += height.mm() * height.mm();
+            self.min[k] = if height < self.min[k] { height } else { self.min[k] };
+            self.max[k] = if height > self.max[k] { height } else { self.max[k] };
+        }
+    }
+
+    fn figures(&self, cell: f64) -> Figures {
+        let [void, low, overfill] = self.counts.map(|lanes| lanes.iter().sum::<u32>());
+        let min = self.min.iter().map(|h| h.mm()).fold(f64::INFINITY, f64::min);
+        Figures {
+            area: self.points as f64 * cell,
+            void: f64::from(void) * cell,
+            low: f64::from(low - void) * cell,
+            overfill: f64::from(overfill) * cell,
+            min: if self.points > 0 { min } else { 0.0 },
+            max: self.max.iter().map(|h| h.mm()).fold(0.0, f64::max),
+            sum: self.sums.iter().sum::<f64>() * cell,
+            squares: self.squares.iter().sum::<f64>() * cell,
+            ..Figures::default()
+        }
+    }
 }

@@ -1,7 +1,9 @@
 //! The deposit model: what a layer's passes would build, as a height field, and what is wrong with it.
 //!
 //! Our plans and other programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their heights
-//! ([`stroke`]: the closed form) add up on a [grid](field::Grid) ([`field`]). Only one layer is held in memory.
+//! ([`stroke`]: the closed form) add up on a [grid](field::Grid). [`field`] does so at every point in double precision; a
+//! [`Judge`] takes the same points in single precision, but passes over those whose verdict is known before (`tiles`),
+//! and over layers that repeat an earlier one. Only a few layers are held in memory.
 //!
 //! Inside the outline, less a rim of a quarter of a bead width, a point is a *void* below [`VOID`] times the nominal
 //! bead height, *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than
@@ -10,10 +12,14 @@
 pub mod corner;
 pub mod field;
 pub mod figures;
+mod lay;
 pub mod patch;
 pub mod picture;
+mod repeat;
+mod ridges;
 pub mod stack;
 pub mod stroke;
+mod tiles;
 
 pub use figures::Figures;
 pub use patch::{Cause, Patch};
@@ -22,10 +28,12 @@ pub use stack::Stack;
 pub use stroke::{Nominal, Stroke};
 
 use crate::layer::Layer;
-use field::{Band, Grid};
+use field::{Band, Grid, Height};
 use glam::DVec2;
 use patch::Run;
+use picture::Canvas;
 use planar::{Bounds, Join, Polygon, Region};
+use std::ops::Range;
 
 /// Below this fraction of the nominal bead height a point is a void.
 pub const VOID: f64 = 0.35;
@@ -93,13 +101,29 @@ pub struct Judge {
     settings: DepositSettings,
     stack: Option<Stack>,
     picture_pixels: Option<usize>,
+    every_point: bool,
+    known: repeat::Known,
     total: Figures,
 }
 
 impl Judge {
     /// A judge that forgets each layer.
     pub fn new(settings: DepositSettings) -> Self {
-        Self { settings, stack: None, picture_pixels: None, total: Figures::default() }
+        Self {
+            settings,
+            stack: None,
+            picture_pixels: None,
+            every_point: false,
+            known: repeat::Known::default(),
+            total: Figures::default(),
+        }
+    }
+
+    /// Computes every point of every layer in double precision, which takes many times as long: the reference for all
+    /// that is quicker.
+    pub fn with_every_point(mut self) -> Self {
+        self.every_point = true;
+        self
     }
 
     /// Also adds up the layers, to see how peaks grow; `bounds` holds all layers.
@@ -131,43 +155,110 @@ impl Judge {
 
     /// Judges the next layer.
     pub fn layer(&mut self, layer: &Layer) -> Judgement {
+        // The stack needs the heights of every layer.
+        let repeats = !self.every_point && self.stack.is_none();
+        let near = repeat::NEAR * self.settings.step;
+        let known = self.known.find(layer, near).filter(|_| repeats);
+        let judgement = known.unwrap_or_else(|| self.look(layer));
+        if repeats {
+            self.known.keep(layer, &judgement);
+        }
+        self.total.add(&judgement.figures);
+        judgement
+    }
+
+    fn look(&mut self, layer: &Layer) -> Judgement {
         let nominal = self.settings.nominal;
         let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
         let Some(grid) = grid_of(layer, &strokes, self.settings.step) else { return Judgement::nothing() };
-        let mask = Mask::new(&layer.islands, &self.settings, &grid);
-        let canvas = self.picture_pixels.map(|pixels| picture::Canvas::new(&grid, pixels));
-        let keeps = self.stack.is_some();
-        let look = |band: Band<'_>| Seen {
-            figures: Figures::of(&band, &mask, &nominal),
-            runs: patch::runs(&band, &mask, &nominal),
-            picture: canvas.as_ref().map(|canvas| canvas.paint(&band, &mask, &nominal)),
-            excess: keeps.then(|| stack::excess(&band, &mask, nominal.rise)),
-            work: band.work,
+        let eye = Eye {
+            mask: &Mask::new(&layer.islands, &self.settings, &grid),
+            canvas: self.picture_pixels.map(|pixels| Canvas::new(&grid, pixels, &nominal)),
+            keeps: self.stack.is_some(),
+            nominal: &nominal,
+            grid: &grid,
         };
-        let mut seen = field::bands(&strokes, &grid, look);
+        let mut seen = if self.every_point { eye.every_point(&strokes) } else { eye.quick(&strokes) };
         if let Some(stack) = &mut self.stack {
-            let rows = seen.iter_mut().flat_map(|s| s.excess.take()).flatten();
-            stack.add(&grid, rows);
+            stack.add(&grid, seen.iter_mut().flat_map(|seen| seen.excess.drain(..)));
         }
         let mut figures = Figures::default();
         seen.iter().for_each(|s| figures.add(&s.figures));
         figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
-        self.total.add(&figures);
         let work = seen.iter().map(|s| s.work).sum();
         let (runs, painted): (Vec<_>, Vec<_>) = seen.into_iter().map(|s| (s.runs, s.picture)).unzip();
         let (voids, peaks) = patch::patches(runs, &grid, layer, &nominal);
-        let picture = canvas.map(|canvas| canvas.picture(painted.into_iter().flatten()));
+        let picture = eye.canvas.map(|canvas| canvas.picture(painted.into_iter().flatten()));
         Judgement { figures, voids, peaks, picture, work }
     }
 }
 
-/// What is taken from a band before it is forgotten.
+/// What is looked for in a layer.
+struct Eye<'a> {
+    grid: &'a Grid,
+    mask: &'a Mask,
+    nominal: &'a Nominal,
+    canvas: Option<Canvas>,
+    /// Whether the stack wants its heights.
+    keeps: bool,
+}
+
+/// What is taken from a part of a layer before it is forgotten.
+#[derive(Default)]
 struct Seen {
     figures: Figures,
     runs: Vec<Run>,
-    picture: Option<Vec<u8>>,
-    excess: Option<Vec<f32>>,
+    picture: Option<picture::Strip>,
+    excess: Vec<stack::Excess>,
     work: usize,
+}
+
+/// Below so many grid points along a pixel a picture shows single beads, and wants their points.
+const BEADS_SHOWN: usize = 4;
+
+impl Eye<'_> {
+    fn every_point(&self, strokes: &[Stroke]) -> Vec<Seen> {
+        field::bands(strokes, self.grid, |band| {
+            let mut seen = self.begin(band.first..band.first + band.heights.len() / self.grid.columns);
+            self.take(&mut seen, &band);
+            seen
+        })
+    }
+
+    fn quick(&self, strokes: &[Stroke]) -> Vec<Seen> {
+        let ridges = !self.keeps && self.canvas.as_ref().is_none_or(|canvas| canvas.side() >= BEADS_SHOWN);
+        let field = tiles::Field { grid: self.grid, mask: self.mask, nominal: self.nominal, ridges };
+        field.look(
+            strokes,
+            |rows| self.begin(rows),
+            |seen, part| match part {
+                tiles::Part::Band(band) => self.take(seen, band),
+                tiles::Part::Ridges(square, ridges) => {
+                    let runs = patch::runs_of_ridges(square, ridges, self.grid);
+                    seen.figures.add(&Figures::of_ridges(square, ridges, &runs, self.grid));
+                    if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
+                        canvas.paint_ridges(strip, square, ridges, &runs);
+                    }
+                    seen.runs.extend(runs);
+                }
+            },
+        )
+    }
+
+    fn begin(&self, rows: Range<usize>) -> Seen {
+        Seen { picture: self.canvas.as_ref().map(|canvas| canvas.strip(rows)), ..Seen::default() }
+    }
+
+    fn take<H: Height>(&self, seen: &mut Seen, band: &Band<'_, H>) {
+        seen.figures.add(&Figures::of(band, self.mask, self.nominal));
+        let runs = patch::runs(band, self.mask, self.nominal);
+        if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
+            canvas.paint(strip, band, &runs);
+        }
+        seen.runs.extend(runs);
+        seen.excess.extend(self.keeps.then(|| stack::Excess::of(band, self.mask, self.nominal.rise)));
+        seen.work += band.work;
+    }
 }
 
 impl Judgement {
@@ -200,21 +291,17 @@ impl Mask {
     }
 
     /// The columns of a row inside the outline less its rim.
-    fn core<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+    fn core<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
         columns(&self.core, grid, row)
     }
 
     /// The columns of a row where metal may be.
-    fn allowed<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+    fn allowed<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
         columns(&self.allowed, grid, row)
     }
 }
 
-fn columns<'a>(
-    crossings: &'a [Vec<f64>],
-    grid: &'a Grid,
-    row: usize,
-) -> impl Iterator<Item = std::ops::Range<usize>> + 'a {
+fn columns<'a>(crossings: &'a [Vec<f64>], grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
     let pairs = crossings.get(row).map_or(&[][..], Vec::as_slice).chunks_exact(2);
     let mut end = 0;
     let columns = pairs.map(move |pair| {

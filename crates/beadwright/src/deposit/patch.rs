@@ -1,7 +1,9 @@
 //! Connected voids and overfilled patches with their places, and the causes of the peaks.
 
-use super::field::{Band, Grid};
+use super::field::{Band, Grid, Height};
+use super::ridges::Ridges;
 use super::stroke::Nominal;
+use super::tiles::Square;
 use super::{Mask, OVERFILL, VOID};
 use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};
@@ -59,45 +61,88 @@ pub struct Patch {
 /// Neighbouring points of a row that are all void, or all overfilled.
 #[derive(Debug, Clone)]
 pub(super) struct Run {
-    overfilled: bool,
-    row: usize,
-    columns: Range<usize>,
-    extreme: f64,
-    at: usize,
+    pub(super) overfilled: bool,
+    pub(super) row: usize,
+    pub(super) columns: Range<usize>,
+    /// The least or greatest height, mm, and the column it is found in.
+    pub(super) extreme: f64,
+    pub(super) at: usize,
 }
 
+impl Run {
+    /// Takes in a run that goes on where this one ends, as at the border of two bands.
+    fn takes(&mut self, next: &Self) -> bool {
+        let goes_on = (self.overfilled, self.row, self.columns.end) == (next.overfilled, next.row, next.columns.start);
+        if goes_on {
+            self.columns.end = next.columns.end;
+            if (next.extreme > self.extreme) == self.overfilled {
+                (self.extreme, self.at) = (next.extreme, next.at);
+            }
+        }
+        goes_on
+    }
+}
+
+/// Points looked at together for whether any of them is void or overfilled.
+const LOOK: usize = 16;
+
 /// The runs of a band, row after row.
-pub(super) fn runs(band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<Run> {
-    let h = nominal.bead.height;
-    let class = |height: f64| (height < VOID * h).then_some(false).or((height > OVERFILL * h).then_some(true));
+pub(super) fn runs<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal) -> Vec<Run> {
+    let (void, overfill) = (H::of(VOID * nominal.bead.height), H::of(OVERFILL * nominal.bead.height));
+    let stands_out = |height: &H| *height < void || *height > overfill;
     let mut runs: Vec<Run> = Vec::new();
     for (row, heights) in band.rows() {
         for columns in mask.core(band.grid, row) {
-            let mut open: Option<Run> = None;
-            for at in columns {
-                let (height, now) = (heights[at], class(heights[at]));
-                match (&mut open, now) {
-                    (Some(run), Some(overfilled)) if run.overfilled == overfilled => {
-                        run.columns.end = at + 1;
-                        if (height > run.extreme) == overfilled {
-                            (run.extreme, run.at) = (height, at);
-                        }
-                    }
-                    (open, now) => {
-                        runs.extend(open.take());
-                        *open = now.map(|overfilled| Run { overfilled, row, columns: at..at + 1, extreme: height, at });
-                    }
+            let columns = band.within(&columns);
+            let begun = runs.len();
+            for (k, heights) in heights[columns.clone()].chunks(LOOK).enumerate() {
+                if !heights.iter().fold(false, |any, height| any | stands_out(height)) {
+                    continue;
                 }
+                let first = band.columns.start + columns.start + k * LOOK;
+                let places = heights.iter().enumerate().filter(|(_, height)| stands_out(height));
+                places
+                    .for_each(|(k, &height)| extend(&mut runs, begun, row, first + k, height.mm(), height > overfill));
             }
-            runs.extend(open);
         }
     }
     runs
 }
 
+/// The runs of a square of ridges, row after row.
+pub(super) fn runs_of_ridges(square: &Square, ridges: &Ridges, grid: &Grid) -> Vec<Run> {
+    let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
+    let first = square.columns.start;
+    let along = square.along * grid.step;
+    let run = |row: usize| {
+        let from_middle = DVec2::new(first as f64 - middle(&square.columns), row as f64 - middle(&square.rows));
+        let stripes = ridges.stripes(along.perp_dot(from_middle), -along.y, square.columns.len());
+        stripes.map(move |(overfilled, points, at, extreme)| {
+            let columns = first + points.start..first + points.end;
+            Run { overfilled, row, columns, extreme, at: first + at }
+        })
+    };
+    square.rows.clone().flat_map(run).collect()
+}
+
+/// Adds a point to the last run if that began at `begun` or later and reaches it, or begins another.
+fn extend(runs: &mut Vec<Run>, begun: usize, row: usize, at: usize, height: f64, overfilled: bool) {
+    match runs[begun..].last_mut() {
+        Some(run) if run.overfilled == overfilled && run.columns.end == at => {
+            run.columns.end = at + 1;
+            if (height > run.extreme) == overfilled {
+                (run.extreme, run.at) = (height, at);
+            }
+        }
+        _ => runs.push(Run { overfilled, row, columns: at..at + 1, extreme: height, at }),
+    }
+}
+
 /// Runs of all bands joined where they touch: voids, the largest first, and peaks, the highest first.
 pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
-    let runs: Vec<Run> = runs.into_iter().flatten().collect();
+    let mut runs: Vec<Run> = runs.into_iter().flatten().collect();
+    runs.sort_by_key(|run| (run.row, run.columns.start));
+    runs.dedup_by(|next, run| run.takes(next));
     let mut parents: Vec<usize> = (0..runs.len()).collect();
     // Both rows are walked once: each run is compared with the runs of the row before that end after it begins.
     let (mut row_start, mut last_row) = (0, 0..0);

@@ -1,9 +1,12 @@
 //! The height field as a small picture, for pages and for the studio.
 
-use super::field::{Band, Grid};
+use super::field::{Band, Grid, Height};
+use super::patch::Run;
+use super::ridges::Ridges;
 use super::stroke::Nominal;
-use super::{Mask, VOID};
+use super::tiles::Square;
 use glam::DVec2;
+use std::ops::Range;
 
 /// A pixel without metal outside the outline.
 pub const EMPTY: u8 = 0;
@@ -29,65 +32,128 @@ pub struct Picture {
     pub values: Vec<u8>,
 }
 
-/// Puts bands into a picture: each pixel is the mean of the grid points in it, void if one of them is.
+/// Puts a layer into a picture: each pixel is the mean of the grid points with metal in it, void if one of them is.
 pub(super) struct Canvas {
     grid: Grid,
     /// Grid points along a side of a pixel.
     side: usize,
+    /// The height that adds one to a pixel's value, mm.
+    unit: f64,
 }
 
 /// Up to this height, mm, a grid point counts as without metal.
 const NO_METAL: f64 = 1e-6;
+/// The highest value of a pixel above [`FIRST_HEIGHT`].
+const STEPS: f32 = (u8::MAX - FIRST_HEIGHT) as f32;
+
+/// A pixel while points are added.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pixel {
+    /// Heights in units of the canvas.
+    sum: f32,
+    points: u32,
+    void: bool,
+}
 
 impl Canvas {
-    pub(super) fn new(grid: &Grid, pixels: usize) -> Self {
-        Self { grid: *grid, side: grid.columns.max(grid.rows).div_ceil(pixels.max(1)).max(1) }
+    pub(super) fn new(grid: &Grid, pixels: usize, nominal: &Nominal) -> Self {
+        let side = grid.columns.max(grid.rows).div_ceil(pixels.max(1)).max(1);
+        Self { grid: *grid, side, unit: nominal.bead.height * FULL_SCALE / f64::from(STEPS) }
     }
 
-    /// One byte for each grid point of a band.
-    pub(super) fn paint(&self, band: &Band<'_>, mask: &Mask, nominal: &Nominal) -> Vec<u8> {
-        let (h, columns) = (nominal.bead.height, band.grid.columns);
-        let steps = f64::from(u8::MAX - FIRST_HEIGHT);
-        let scale = steps / (h * FULL_SCALE);
-        let value = |height: f64| FIRST_HEIGHT + (height * scale + 0.5).min(steps) as u8;
-        let mut values: Vec<u8> =
-            band.heights.iter().map(|&height| if height > NO_METAL { value(height) } else { EMPTY }).collect();
+    /// Grid points along a side of a pixel.
+    pub(super) fn side(&self) -> usize {
+        self.side
+    }
+
+    fn width(&self) -> usize {
+        self.grid.columns.div_ceil(self.side)
+    }
+
+    /// The pixels of some rows, still empty.
+    pub(super) fn strip(&self, rows: Range<usize>) -> Strip {
+        let lines = rows.start / self.side..rows.end.div_ceil(self.side);
+        Strip { pixels: vec![Pixel::default(); lines.len() * self.width()], first: lines.start }
+    }
+
+    /// Adds the points of a band, and of the voids in it.
+    pub(super) fn paint<H: Height>(&self, strip: &mut Strip, band: &Band<'_, H>, runs: &[Run]) {
+        let (metal, scale) = (H::of(NO_METAL), (1.0 / self.unit) as f32);
         for (row, heights) in band.rows() {
-            let start = (row - band.first) * columns;
-            for range in mask.core(band.grid, row) {
-                let target = &mut values[start + range.start..start + range.end];
-                for (value, _) in target.iter_mut().zip(&heights[range]).filter(|(_, height)| **height < VOID * h) {
-                    *value = VOID_PIXEL;
+            let line = self.line(strip, row);
+            for (pixel, columns) in self.pixels(&band.columns) {
+                for &height in &heights[columns.start - band.columns.start..columns.end - band.columns.start] {
+                    line[pixel].sum += (height.mm() as f32 * scale).min(STEPS);
+                    line[pixel].points += u32::from(height > metal);
                 }
             }
         }
-        values
+        self.paint_voids(strip, runs);
     }
 
-    /// The picture from the bands, the lowest first.
-    pub(super) fn picture(&self, bands: impl Iterator<Item = Vec<u8>>) -> Picture {
-        let (side, columns) = (self.side, self.grid.columns);
-        let (width, height) = (columns.div_ceil(side), self.grid.rows.div_ceil(side));
-        let mut sums = vec![(0_u32, 0_u32, false); width * height];
-        for (row, values) in
-            bands.flat_map(|band| band.chunks(columns.max(1)).map(<[u8]>::to_vec).collect::<Vec<_>>()).enumerate()
-        {
-            let line = &mut sums[row / side * width..][..width];
-            for (points, (sum, count, void)) in values.chunks(side).zip(line) {
-                for &value in points {
-                    *void |= value == VOID_PIXEL;
-                    *count += u32::from(value >= FIRST_HEIGHT);
-                    *sum += u32::from(value.max(FIRST_HEIGHT) - FIRST_HEIGHT);
-                }
+    fn paint_voids(&self, strip: &mut Strip, runs: &[Run]) {
+        for run in runs.iter().filter(|run| !run.overfilled) {
+            let line = self.line(strip, run.row);
+            self.pixels(&run.columns).for_each(|(pixel, _)| line[pixel].void = true);
+        }
+    }
+
+    /// Adds a square of ridges, and of the voids in it.
+    pub(super) fn paint_ridges(&self, strip: &mut Strip, square: &Square, ridges: &Ridges, runs: &[Run]) {
+        self.paint_voids(strip, runs);
+        let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
+        let center = DVec2::new(middle(&square.columns), middle(&square.rows));
+        for (_, rows) in self.pixels(&square.rows) {
+            let line = self.line(strip, rows.start);
+            for (pixel, columns) in self.pixels(&square.columns) {
+                let from_center = DVec2::new(middle(&columns), middle(&rows)) - center;
+                let across = square.along.perp_dot(from_center) * self.grid.step;
+                let height = ridges.mean_around(across, self.side as f64 * self.grid.step);
+                let points = rows.len() * columns.len();
+                line[pixel].sum += points as f32 * ((height / self.unit) as f32).min(STEPS);
+                line[pixel].points += points as u32;
             }
         }
-        let pixel = |(sum, count, void): (u32, u32, bool)| match (void, count) {
+    }
+
+    fn line<'a>(&self, strip: &'a mut Strip, row: usize) -> &'a mut [Pixel] {
+        let at = (row / self.side - strip.first) * self.width();
+        &mut strip.pixels[at..at + self.width()]
+    }
+
+    /// The pixels that some rows or columns of the grid lie in, each with those in it.
+    fn pixels(&self, points: &Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> + use<> {
+        let (side, points) = (self.side, points.clone());
+        let within = move |pixel: usize| (pixel * side).max(points.start)..(pixel * side + side).min(points.end);
+        let pixels = points.start / side..points.end.div_ceil(side);
+        pixels.map(move |pixel| (pixel, within(pixel)))
+    }
+
+    /// The picture from strips, the lowest first.
+    pub(super) fn picture(&self, strips: impl Iterator<Item = Strip>) -> Picture {
+        let (width, height) = (self.width(), self.grid.rows.div_ceil(self.side));
+        let mut pixels = vec![Pixel::default(); width * height];
+        for strip in strips {
+            for (pixel, more) in pixels[strip.first * width..].iter_mut().zip(strip.pixels) {
+                pixel.sum += more.sum;
+                pixel.points += more.points;
+                pixel.void |= more.void;
+            }
+        }
+        let value = |pixel: Pixel| match (pixel.void, pixel.points) {
             (true, _) => VOID_PIXEL,
             (false, 0) => EMPTY,
-            _ => FIRST_HEIGHT + (sum / count) as u8,
+            (false, points) => FIRST_HEIGHT + (pixel.sum / points as f32 + 0.5).min(STEPS) as u8,
         };
         let low = self.grid.place(0, 0) - self.grid.step / 2.0;
-        let values = sums.into_iter().map(pixel).collect();
-        Picture { low, pixel: side as f64 * self.grid.step, width, height, values }
+        let values = pixels.into_iter().map(value).collect();
+        Picture { low, pixel: self.side as f64 * self.grid.step, width, height, values }
     }
+}
+
+/// Some lines of a picture while points are added.
+pub(super) struct Strip {
+    pixels: Vec<Pixel>,
+    /// The line of the first pixel.
+    first: usize,
 }

@@ -1,9 +1,10 @@
 //! Layers on top of each other: where metal is missing or piles up from layer to layer.
 
 use super::Mask;
-use super::field::{Band, Grid};
+use super::field::{Band, Grid, Height};
 use glam::DVec2;
 use serde::Serialize;
+use std::ops::Range;
 
 /// The sum over layers of height less the nominal rise, where the layers have metal to lay.
 #[derive(Debug, Clone)]
@@ -36,16 +37,20 @@ impl Stack {
         &self.growth
     }
 
-    /// Adds a layer whose grid lies within the stack's; `excess` holds its points row after row.
-    pub(super) fn add(&mut self, layer: &Grid, mut excess: impl Iterator<Item = f32>) {
+    /// Adds a layer from the excess of its parts.
+    pub(super) fn add(&mut self, layer: &Grid, parts: impl Iterator<Item = Excess>) {
         let shift = layer.low - self.grid.low;
-        for row in 0..layer.rows {
-            let target = usize::try_from(shift.y + row as i64).ok().filter(|&r| r < self.grid.rows);
-            for column in 0..layer.columns {
-                let value = excess.next().unwrap_or_default();
-                let at = usize::try_from(shift.x + column as i64).ok().filter(|&c| c < self.grid.columns);
-                if let (Some(row), Some(column)) = (target, at) {
-                    self.excess[row * self.grid.columns + column] += value;
+        let (width, height) = (self.grid.columns as i64, self.grid.rows as i64);
+        for part in parts {
+            for (k, values) in part.values.chunks(part.columns.len().max(1)).enumerate() {
+                let (row, first) = (shift.y + (part.first + k) as i64, shift.x + part.columns.start as i64);
+                let inside = |(i, value): (usize, f32)| {
+                    let column = first + i as i64;
+                    ((0..width).contains(&column)).then_some(((row * width + column) as usize, value))
+                };
+                if (0..height).contains(&row) {
+                    let values = values.iter().copied().enumerate().filter_map(inside);
+                    values.for_each(|(at, value)| self.excess[at] += value);
                 }
             }
         }
@@ -67,16 +72,26 @@ impl Stack {
     }
 }
 
-/// Height less rise inside the outline less its rim, zero elsewhere.
-pub(super) fn excess(band: &Band<'_>, mask: &Mask, rise: f64) -> Vec<f32> {
-    let mut values = vec![0.0; band.heights.len()];
-    let columns = band.grid.columns;
-    for (row, heights) in band.rows() {
-        let start = (row - band.first) * columns;
-        for range in mask.core(band.grid, row) {
-            let target = &mut values[start + range.start..start + range.end];
-            target.iter_mut().zip(&heights[range]).for_each(|(value, height)| *value = (height - rise) as f32);
+/// Height less rise inside the outline less its rim, zero elsewhere, of a rectangle of a layer.
+pub(super) struct Excess {
+    first: usize,
+    columns: Range<usize>,
+    values: Vec<f32>,
+}
+
+impl Excess {
+    pub(super) fn of<H: Height>(band: &Band<'_, H>, mask: &Mask, rise: f64) -> Self {
+        let (mut values, width) = (vec![0.0; band.heights.len()], band.columns.len());
+        for (k, (row, heights)) in band.rows().enumerate() {
+            for columns in mask.core(band.grid, row) {
+                let columns = band.within(&columns);
+                let target = &mut values[k * width..][columns.clone()];
+                target
+                    .iter_mut()
+                    .zip(&heights[columns])
+                    .for_each(|(value, height)| *value = (height.mm() - rise) as f32);
+            }
         }
+        Self { first: band.first, columns: band.columns.clone(), values }
     }
-    values
 }

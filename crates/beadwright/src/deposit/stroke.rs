@@ -82,7 +82,7 @@ pub(super) struct Frame {
     pub(super) length: f64,
     pub(super) a: f64,
     pub(super) section: Section,
-    height: f64,
+    pub(super) height: f64,
 }
 
 /// The footprint of a pool: what it adds while it passes.
