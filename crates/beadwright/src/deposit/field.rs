@@ -1,7 +1,7 @@
 //! The height field of a layer on a grid, every point in double precision, computed in bands of rows: each band looks
 //! only at the pieces of bead that reach it, bands run in parallel, and none is kept unless asked for.
 //!
-//! This is the reference: a [`Judge`](super::Judge) takes the quick way ([`tiles`](super::tiles)) to the same figures.
+//! This is the reference: a [`Judge`](super::Judge) takes the quick way (`tiles`) to the same figures.
 
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
 use crate::bead::Section;
