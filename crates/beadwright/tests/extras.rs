@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
-mod readers;
 
 use beadwright::dialect::krl::{KrlArc, KrlMotion};
 use beadwright::dialect::{self, DialectError};
@@ -73,20 +72,15 @@ fn spline_motions_run_the_same_way() {
         assert_eq!(back(text), plain[file], "{file}");
     }
     assert_eq!(totals(&splines, "DEMO.src"), totals(&plain, "DEMO.src"));
+    // The forms of ArcTech move by LIN; the two kinds do not blend into each other.
+    profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    let said = try_write("krl", &plan, &profile).unwrap_err().to_string();
+    assert!(said.contains("slin") && said.contains("arctech"), "{said}");
 }
 
 /// Length, starts, travel and time as our own reader finds them, and what it does not apply.
 fn totals(files: &Files, main: &str) -> (String, bool) {
-    use beadwright::dialect::reading::{ArcCodes, Options, read};
-    let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
-    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
-    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
-    let options = Options { arc: ArcCodes { on, off }, ..Options::default() };
-    let mut find = |name: &str| {
-        let names = ["", ".src", ".dat", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
-        names.iter().find_map(|name| files.get(name)).cloned()
-    };
-    let program = read(&files[main], &mut find, &options).unwrap();
+    let program = common::read_back(files, main).unwrap();
     let told =
         ["added", "PDispSet", "an offset"].iter().any(|word| program.notes.iter().any(|note| note.contains(word)));
     (format!("{:?}", program.totals()), told)

@@ -8,7 +8,7 @@ mod common;
 use beadwright::dialect;
 use beadwright::dialect::krl::KrlArc;
 use beadwright::dialect::rapid::RapidArc;
-use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadTotals, read};
+use beadwright::dialect::reading::{ReadError, ReadTotals};
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::process::Follow;
@@ -81,17 +81,9 @@ fn dressed(base: &str, dialect: &str, way: &str, strategy: &str) -> Option<Profi
 /// What our reader finds in a program; nothing in a dry run.
 fn read_back(layers: &[Layer], profile: &Profile, post: &str, main: &str) -> Option<ReadTotals> {
     let files: BTreeMap<String, String> = dialect::write(post, layers, &profile.job("part")).unwrap();
-    let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
-    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
-    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
-    let options = Options { arc: ArcCodes { on, off }, ..Options::default() };
-    let mut find = |name: &str| {
-        let names = ["", ".src", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
-        names.iter().find_map(|name| files.get(name)).cloned()
-    };
     let dry = main.replace("PART", "DRY_PART").replace("part", "dry_part");
     let main = if profile.is_dry_run() { dry } else { main.to_owned() };
-    let mut program = match read(&files[&main], &mut find, &options) {
+    let mut program = match common::read_back(&files, &main) {
         Ok(program) => program,
         // A dry run lays nothing, and so there is nothing to be judged.
         Err(ReadError::NoDeposition { .. }) if profile.is_dry_run() => return None,

@@ -5,7 +5,7 @@
 mod common;
 mod readers;
 
-use beadwright::dialect::reading::{ArcCodes, Options, ReadTotals, read};
+use beadwright::dialect::reading::ReadTotals;
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
@@ -90,15 +90,7 @@ fn begin_at(files: &mut Files, number: usize) {
 
 /// What our own reader finds.
 fn totals(files: &Files, main: &str) -> ReadTotals {
-    let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
-    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
-    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
-    let options = Options { arc: ArcCodes { on, off }, ..Options::default() };
-    let mut find = |name: &str| {
-        let names = ["", ".src", ".dat", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
-        names.iter().find_map(|name| files.get(name)).cloned()
-    };
-    let program = read(&files[main], &mut find, &options).unwrap();
+    let program = common::read_back(files, main).unwrap();
     let odd: Vec<_> = program.notes.iter().filter(|note| note.contains("not followed")).collect();
     assert!(odd.is_empty(), "{main}: {odd:?}");
     program.totals()

@@ -18,7 +18,7 @@ pub mod reading;
 pub mod writing;
 
 pub use reading::read;
-pub use writing::{Chunk, DialectError, Hooks, Job, PLACEHOLDERS, Writer, write, write_with, writer};
+pub use writing::{Chunk, DialectError, Extra, Hooks, Job, PLACEHOLDERS, Writer, write, write_with, writer};
 
 use crate::limit::{Broken, Limit};
 use crate::program::ProgramSettings;
@@ -57,18 +57,8 @@ pub trait Section {
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
 
-    /// Whether its programs can begin at any pass (`program.restart`).
-    fn restarts(&self) -> bool {
-        false
-    }
-
-    /// Whether its layers can have heights to be added (`program.layer_offsets`).
-    fn offsets_layers(&self) -> bool {
-        false
-    }
-
-    /// Whether its controller weaves by itself (`[weave]`).
-    fn weaves(&self) -> bool {
+    /// Whether it can write what only some dialects can.
+    fn supports(&self, _extra: Extra) -> bool {
         false
     }
 

@@ -2,10 +2,12 @@
 #![allow(dead_code, reason = "each test uses some of it")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
 
+use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 use beadwright::example;
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A built-in profile.
@@ -36,6 +38,18 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
 /// An example part, planned.
 pub(crate) fn planned(part: &str, profile: &Profile) -> Plan {
     plan::plan(part, &example::find(part).unwrap().mesh(), profile, &Task::new()).unwrap()
+}
+
+/// Reads a program of the built-in profiles back, whose files are known by their names.
+pub(crate) fn read_back(files: &BTreeMap<String, String>, main: &str) -> Result<ReadProgram, ReadError> {
+    let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
+    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
+    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
+    let mut find = |name: &str| {
+        let names = ["", ".src", ".dat", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
+        names.iter().find_map(|name| files.get(name)).cloned()
+    };
+    read(&files[main], &mut find, &Options { arc: ArcCodes { on, off }, ..Options::default() })
 }
 
 /// Where the shared models lie. Tests that need them are ignored where the folder is missing, but fail under CI=true

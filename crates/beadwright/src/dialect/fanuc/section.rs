@@ -1,7 +1,7 @@
 //! The section `[fanuc]`: a FANUC cell (R-30iB, ArcTool), and the limits of its values.
 
 use super::write::FanucTp;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -116,15 +116,7 @@ impl Section for Fanuc {
         ]
     }
 
-    fn restarts(&self) -> bool {
-        true
-    }
-
-    fn weaves(&self) -> bool {
-        true
-    }
-
-    fn offsets_layers(&self) -> bool {
+    fn supports(&self, _extra: Extra) -> bool {
         true
     }
 

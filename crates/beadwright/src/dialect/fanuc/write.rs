@@ -4,7 +4,7 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
 //! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Fanuc, FanucSpeed};
 use crate::process::Process;
@@ -124,9 +124,8 @@ impl FanucTp {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, program: &mut Program, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, program: &mut Program, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(program, number);
         if self.program.restart {
             let (register, label) = (self.fanuc.restart_register, program.label());
@@ -196,7 +195,6 @@ impl FanucTp {
                 program.line(&format!("L P[{number}] {}mm/sec FINE{}", fixed(self.travel_speed.clamp(0.1, 2000.0), 1), self.offset_word()));
             }
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 program.line(&format!("  !pass {pass} {}", kind.name()));
                 self.lines(program, &self.fanuc.arc_on);
                 self.lines(program, &self.fanuc.hooks.arc_established);
@@ -235,8 +233,7 @@ impl FanucTp {
                 self.lines(program, &self.fanuc.hooks.before_arc_off);
                 self.lines(program, &self.fanuc.arc_off);
             }
-            // Begun where the number of the pass is known.
-            Instruction::PassStart { .. } => {}
+            Instruction::PassStart { pass, above } => self.pass_start(program, pass, above),
             Instruction::PassEnd => {
                 self.lines(program, &self.fanuc.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
@@ -284,18 +281,11 @@ impl Writer for FanucTp {
             if i == 0 {
                 program.line(&format!("  !layer {}, z {} mm", layer.index + 1, fixed(layer.z, 3)));
                 let lines = self.fanuc.hooks.before_layer(&self.fanuc.layer_start, layer.index, &self.program);
-                self.skippable(&mut program, restart::last(layer), &lines);
+                self.skippable(&mut program, self.values.last_number(), &lines);
             }
-            for &instruction in part {
-                match instruction {
-                    Instruction::PassStart { pass, above } => {
-                        self.pass_start(&mut program, restart::number(layer, pass), pass, above);
-                    }
-                    other => self.instruction(&mut program, other),
-                }
-            }
+            part.iter().for_each(|&instruction| self.instruction(&mut program, instruction));
             if i + 1 == count {
-                self.skippable(&mut program, restart::last(layer), &self.fanuc.hooks.layer_end);
+                self.skippable(&mut program, self.values.last_number(), &self.fanuc.hooks.layer_end);
             }
             self.main.line(&format!("  CALL {name}"));
             chunks.push(Chunk {

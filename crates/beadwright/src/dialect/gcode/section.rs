@@ -1,7 +1,7 @@
 //! CNC G-code in profiles: the keys, and the limits of their values.
 
 use super::write::CncGcode;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{needs, is_extension};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limits};
@@ -132,9 +132,9 @@ impl Section for Gcode {
         ]
     }
 
-    fn restarts(&self) -> bool {
+    fn supports(&self, extra: Extra) -> bool {
         // An axis of the wire would feed at once what was left out.
-        self.o_words && self.wire_axis.is_none()
+        extra == Extra::Restart && self.o_words && self.wire_axis.is_none()
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -102,9 +102,8 @@ impl CncGcode {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.begin_skippable(text, number, 1);
         if self.program.restart {
             let word = number * 10 + 2;
@@ -206,7 +205,6 @@ impl CncGcode {
             Instruction::Approach { to } => self.approach(text, to),
             Instruction::Travel { to } | Instruction::Retract { to } => self.go(text, "G0", to, None),
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 self.comment(text, &format!("PASS {pass} {}", kind.name()));
                 let lines = [&self.gcode.arc_on[..], &self.gcode.hooks.arc_established].concat();
                 self.blocks(text, &lines);
@@ -232,8 +230,7 @@ impl CncGcode {
                 let lines = [&self.gcode.hooks.before_arc_off[..], &self.gcode.arc_off].concat();
                 self.blocks(text, &lines);
             }
-            // Begun where the number of the pass is known.
-            Instruction::PassStart { .. } => {}
+            Instruction::PassStart { pass, above } => self.pass_start(text, pass, above),
             Instruction::PassEnd => {
                 let lines = self.gcode.hooks.pass_end.clone();
                 self.blocks(text, &lines);
@@ -285,17 +282,12 @@ impl Writer for CncGcode {
         self.values.set_layer(program);
         self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
         let lines = self.gcode.hooks.before_layer(&self.gcode.layer_start, program.index, &self.program);
-        self.skippable(&mut text, restart::last(program), 1, &lines);
+        self.skippable(&mut text, self.values.last_number(), 1, &lines);
         for &instruction in &program.instructions {
-            match instruction {
-                Instruction::PassStart { pass, above } => {
-                    self.pass_start(&mut text, restart::number(program, pass), pass, above);
-                }
-                other => self.instruction(&mut text, other),
-            }
+            self.instruction(&mut text, instruction);
         }
         let lines = self.gcode.hooks.layer_end.clone();
-        self.skippable(&mut text, restart::last(program), 2, &lines);
+        self.skippable(&mut text, self.values.last_number(), 2, &lines);
         self.chunk(text)
     }
 

@@ -1,7 +1,7 @@
 //! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and the limits of its values.
 
 use super::write::YaskawaInform;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -124,12 +124,8 @@ impl Section for Inform {
         ]
     }
 
-    fn restarts(&self) -> bool {
-        true
-    }
-
-    fn weaves(&self) -> bool {
-        true
+    fn supports(&self, extra: Extra) -> bool {
+        extra != Extra::LayerOffsets
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -5,7 +5,7 @@
 //! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
 //! point separates an arc from the next.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Inform, InformSpeed};
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
@@ -113,9 +113,8 @@ impl YaskawaInform {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, job: &mut JobText, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, job: &mut JobText, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(job, number);
         if self.program.restart {
             let (variable, label) = (self.inform.restart_variable, job.label());
@@ -162,7 +161,6 @@ impl YaskawaInform {
                 self.motion(job, "MOVL", to, self.travel_speed, 0);
             }
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
                 self.lines(&mut job.instructions, &self.inform.arc_on);
                 self.lines(&mut job.instructions, &self.inform.hooks.arc_established);
@@ -197,8 +195,7 @@ impl YaskawaInform {
                 self.lines(&mut job.instructions, &self.inform.hooks.before_arc_off);
                 self.lines(&mut job.instructions, &self.inform.arc_off);
             }
-            // Begun where the number of the pass is known.
-            Instruction::PassStart { .. } => {}
+            Instruction::PassStart { pass, above } => self.pass_start(job, pass, above),
             Instruction::PassEnd => {
                 self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
@@ -263,18 +260,11 @@ impl Writer for YaskawaInform {
             let mut job = JobText::default();
             if i == 0 {
                 let lines = self.inform.hooks.before_layer(&self.inform.layer_start, layer.index, &self.program);
-                self.skippable(&mut job, restart::last(layer), &lines);
+                self.skippable(&mut job, self.values.last_number(), &lines);
             }
-            for &instruction in part {
-                match instruction {
-                    Instruction::PassStart { pass, above } => {
-                        self.pass_start(&mut job, restart::number(layer, pass), pass, above);
-                    }
-                    other => self.instruction(&mut job, other),
-                }
-            }
+            part.iter().for_each(|&instruction| self.instruction(&mut job, instruction));
             if i + 1 == count {
-                self.skippable(&mut job, restart::last(layer), &self.inform.hooks.layer_end);
+                self.skippable(&mut job, self.values.last_number(), &self.inform.hooks.layer_end);
             }
             self.main.push_str(&format!("CALL JOB:{name}\r\n"));
             chunks.push(self.relative(&name, &format!("LAYER {} Z {}", layer.index + 1, fixed(layer.z, 3)), &job));

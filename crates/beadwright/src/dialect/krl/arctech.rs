@@ -9,7 +9,7 @@
 
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::ArcTech;
-use super::section::Krl;
+use super::section::{Krl, KrlMotion};
 use crate::dialect::{DialectError, Job};
 use crate::program::Weave;
 use crate::process::{Follow, Process};
@@ -76,13 +76,16 @@ pub(super) struct Forms {
 
 /// Refuses what the forms cannot do: the end of a pass has its own data in them, and the wire feed comes from the
 /// weld's parameter set.
-pub(super) fn check(job: &Job<'_>) -> Result<(), DialectError> {
+pub(super) fn check(krl: &Krl, job: &Job<'_>) -> Result<(), DialectError> {
     let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "krl", what, remedy });
     if job.weld.process.follow == Follow::WireFeed {
         return cannot("process.follow = \"wire-feed\" with arc = \"arctech\"", "Take process.follow = \"speed\".");
     }
     if !job.weld.process.layers.is_empty() {
         return cannot("[[process.layers]] with arc = \"arctech\"", "Take arc = \"outputs\", or the same speed for all layers.");
+    }
+    if krl.motion == KrlMotion::Slin {
+        return cannot("krl.motion = \"slin\" with arc = \"arctech\"", "Take motion = \"lin\": the forms move by LIN and CIRC.");
     }
     if job.weld.ends.crater_fill_time > 0.0 {
         return cannot("a start_stop.crater_fill_time with arc = \"arctech\"", "Take krl.arctech.crater.time instead.");

@@ -2,7 +2,7 @@
 
 use super::write::KukaKrl;
 use super::arctech;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
@@ -133,16 +133,8 @@ impl Section for Krl {
         ]
     }
 
-    fn restarts(&self) -> bool {
-        true
-    }
-
-    fn weaves(&self) -> bool {
-        self.arc == KrlArc::Arctech
-    }
-
-    fn offsets_layers(&self) -> bool {
-        true
+    fn supports(&self, extra: Extra) -> bool {
+        extra != Extra::Weave || self.arc == KrlArc::Arctech
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -161,7 +153,7 @@ impl Section for Krl {
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         match self.arc {
-            KrlArc::Arctech => arctech::check(job)?,
+            KrlArc::Arctech => arctech::check(self, job)?,
             KrlArc::Outputs => {
                 needs::lines("krl", &self.templates(), "$ANOUT[1] = {{wire_feed_ratio}}", job)?;
             }

@@ -77,20 +77,17 @@ impl KukaKrl {
         }
         if part == 0 {
             let lines = self.krl.hooks.before_layer(&self.krl.layer_start, program.index, &self.program);
-            self.skippable(&mut text, restart::last(program), &lines);
+            self.skippable(&mut text, self.values.last_number(), &lines);
         }
         let mut forms = self.forms();
         for i in 0..moves.len() {
             match (moves[i], &mut forms) {
-                (Instruction::PassStart { pass, above }, _) => {
-                    self.pass_start(&mut text, restart::number(program, pass), pass, above);
-                }
                 (_, Some(forms)) => self.with_forms(&mut text, forms, moves, i),
                 (instruction, None) => self.instruction(&mut text, instruction),
             }
         }
         if last {
-            self.skippable(&mut text, restart::last(program), &self.krl.hooks.layer_end);
+            self.skippable(&mut text, self.values.last_number(), &self.krl.hooks.layer_end);
         }
         text.push_str("END\r\n");
         let data = forms.map(|forms| Chunk {
@@ -139,9 +136,8 @@ impl KukaKrl {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
         if self.program.restart {
             let variable = format!("{}_START", self.main);
@@ -173,7 +169,6 @@ impl KukaKrl {
             // ARCON itself moves there.
             Instruction::Travel { .. } if matches!(all.get(i + 1), Some(Instruction::ArcOn { .. })) => {}
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
                     let speed = all[i..].iter().find_map(|next| match next {
@@ -256,7 +251,6 @@ impl KukaKrl {
                 self.lin(text, to, false);
             }
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 self.lines(text, &self.krl.arc_on);
                 self.lines(text, &self.krl.hooks.arc_established);
@@ -284,8 +278,7 @@ impl KukaKrl {
                 self.lines(text, &self.krl.hooks.before_arc_off);
                 self.lines(text, &self.krl.arc_off);
             }
-            // Begun where the number of the pass is known.
-            Instruction::PassStart { .. } => {}
+            Instruction::PassStart { pass, above } => self.pass_start(text, pass, above),
             Instruction::PassEnd => {
                 self.lines(text, &self.krl.hooks.pass_end);
                 self.end_skippable(text);

@@ -1,7 +1,7 @@
 //! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and the limits of its values.
 
 use super::write::AbbRapid;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -226,16 +226,8 @@ impl Section for Rapid {
         ]
     }
 
-    fn restarts(&self) -> bool {
-        true
-    }
-
-    fn weaves(&self) -> bool {
-        self.arc == RapidArc::Instructions
-    }
-
-    fn offsets_layers(&self) -> bool {
-        true
+    fn supports(&self, extra: Extra) -> bool {
+        extra != Extra::Weave || self.arc == RapidArc::Instructions
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -90,11 +90,11 @@ impl AbbRapid {
         }
         if part == 0 {
             let lines = self.rapid.hooks.before_layer(&self.rapid.layer_start, program.index, &self.program);
-            self.skippable(&mut text, restart::last(program), &lines);
+            self.skippable(&mut text, self.values.last_number(), &lines);
         }
-        self.instructions(&mut text, program, moves, speeds, feed);
+        self.instructions(&mut text, moves, speeds, feed);
         if last {
-            self.skippable(&mut text, restart::last(program), &self.rapid.hooks.layer_end);
+            self.skippable(&mut text, self.values.last_number(), &self.rapid.hooks.layer_end);
         }
         text.push_str("  ENDPROC\r\nENDMODULE\r\n");
         let listed = self.rapid.modules == RapidModules::Call;
@@ -138,9 +138,8 @@ impl AbbRapid {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, text: &mut String, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
         if self.program.restart {
             statement(text, &format!("IF {START}>0 THEN"));
@@ -237,7 +236,6 @@ impl AbbRapid {
     fn instructions(
         &mut self,
         text: &mut String,
-        program: &LayerProgram,
         all: &[Instruction],
         speeds: &Speeds,
         feed: &mut f64,
@@ -249,7 +247,6 @@ impl AbbRapid {
                 (Instruction::Approach { to }, _) => self.motion(text, "MoveJ", to, "vHome", false),
                 (Instruction::Travel { to } | Instruction::Retract { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
                 (Instruction::ArcOn { pass, kind }, next) => {
-                    self.values.set("pass", pass);
                     statement(text, &format!("! pass {pass} {}", kind.name()));
                     let before = i.checked_sub(1).and_then(|before| all.get(before));
                     let first = next.and_then(|next| match *next {
@@ -275,9 +272,7 @@ impl AbbRapid {
                     wait(text, seconds);
                 }
                 (Instruction::Dwell { seconds }, _) => wait(text, seconds),
-                (Instruction::PassStart { pass, above }, _) => {
-                    self.pass_start(text, restart::number(program, pass), pass, above);
-                }
+                (Instruction::PassStart { pass, above }, _) => self.pass_start(text, pass, above),
                 (Instruction::PassEnd, _) => {
                     self.hook(text, &self.rapid.hooks.pass_end);
                     self.end_skippable(text);

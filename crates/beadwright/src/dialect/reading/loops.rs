@@ -108,6 +108,8 @@ pub(in crate::dialect) fn behind(first: usize, count: usize, mark: impl Fn(usize
 /// any other condition.
 pub(in crate::dialect) fn holds(condition: &str, value: impl Fn(&str) -> Option<f64>) -> Option<bool> {
     const SIGNS: [&str; 8] = ["<=", ">=", "<>", "!=", "==", "=", "<", ">"];
+    let inside = condition.trim().strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    let condition = inside.filter(|inside| !inside.contains(['(', ')'])).unwrap_or(condition);
     let (at, sign) = SIGNS.iter().filter_map(|sign| Some((condition.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
     let operand = |text: &str| number(text).or_else(|| value(text.trim()));
     let (a, b) = (operand(&condition[..at])?, operand(&condition[at + sign.len()..])?);

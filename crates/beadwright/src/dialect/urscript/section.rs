@@ -1,7 +1,7 @@
 //! The section `[urscript]`: a Universal Robots cell, and the limits of its values.
 
 use super::write::UniversalScript;
-use crate::dialect::{DialectError, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{orientation, needs};
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -106,12 +106,8 @@ impl Section for Urscript {
         ]
     }
 
-    fn restarts(&self) -> bool {
-        true
-    }
-
-    fn offsets_layers(&self) -> bool {
-        true
+    fn supports(&self, extra: Extra) -> bool {
+        extra != Extra::Weave
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -95,9 +95,8 @@ impl UniversalScript {
     }
 
     /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
-    fn pass_start(&mut self, text: &mut String, indent: &str, number: usize, pass: usize, above: DVec3) {
-        self.values.set("pass", pass);
-        self.values.set("pass_number", number);
+    fn pass_start(&mut self, text: &mut String, indent: &str, pass: usize, above: DVec3) {
+        let number = self.values.set_pass(pass);
         self.begin_skippable(text, indent, number);
         if self.program.restart {
             text.push_str(&format!("{indent}if {START} > 0:\n"));
@@ -163,7 +162,6 @@ impl UniversalScript {
                 self.at = Some(to);
             }
             Instruction::ArcOn { pass, kind } => {
-                self.values.set("pass", pass);
                 text.push_str(&format!("{indent}# pass {pass} {}\n", kind.name()));
                 self.lines(text, indent, &self.urscript.arc_on);
                 self.lines(text, indent, &self.urscript.hooks.arc_established);
@@ -189,8 +187,7 @@ impl UniversalScript {
                 self.lines(text, indent, &self.urscript.hooks.before_arc_off);
                 self.lines(text, indent, &self.urscript.arc_off);
             }
-            // Begun where the number of the pass is known.
-            Instruction::PassStart { .. } => {}
+            Instruction::PassStart { pass, above } => self.pass_start(text, indent, pass, above),
             Instruction::PassEnd => {
                 self.lines(text, indent, &self.urscript.hooks.pass_end);
                 self.end_skippable(text, indent);
@@ -251,18 +248,13 @@ impl UniversalScript {
             text.push_str(&format!("    global part_frame = lifted(layer_dz[{}])\n", program.index));
         }
         let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
-        self.skippable(&mut text, "    ", restart::last(program), &lines);
+        self.skippable(&mut text, "    ", self.values.last_number(), &lines);
         for (i, &instruction) in program.instructions.iter().enumerate() {
             let behind = program.instructions[i + 1..].iter();
             let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
-            match instruction {
-                Instruction::PassStart { pass, above } => {
-                    self.pass_start(&mut text, "    ", restart::number(program, pass), pass, above);
-                }
-                other => self.instruction(&mut text, "    ", other, next),
-            }
+            self.instruction(&mut text, "    ", instruction, next);
         }
-        self.skippable(&mut text, "    ", restart::last(program), &self.urscript.hooks.layer_end);
+        self.skippable(&mut text, "    ", self.values.last_number(), &self.urscript.hooks.layer_end);
         text + "  end\n"
     }
 }

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hooks {
     /// Lines behind `arc_on` that wait until the arc burns, for `{{arc_timeout}}` s at most, and say what happens if it does
-    /// not. Packages that light the arc themselves (ArcTech, RobotWare Arc, ArcTool) watch it too and need none.
+    /// not. Packages that light the arc themselves watch it too and need none;
+    /// with ArcTech and RobotWare Arc these lines and `before_arc_off` are left out.
     pub arc_established: Vec<String>,
     /// Lines before `arc_off` while the arc still burns, such as one that ends the watch over it.
     pub before_arc_off: Vec<String>,

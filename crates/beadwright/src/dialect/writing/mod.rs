@@ -2,6 +2,7 @@
 //!
 //! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
+mod extra;
 mod hooks;
 mod names;
 pub(super) mod needs;
@@ -11,6 +12,7 @@ pub(super) mod restart;
 pub(super) mod split;
 pub(super) mod volumes;
 
+pub use extra::Extra;
 pub use hooks::Hooks;
 pub(super) use names::upper_name;
 pub use placeholders::PLACEHOLDERS;
@@ -185,18 +187,7 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     if job.program.table_angle.is_some() && !dialect.turns_table {
         return Err(DialectError::NoTable(dialect.name));
     }
-    if job.program.restart && !section.restarts() {
-        let remedy = "Take it out; a stopped build goes on with plan --from-layer N --from-pass N.";
-        return Err(DialectError::Cannot { dialect: dialect.name, what: "program.restart = true", remedy });
-    }
-    if job.program.layer_offsets && !section.offsets_layers() {
-        let remedy = "Take it out; KRL, RAPID, FANUC and URScript have it.";
-        return Err(DialectError::Cannot { dialect: dialect.name, what: "program.layer_offsets = true", remedy });
-    }
-    if job.weave.is_some() && !job.dry_run && !section.weaves() {
-        let remedy = "Controllers weave with ArcTech, RobotWare Arc, FANUC and Yaskawa; take [weave] out for others.";
-        return Err(DialectError::Cannot { dialect: dialect.name, what: "[weave]", remedy });
-    }
+    extra::check(dialect.name, section, job)?;
     section.writer(job)
 }
 

@@ -1,6 +1,6 @@
 //! The placeholders of templates, and their values.
 
-use super::Job;
+use super::{Job, restart};
 use crate::number::fixed;
 use crate::process::Process;
 use crate::program::LayerProgram;
@@ -53,22 +53,38 @@ fn retract(job: &Job<'_>) -> f64 {
 pub(in crate::dialect) struct Values {
     values: Vec<(&'static str, String)>,
     process: Process,
+    /// Index of the layer.
+    layer: usize,
 }
 
 impl Values {
     /// The values at the beginning; `program` is the name of the program in the dialect.
     pub(in crate::dialect) fn new(program: &str, job: &Job<'_>) -> Self {
         let values = PLACEHOLDERS.iter().map(|(name, value)| (*name, value(job))).collect();
-        let mut values = Self { values, process: job.weld.process.clone() };
+        let mut values = Self { values, process: job.weld.process.clone(), layer: 0 };
         values.set("program", program);
         values
     }
 
     /// Sets number, height and job of the layer.
     pub(in crate::dialect) fn set_layer(&mut self, layer: &LayerProgram) {
+        self.layer = layer.index;
         self.set("layer", layer.index + 1);
         self.set("z", fixed(layer.z, 3));
         self.set("job", self.process.at_layer(layer.index).job);
+    }
+
+    /// Sets the pass and returns its number among all passes, at which a program may begin.
+    pub(in crate::dialect) fn set_pass(&mut self, pass: usize) -> usize {
+        let number = restart::number(self.layer, pass);
+        self.set("pass", pass);
+        self.set("pass_number", number);
+        number
+    }
+
+    /// The number up to which the layer has something to do.
+    pub(in crate::dialect) fn last_number(&self) -> usize {
+        restart::number(self.layer, usize::MAX)
     }
 
     /// Sets the wait for the next templates, s.

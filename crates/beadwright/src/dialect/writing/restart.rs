@@ -1,19 +1,12 @@
 //! Programs that can begin at any pass: a variable holds where, and each pass is skipped if it comes before that. The first
 //! pass that runs comes from anywhere, and sets the variable back to 0.
 
-use crate::program::LayerProgram;
-
 /// Passes of a layer that have numbers of their own; later ones share the last.
 const PASSES: usize = 9_999;
 
-/// The number of a pass (from 1): its layer times 10000 plus the pass.
-pub(in crate::dialect) fn number(layer: &LayerProgram, pass: usize) -> usize {
-    (layer.index + 1) * (PASSES + 1) + pass.min(PASSES)
-}
-
-/// The number up to which a layer has something to do.
-pub(in crate::dialect) fn last(layer: &LayerProgram) -> usize {
-    number(layer, PASSES)
+/// The number of a pass (from 1) of the layer with an index: the layer times 10000 plus the pass.
+pub(super) fn number(layer: usize, pass: usize) -> usize {
+    (layer + 1) * (PASSES + 1) + pass.min(PASSES)
 }
 
 /// What the head of a program says about its variable.
