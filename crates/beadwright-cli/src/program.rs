@@ -13,6 +13,7 @@ use beadwright::model::Import;
 use beadwright::plan;
 use beadwright::plan_file::{self, PlanFile};
 use beadwright::planar::Bounds;
+use beadwright::process::Follow;
 use beadwright::profile::{BUILT_IN, Profile};
 use beadwright::simulate;
 use beadwright::task::Task;
@@ -167,11 +168,18 @@ impl Source {
             path.display()
         );
         let settings = plan::deposit_settings(profile);
-        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, reading.bead_width);
+        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, &profile.process, reading.bead_width);
         let mut notes = program.notes.clone();
         if wanted.profile.is_none() {
             let source = if told.is_some() { "the program names it" } else { "--profile tells another" };
             notes.insert(0, format!("Read with the profile {} ({source}).", profile.name));
+        }
+        if profile.process.follow == Follow::WireFeed && !printer {
+            notes.push(
+                "The profile changes the wire feed along a pass (process.follow), and programs' wire feeds are not read: all \
+                 beads are judged with the nominal one. Simulate plan.json for their true widths."
+                    .to_owned(),
+            );
         }
         let (rapids, length) = program.take_rapids_at(profile.travel.speed);
         if rapids > 0 {

@@ -14,7 +14,7 @@ fn main() -> Result<(), Failure> {
     let profile = Profile::built_in("plasma-304-cnc")?;
     let program = read(PROGRAM, &mut |_| None, &Options::default())?;
     let settings = deposit_settings(&profile);
-    for layer in simulate::layers(&program, &settings, &profile.bead.law, None) {
+    for layer in simulate::layers(&program, &settings, &profile.bead.law, &profile.process, None) {
         let judgement = Judge::new(settings).layer(&layer);
         let height = judgement.figures.deposited_volume;
         println!("layer at z {} mm: {} passes, {height:.0} mm³ of metal", layer.z, layer.passes.len());

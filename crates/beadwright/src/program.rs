@@ -5,11 +5,15 @@
 //! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and no
 //! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
 
+mod attitude;
 mod safety;
 mod settings;
 mod spread;
+mod table;
+mod tilt;
 mod weave;
 
+pub use attitude::Attitude;
 pub use safety::Safety;
 pub use settings::ProgramSettings;
 pub use weave::Weave;
@@ -18,9 +22,11 @@ use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};
 use crate::process::Follow;
 use crate::weld::{Pause, Torch, WeldSettings, path};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use planar::arcs::{Fit, Piece};
 use spread::Spread;
+use table::Follower;
+use tilt::Tilt;
 
 /// Coordinates of a program are multiples of this, mm.
 pub const RESOLUTION_MM: f64 = 1e-3;
@@ -53,6 +59,8 @@ pub enum Instruction {
         pass: usize,
         /// A point above its start to which the torch can come from anywhere, mm.
         above: DVec3,
+        /// How torch and table stand on the way to the start and there.
+        attitude: Attitude,
     },
     /// The pass is done; the torch is above the part.
     PassEnd,
@@ -79,6 +87,8 @@ pub enum Instruction {
         speed: f64,
         /// Whether the pass ends here, with an exact stop.
         last: bool,
+        /// How torch and table stand at its end; they stay so until the next `Weld` or `PassStart`.
+        attitude: Attitude,
     },
     /// The arc burns on the spot, at the end of a pass, to fill its crater.
     Crater {
@@ -104,6 +114,14 @@ impl Instruction {
     pub fn target(&self) -> Option<DVec3> {
         match *self {
             Self::Approach { to } | Self::Travel { to } | Self::Retract { to } | Self::Weld { to, .. } => Some(to),
+            _ => None,
+        }
+    }
+
+    /// How torch and table stand from here on; `None` where they stay as they are.
+    pub fn attitude(&self) -> Option<Attitude> {
+        match *self {
+            Self::PassStart { attitude, .. } | Self::Weld { attitude, .. } => Some(attitude),
             _ => None,
         }
     }
@@ -159,14 +177,26 @@ pub struct Programmer {
     restarts: bool,
     dry: bool,
     spread: Option<Spread>,
+    tilt: Option<Tilt>,
+    table: Option<Follower>,
 }
 
 impl Programmer {
     /// Programs passes as they are planned; travels run `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
-        let (spread, feed) = (None, None);
-        Self { torch, fit: None, speed_tolerance: 0.0, spread, feed, sets_feed: false, restarts: false, dry: false }
+        Self {
+            torch,
+            fit: None,
+            speed_tolerance: 0.0,
+            feed: None,
+            sets_feed: false,
+            restarts: false,
+            dry: false,
+            spread: None,
+            tilt: None,
+            table: None,
+        }
     }
 
     /// Programs passes as they are welded; a dry run has the same moves and no arc.
@@ -174,7 +204,8 @@ impl Programmer {
         let other_layers = !weld.process.layers.is_empty();
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
-        let programmer = Self { torch, sets_feed, restarts, dry, ..Self::new(weld.travel.clearance) };
+        let (tilt, table) = (Tilt::new(program), Follower::new(program));
+        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
     }
 
@@ -204,6 +235,7 @@ impl Programmer {
     /// The same from the pass with the index `first` on, for a build that was stopped there.
     pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
+        self.pass_over(layer);
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
         let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
@@ -219,6 +251,11 @@ impl Programmer {
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
 
+    /// Takes note of a layer that another program lays; the torch leans with the walls that stand on it.
+    pub fn pass_over(&mut self, layer: &Layer) {
+        self.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
+    }
+
     fn pause(&self, pause: Pause, out: &mut Vec<Instruction>) {
         out.extend((pause.length > 0.0).then_some(Instruction::Travel { to: pause.at }));
         out.push(Instruction::Dwell { seconds: pause.seconds });
@@ -229,12 +266,19 @@ impl Programmer {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
         self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
+        let width = pass.width.max();
+        if self.tilt.is_some() {
+            moves = Tilt::divided(moves, width);
+        }
         let [(start, _), (_, first), ..] = moves[..] else { return };
+        let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, width)).unwrap_or_default();
+        let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
+        let table = self.table.as_mut().map(|table| table.begin(start));
         let begins = self.torch.at().is_none();
         let legs = self.torch.approach(start).legs;
         let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
         let mut legs = legs.into_iter();
-        out.push(Instruction::PassStart { pass: number, above });
+        out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
         pause.take().into_iter().for_each(|pause| self.pause(pause, out));
         if self.restarts {
             self.feed = None;
@@ -244,14 +288,19 @@ impl Programmer {
         out.extend(legs.map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
         let pieces = match &self.fit {
-            Some(fit) => fitted(&moves, fit),
-            None => moves[1..].iter().map(|&(to, pace)| (to, pace, None)).collect(),
+            Some(fit) => fitted(&moves, &leans, fit),
+            None => (1..moves.len()).map(|end| Stretch { end, circle: None }).collect(),
         };
-        let end = pieces.len();
-        for (i, (to, pace, circle)) in (1..).zip(pieces) {
+        let mut from = start;
+        for Stretch { end, circle } in pieces {
+            let (to, pace) = moves[end];
             let (speed, feed) = (self.torch.speed_at(pace), self.torch.feed_at(pace));
             self.set_feed(feed, out);
-            out.push(Instruction::Weld { to, circle, speed, last: i == end });
+            let length = circle.map_or(from.distance(to), |circle| circle.length());
+            let table = self.table.as_mut().map(|table| table.follow(to, length));
+            let attitude = Attitude { lean: lean(end), table };
+            out.push(Instruction::Weld { to, circle, speed, last: end + 1 == moves.len(), attitude });
+            from = to;
         }
         let seconds = self.torch.weld(&moves).crater;
         if seconds > 0.0 {
@@ -296,16 +345,21 @@ fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     }
 }
 
-/// The end of a move, the pace on it, and its circle if it has one.
-type Stretch = (DVec3, f64, Option<Circle>);
+/// A piece of a path: the index of the move that ends it, and its circle if it has one.
+struct Stretch {
+    end: usize,
+    circle: Option<Circle>,
+}
 
-/// The moves from the first point on, fitted. Pieces end where pace or height changes.
-fn fitted(moves: &[(DVec3, f64)], fit: &Fit) -> Vec<Stretch> {
+/// The moves from the first point on, fitted. Pieces end where the pace, the height or the torch's lean changes.
+fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<Stretch> {
     let (mut out, mut start) = (Vec::new(), 0);
+    let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
     while let Some(&(first, pace)) = moves.get(start + 1) {
-        let alike = |(to, p): &&(DVec3, f64)| *p == pace && to.z == first.z;
-        let level = moves[start].0.z == first.z;
-        let end = start + if level { moves[start + 1..].iter().take_while(alike).count() } else { 1 };
+        let leans_alike = |i: usize| lean(i).distance(lean(start)) <= tilt::ALIKE;
+        let alike = |i: &usize| moves[*i].1 == pace && moves[*i].0.z == first.z && leans_alike(*i);
+        let level = moves[start].0.z == first.z && leans_alike(start + 1);
+        let end = start + if level { (start + 1..moves.len()).take_while(alike).count() } else { 1 };
         let points: Vec<_> = moves[start..=end].iter().map(|(p, _)| p.truncate()).collect();
         let piece = |p: Piece| {
             let lift = |arc: planar::arcs::Arc| Circle {
@@ -314,7 +368,7 @@ fn fitted(moves: &[(DVec3, f64)], fit: &Fit) -> Vec<Stretch> {
                 radius: arc.radius,
                 sweep: arc.sweep,
             };
-            (moves[start + p.end].0, pace, p.arc.map(lift))
+            Stretch { end: start + p.end, circle: p.arc.map(lift) }
         };
         out.extend(fit.pieces(&points).into_iter().map(piece));
         start = end;

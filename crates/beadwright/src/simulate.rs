@@ -6,6 +6,7 @@ use crate::dialect::reading::{ReadLayer, ReadPass, ReadProgram};
 use crate::layer::Layer;
 use crate::model::Mesh;
 use crate::pass::{Along, Pass};
+use crate::process::Process;
 use crate::slice::{Slab, SliceOptions, Slicer};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
@@ -14,13 +15,23 @@ use planar::Bounds;
 /// The passes of a program by layer. The width of a piece is the first of these that is known: `width`; where the
 /// program gives the volume, as printers do, the width of a bead of the layer's height with that volume; the width that
 /// the program gives; the width that the bead law gives at the program's speed; the nominal width. Its pace follows
-/// from the volume where the program gives that; otherwise it is the program's speed.
-pub fn layers(program: &ReadProgram, settings: &DepositSettings, law: &Law, width: Option<f64>) -> Vec<Layer> {
+/// from the volume where the program gives that; otherwise from the program's speed, with the wire feed that `process` has in
+/// the layer: wire feeds are not read from programs.
+pub fn layers(
+    program: &ReadProgram,
+    settings: &DepositSettings,
+    law: &Law,
+    process: &Process,
+    width: Option<f64>,
+) -> Vec<Layer> {
     let read = program.layers();
     let layer = |(index, read): (usize, ReadLayer)| {
         let height = if read.height > 0.0 { read.height } else { settings.nominal.rise };
         let bead_height = settings.nominal.bead.height * height / settings.nominal.rise;
-        let passes = read.passes.iter().filter_map(|p| pass(p, settings, law, bead_height, width)).collect();
+        let passes = {
+            let rate = process.at_layer(index).rate();
+            read.passes.iter().filter_map(|p| pass(p, settings, law, bead_height, rate, width)).collect()
+        };
         Layer { index, z: read.z, height, passes, ..Layer::default() }
     };
     read.into_iter().enumerate().map(layer).collect()
@@ -29,7 +40,15 @@ pub fn layers(program: &ReadProgram, settings: &DepositSettings, law: &Law, widt
 /// Least and greatest width of a bead, in nominal bead widths: blobs and stringing are not beads.
 const WIDTHS: (f64, f64) = (0.25, 4.0);
 
-fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64, width: Option<f64>) -> Option<Pass> {
+/// `rate` is the wire feed as a multiple of the nominal one.
+fn pass(
+    read: &ReadPass,
+    settings: &DepositSettings,
+    law: &Law,
+    bead_height: f64,
+    rate: f64,
+    width: Option<f64>,
+) -> Option<Pass> {
     let nominal = &settings.nominal;
     let mut points = vec![*read.points.first()?];
     let (mut widths, mut paces) = (Vec::new(), Vec::new());
@@ -40,15 +59,15 @@ fn pass(read: &ReadPass, settings: &DepositSettings, law: &Law, bead_height: f64
         }
         points.push(pair[1]);
         let of_volume = |volume: f64| nominal.bead.section.width_of(bead_height, volume / length);
-        let of_speed = |speed: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.pace / speed);
+        let of_pace = |pace: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.pace / pace);
         let told = read.volume[i].map(of_volume).or(read.width[i]);
-        let own = told.or_else(|| Some(read.speed[i]).filter(|speed| *speed > 0.0).map(of_speed));
+        let pace = Some(read.speed[i] / rate).filter(|pace| *pace > 0.0);
+        let own = told.or_else(|| pace.map(of_pace));
         let own = own.map(|own| own.clamp(WIDTHS.0 * nominal.bead.width, WIDTHS.1 * nominal.bead.width));
         widths.push(width.or(own).unwrap_or(nominal.bead.width));
         paces.push(match read.volume[i] {
             Some(volume) => nominal.pace * nominal.bead.area() * length / volume.max(1e-9),
-            None if read.speed[i] > 0.0 => read.speed[i],
-            None => nominal.pace,
+            None => pace.unwrap_or(nominal.pace),
         });
     }
     // The last point has no piece after it.

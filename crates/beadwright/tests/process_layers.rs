@@ -5,9 +5,10 @@ mod common;
 mod readers;
 
 use beadwright::dialect;
+use beadwright::layer::Layer;
 use beadwright::process::{Follow, LayerProcess};
 use beadwright::profile::Profile;
-use common::{planned, profile};
+use common::{planned, profile, read_back};
 
 /// The first two layers at 1.25 times the speed, with job 7.
 fn faster(mut profile: Profile) -> Profile {
@@ -81,5 +82,26 @@ fn rows_that_make_no_sense_are_refused() {
         let text = text.replace("[process]\n", &format!("[process]\nlayers = [{{ {row} }}]\n"));
         let error = Profile::parse(&text).unwrap_err().to_string();
         assert!(error.contains("process.layers") && error.contains(about), "{error}");
+    }
+}
+
+/// A program read back is judged with the wire feed of each layer: the same beads as in the plan.
+#[test]
+fn a_program_read_back_has_the_same_beads() {
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.fill.strategy = "contour".to_owned();
+    let krl = profile.dialects.krl.as_mut().unwrap();
+    krl.wire_feed = vec!["$ANOUT[1] = {{wire_feed_ratio}}".to_owned()];
+    krl.layer_start = vec!["JOB( {{job}} )".to_owned()];
+    let profile = faster(profile);
+    let plan = planned("cross", &profile);
+    let program = read_back(&dialect::write("krl", &plan.layers, &profile.job("demo")).unwrap(), "DEMO.src").unwrap();
+    let settings = beadwright::plan::deposit_settings(&profile);
+    let read = beadwright::simulate::layers(&program, &settings, &profile.bead.law, &profile.process, None);
+    for (read, plan) in read.iter().zip(&plan.layers) {
+        let metal = |layer: &Layer| -> f64 {
+            layer.passes.iter().flat_map(|p| p.segments()).map(|s| s.length() / s.pace).sum()
+        };
+        assert!((metal(read) / metal(plan) - 1.0).abs() < 3e-3, "layer {}", plan.index + 1);
     }
 }

@@ -441,6 +441,10 @@ fn tolerances_of_programs_are_checked() {
         ("arcs = true", "[program]", "needs a tolerance"),
         ("speed_tolerance = 0.5", "speed_tolerance", "of the speed"),
         ("torch_angle = 361.0", "torch_angle", "between -360 and 360 °"),
+        ("follow_wall = 1.2", "follow_wall", "between 0 and 1"),
+        ("max_work_angle = 50.0", "max_work_angle", "between 0 and 45 °"),
+        ("travel_angle = -31.0", "travel_angle", "between -30 and 30 °"),
+        ("table_angle = 5.0\ntable_side = 90.0", "table_side", "take one of them out"),
         ("min_point_time = 1.5", "min_point_time", "between 0 and 1 s"),
         ("min_point_time = 0.012", "[program]", "needs a tolerance"),
     ] {

@@ -94,7 +94,7 @@ fn every_dialect_of_a_hybrid_layer_reads_back_as_planned() {
             assert_eq!(totals.arc_starts, planned.len(), "{post}");
             let off = (totals.deposited_length_mm - length).abs();
             assert!(off < if arcs { 2e-3 * length } else { 0.01 * planned.len() as f64 }, "{post} arcs {arcs}: {off}");
-            let layers = simulate::layers(&program, &settings, &profile.bead.law, None);
+            let layers = simulate::layers(&program, &settings, &profile.bead.law, &profile.process, None);
             let volume = Totals::of_program(&totals, &layers, &profile).metal_volume_mm3;
             // Speeds have one decimal in some dialects.
             let exact = matches!(dialect, "KRL" | "G-code" | "URScript");
@@ -117,7 +117,7 @@ fn every_dialect_is_judged_alike() {
         let mut profile = profile.clone();
         change(&mut profile);
         let program = read_files(&files(post, &plan, &profile), main, &options());
-        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, None);
+        let mut layers = simulate::layers(&program, &settings, &profile.bead.law, &profile.process, None);
         simulate::outline(&mut layers, &mesh, profile.slice_options(), &Task::new()).unwrap();
         let totals = Totals::of_program(&program.totals(), &layers, &profile);
         let entry = compare::program(post, &layers, totals, settings, &None, &Task::new()).unwrap();

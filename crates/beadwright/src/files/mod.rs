@@ -153,6 +153,8 @@ impl PlanFiles {
         if layer.index >= self.start.layer {
             let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
             chunks.extend(self.programs.layer(layer, first));
+        } else {
+            self.programs.programmer.pass_over(layer);
         }
         self.note(&chunks);
         chunks

@@ -28,6 +28,19 @@ pub struct ProgramSettings {
     /// angle. The part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other
     /// posts refuse it. Leave it out if there is no turn table.
     pub table_angle: Option<f64>,
+    /// Direction from the turn table's axis in which the arc stays, °: the table, whose axis stands at x = 0, y = 0 of the
+    /// part and whose angle grows counter-clockwise as seen from above, turns with the torch, and the controller moves both
+    /// together. The part's frame must turn with the table. KRL and RAPID write it, as `table_angle`, in whose place it
+    /// stands. Leave it out if the table stands still.
+    pub table_side: Option<f64>,
+    /// Which part of a wall's lean the torch takes on (work angle), 0 to 1; 0, the default, leaves it as in the robot's
+    /// section. Robots only.
+    pub follow_wall: f64,
+    /// The greatest work angle, °; default 30.
+    pub max_work_angle: f64,
+    /// Lean of the torch along its way, °: above 0 the wire points forward (push), below 0 back (drag). Robots only. Default
+    /// 0.
+    pub travel_angle: f64,
     /// Whether a stopped build can go on inside the program, without a new one: a variable, which each program tells at its
     /// head, holds the layer times 10000 plus the pass at which to begin, and 0 to begin at the beginning. For robots and
     /// LinuxCNC; others take `plan --from-layer --from-pass`. Default false.
@@ -49,6 +62,10 @@ impl Default for ProgramSettings {
             min_point_time: 0.0,
             torch_angle: 0.0,
             table_angle: None,
+            table_side: None,
+            follow_wall: 0.0,
+            max_work_angle: 30.0,
+            travel_angle: 0.0,
             restart: false,
             layer_offsets: false,
             measure_every: 10,
@@ -57,6 +74,16 @@ impl Default for ProgramSettings {
 }
 
 impl ProgramSettings {
+    /// Whether there is a turn table.
+    pub(crate) fn turns_table(&self) -> bool {
+        self.table_angle.is_some() || self.table_side.is_some()
+    }
+
+    /// Whether the torch leans other than the robot's section says.
+    pub(crate) fn tilts(&self) -> bool {
+        self.follow_wall != 0.0 || self.travel_angle != 0.0
+    }
+
     /// The limits of the numbers; some depend on the bead width `w`, mm.
     pub(crate) fn limits(&self, w: f64) -> Vec<Limit> {
         limits! {
@@ -69,11 +96,24 @@ impl ProgramSettings {
             "program.torch_angle": self.torch_angle, -360.0, 360.0, "°", "values outside this range make no sense";
             "program.table_angle": self.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°",
                 "values outside this range make no sense";
+            "program.table_side": self.table_side.unwrap_or(0.0), -360.0, 360.0, "°", "values outside this range make no sense";
+            "program.follow_wall": self.follow_wall, 0.0, 1.0, "(fraction of the wall's lean)", "a torch leans no more than the wall";
+            "program.max_work_angle": self.max_work_angle, 0.0, 45.0, "°", "the gas does not cover the metal at a steeper torch";
+            "program.travel_angle": self.travel_angle, -30.0, 30.0, "°", "the gas does not cover the metal at a steeper torch";
         }
     }
 
     /// Values that do not fit together.
     pub(crate) fn broken(&self) -> Option<Broken> {
+        if let (Some(_), Some(side)) = (self.table_angle, self.table_side) {
+            let reason =
+                "a table stands still (table_angle) or turns with the torch (table_side): take one of them out.";
+            return Some(Broken {
+                key: "program.table_side".to_owned(),
+                value: format!("{side}"),
+                reason: reason.to_owned(),
+            });
+        }
         let reason = if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
             "0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move."
         } else if self.arcs && self.chord_tolerance == 0.0 {

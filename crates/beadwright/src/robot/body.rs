@@ -121,9 +121,10 @@ impl<'a> Room<'a> {
         (self.low, self.high) = (self.low.min(from.min(to)), self.high.max(from.max(to)));
     }
 
-    /// The deepest contact of each pair of solids.
-    pub(super) fn contacts(&self, joints: &Joints) -> Vec<Contact> {
-        let capsules = self.capsules(joints);
+    /// The deepest contact of each pair of solids, with a table turned like this.
+    pub(super) fn contacts(&self, joints: &Joints, turned_table: &Frame) -> Vec<Contact> {
+        let part_from_base = turned_table.inverse().then(&self.part_from_base);
+        let capsules = self.capsules(joints, &part_from_base);
         let mut found: Vec<Contact> = Vec::new();
         let mut note = |solids: [Solid; 2], gap: f64| {
             let contact = Contact { solids, depth: -gap };
@@ -148,7 +149,8 @@ impl<'a> Room<'a> {
         found
     }
 
-    fn capsules(&self, joints: &Joints) -> Vec<Capsule> {
+    /// Arm and torch in the part's frame.
+    fn capsules(&self, joints: &Joints, part_from_base: &Frame) -> Vec<Capsule> {
         let [foot, shoulder, elbow, wrist] = self.arm.links(joints);
         let flange = self.arm.forward(joints);
         let Body { base, upper_arm, forearm, hand, torch, stick_out, .. } = *self.body;
@@ -162,7 +164,11 @@ impl<'a> Room<'a> {
         // Capsules are round at their ends, links are not: the forearm ends at the wrist, the torch begins at the flange.
         let shortened =
             |from: DVec3, to: DVec3, by: f64| to - (to - from).normalize_or_zero() * by.min(from.distance(to));
-        let capsule = |solid, from, to, radius| Capsule { solid, ends: [from, to], radius };
+        let capsule = |solid, from: DVec3, to: DVec3, radius| Capsule {
+            solid,
+            ends: [from, to].map(|end| part_from_base.apply(end)),
+            radius,
+        };
         vec![
             capsule(Solid::Torch, flange.position, flange.apply(neck), torch),
             capsule(Solid::Torch, flange.apply(neck), flange.apply(nozzle), torch),
@@ -181,7 +187,7 @@ impl<'a> Room<'a> {
             let beside = (place.truncate().abs() - half).max(DVec2::ZERO);
             beside.extend(place.z.max(0.0)).length() - capsule.radius
         };
-        self.way(capsule).map(gap).fold(f64::INFINITY, f64::min)
+        places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
     }
 
     /// How far a capsule stays from the metal that stands, mm.
@@ -203,13 +209,11 @@ impl<'a> Room<'a> {
             };
             around.filter_map(distance).fold(f64::INFINITY, f64::min)
         };
-        if self.tops.is_empty() { f64::INFINITY } else { self.way(capsule).map(gap).fold(f64::INFINITY, f64::min) }
-    }
-
-    /// Places along a capsule's middle, in the part's frame.
-    fn way(&self, capsule: &Capsule) -> impl Iterator<Item = DVec3> + use<> {
-        let [from, to] = capsule.ends.map(|end| self.part_from_base.apply(end));
-        places(from, to).into_iter()
+        if self.tops.is_empty() {
+            f64::INFINITY
+        } else {
+            places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
+        }
     }
 }
 

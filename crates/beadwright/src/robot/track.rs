@@ -1,9 +1,10 @@
 //! The path of the torch through a plan, travels included, in pieces short enough to be checked point by point.
 
+use super::{Frame, part_from_tool};
 use crate::layer::Layer;
 use crate::profile::Profile;
-use crate::program::Instruction;
-use glam::DVec3;
+use crate::program::{Attitude, Instruction};
+use glam::{DQuat, DVec3};
 use serde::Serialize;
 use std::borrow::Borrow;
 
@@ -25,8 +26,27 @@ pub struct Stop {
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
+    /// How torch and table stand there.
+    #[serde(skip)]
+    pub attitude: Attitude,
     /// Whether it lies on the part, or on the way from or to home.
     pub leg: Leg,
+}
+
+impl Stop {
+    /// The tool here, turned by `angle` (°) about the torch's axis, in the part's space as it lies while a table that turns
+    /// during the program stands at 0.
+    pub fn tool(&self, angle: f64) -> Frame {
+        let upright = part_from_tool(self.at, angle);
+        let leaning = Frame { rotation: self.attitude.rotation() * upright.rotation, ..upright };
+        self.turned_table().then(&leaning)
+    }
+
+    /// Where the part lies while the table stands as it does here.
+    pub fn turned_table(&self) -> Frame {
+        let angle = self.attitude.table.unwrap_or(0.0).to_radians();
+        Frame { position: DVec3::ZERO, rotation: DQuat::from_rotation_z(angle) }
+    }
 }
 
 /// A leg of the path.
@@ -69,20 +89,39 @@ impl Track {
     }
 
     fn add(&mut self, program: &crate::program::LayerProgram, layer: usize, travel_speed: f64) {
-        let (mut pass, mut point) = (0, 0);
+        let (mut pass, mut point, mut attitude) = (0, 0, Attitude::default());
         for instruction in &program.instructions {
+            attitude = instruction.attitude().unwrap_or(attitude);
             match *instruction {
                 Instruction::Approach { to } | Instruction::Travel { to } => {
-                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false, leg: Leg::Part });
+                    self.go(Stop {
+                        layer,
+                        pass,
+                        point: 0,
+                        at: to,
+                        seconds: travel_speed,
+                        arc: false,
+                        attitude,
+                        leg: Leg::Part,
+                    });
                 }
                 Instruction::Retract { to } => {
                     let pass = pass.saturating_sub(1);
-                    self.go(Stop { layer, pass, point: 0, at: to, seconds: travel_speed, arc: false, leg: Leg::Part });
+                    self.go(Stop {
+                        layer,
+                        pass,
+                        point: 0,
+                        at: to,
+                        seconds: travel_speed,
+                        arc: false,
+                        attitude,
+                        leg: Leg::Part,
+                    });
                 }
                 Instruction::ArcOn { .. } => point = 0,
                 Instruction::Weld { to, speed, .. } => {
                     point += 1;
-                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, leg: Leg::Part });
+                    self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, attitude, leg: Leg::Part });
                 }
                 Instruction::PassStart { .. }
                 | Instruction::PassEnd
@@ -98,7 +137,7 @@ impl Track {
     /// Goes straight to a stop, whose `seconds` still hold the speed (mm/s).
     fn go(&mut self, stop: Stop) {
         let speed = stop.seconds.max(1e-6);
-        let Some(from) = self.stops.last().map(|s| s.at) else {
+        let Some((from, standing)) = self.stops.last().map(|s| (s.at, s.attitude)) else {
             self.stops.push(Stop { seconds: 0.0, ..stop });
             return;
         };
@@ -107,6 +146,7 @@ impl Track {
         let pieces = (length / PIECE_MM).ceil().clamp(1.0, 1e4);
         let part = |k: usize| Stop {
             at: from.lerp(stop.at, (k as f64 / pieces).min(1.0)),
+            attitude: standing.towards(&stop.attitude, (k as f64 / pieces).min(1.0)),
             seconds: length / pieces / speed,
             ..stop
         };

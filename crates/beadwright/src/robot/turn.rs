@@ -6,7 +6,6 @@
 //! that does nearly as well is preferred.
 
 use super::arm::{Arm, Branch, Frame};
-use super::part_from_tool;
 use super::track::{PIECE_MM, Stop};
 use rayon::prelude::*;
 
@@ -97,7 +96,7 @@ fn turnable(stops: &[Stop], stations: &[usize]) -> Vec<bool> {
 fn row(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame, stop: &Stop) -> Row {
     let mut row = [[NOWHERE; Branch::COUNT]; ANGLES];
     for (k, margins) in row.iter_mut().enumerate() {
-        let tool = base_from_part.then(&part_from_tool(stop.at, k as f64 * STEP));
+        let tool = base_from_part.then(&stop.tool(k as f64 * STEP));
         for (branch, joints) in arm.inverse(&tool.then(tool_from_flange)) {
             let margin = &mut margins[branch.index()];
             *margin = margin.max(arm.margins(&joints).least() as f32);

@@ -6,7 +6,7 @@ use super::cell::{Cell, PartPlace};
 use super::finding::{Findings, ReachFinding, Trouble};
 use super::home::{Move, Way};
 use super::track::{Leg, Stop, Track};
-use super::{part_from_tool, turn};
+use super::turn;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -68,7 +68,7 @@ pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let arm = cell.arm();
     let (base_from_part, tool_from_flange) = (place.base_from_part(), cell.flange_from_tool().inverse());
     let course = turn::course(&arm, &base_from_part, &tool_from_flange, &track.stops);
-    let flange = |stop: &Stop, angle: f64| base_from_part.then(&part_from_tool(stop.at, angle)).then(&tool_from_flange);
+    let flange = |stop: &Stop, angle: f64| base_from_part.then(&stop.tool(angle)).then(&tool_from_flange);
     let pairs: Vec<(&Stop, f64)> = track.stops.iter().zip(course.angles.iter().copied()).collect();
     let solved: Vec<Option<Joints>> =
         pairs.par_iter().map(|(stop, angle)| solve(&arm, &flange(stop, *angle), course.branch)).collect();
@@ -181,7 +181,7 @@ impl Walk<'_> {
 impl Walk<'_> {
     /// Looks for what the arm hits at a stop.
     fn touch(&mut self, stop: &Stop, joints: &Joints) {
-        let contacts = self.room.as_ref().map(|room| room.contacts(joints)).unwrap_or_default();
+        let contacts = self.room.as_ref().map(|room| room.contacts(joints, &stop.turned_table())).unwrap_or_default();
         for contact in contacts {
             self.findings.add(stop, Trouble::Collision { solids: contact.solids, depth: contact.depth });
         }

@@ -2,7 +2,8 @@
 
 use super::write::FanucTp;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::{orientation, needs};
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::needs;
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -139,7 +140,7 @@ impl Section for Fanuc {
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         needs::lines("fanuc", &self.templates(), "AO[1]={{wire_feed_ratio}}", job)?;
         let mut section = self.clone();
-        section.orientation = orientation::xyz(section.orientation, job.program.torch_angle);
+        section.orientation = orientation::xyz(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(FanucTp::new(job, section)))
     }
 }

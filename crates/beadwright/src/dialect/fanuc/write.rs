@@ -4,6 +4,7 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
 //! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Fanuc, FanucSpeed};
@@ -36,6 +37,8 @@ pub(super) struct FanucTp {
     program: ProgramSettings,
     weave: Option<Weave>,
     values: Values,
+    /// W, P, R of the torch, °.
+    orientation: [f64; 3],
     travel_speed: f64,
     nominal_speed: f64,
     wire_feed_speed: f64,
@@ -95,11 +98,11 @@ impl FanucTp {
         let name = upper_name(&job.part);
         let values = Values::new(&name, job);
         let Process { deposition_speed: nominal_speed, wire_feed_speed, .. } = job.weld.process;
-        let travel_speed = job.weld.travel.speed;
+        let (travel_speed, orientation) = (job.weld.travel.speed, fanuc.orientation);
         let comment = ascii(&job.part).replace('"', "_");
         let main = Program::default();
         let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, fanuc, program, weave, values, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
+        Self { name, comment, supplies, fanuc, program, weave, values, orientation, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
@@ -160,7 +163,7 @@ impl FanucTp {
 
     /// Adds a position in the user frame and returns its number.
     fn pose(&self, program: &mut Program, to: DVec3) -> usize {
-        let Fanuc { user_frame, tool_frame, configuration, orientation: [w, p, r], .. } = &self.fanuc;
+        let (Fanuc { user_frame, tool_frame, configuration, .. }, [w, p, r]) = (&self.fanuc, &self.orientation);
         let head = format!("UF : {user_frame}, UT : {tool_frame}, CONFIG : '{configuration}',");
         let (mm, deg) = (|v: f64| format!("{:>9} mm", fixed(v, 3)), |v: &f64| format!("{:>9} deg", fixed(*v, 4)));
         let axes = [("X", mm(to.x)), ("Y", mm(to.y)), ("Z", mm(to.z)), ("W", deg(w)), ("P", deg(p)), ("R", deg(r))];
@@ -184,6 +187,9 @@ impl FanucTp {
     }
 
     fn instruction(&mut self, program: &mut Program, instruction: Instruction) {
+        if let Some(attitude) = instruction.attitude() {
+            self.orientation = orientation::xyz(self.fanuc.orientation, Turn::Attitude(attitude));
+        }
         match instruction {
             Instruction::Approach { to } => {
                 let number = self.pose(program, to);
@@ -204,7 +210,7 @@ impl FanucTp {
                     program.line(&format!("  Weave Sine[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]"));
                 }
             }
-            Instruction::Weld { to, circle, speed, last } => {
+            Instruction::Weld { to, circle, speed, last, .. } => {
                 let via = circle.map(|circle| self.pose(program, circle.via));
                 let number = self.pose(program, to);
                 let end = if last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
@@ -233,7 +239,7 @@ impl FanucTp {
                 self.lines(program, &self.fanuc.hooks.before_arc_off);
                 self.lines(program, &self.fanuc.arc_off);
             }
-            Instruction::PassStart { pass, above } => self.pass_start(program, pass, above),
+            Instruction::PassStart { pass, above, .. } => self.pass_start(program, pass, above),
             Instruction::PassEnd => {
                 self.lines(program, &self.fanuc.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));

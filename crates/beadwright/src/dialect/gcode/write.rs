@@ -230,7 +230,7 @@ impl CncGcode {
                 let lines = [&self.gcode.hooks.before_arc_off[..], &self.gcode.arc_off].concat();
                 self.blocks(text, &lines);
             }
-            Instruction::PassStart { pass, above } => self.pass_start(text, pass, above),
+            Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
             Instruction::PassEnd => {
                 let lines = self.gcode.hooks.pass_end.clone();
                 self.blocks(text, &lines);

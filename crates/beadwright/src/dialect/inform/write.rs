@@ -5,6 +5,7 @@
 //! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
 //! point separates an arc from the next.
 
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
 use super::section::{Inform, InformSpeed};
@@ -30,6 +31,8 @@ pub(super) struct YaskawaInform {
     program: ProgramSettings,
     weave: Option<Weave>,
     values: Values,
+    /// Rx, Ry, Rz of the torch, °.
+    orientation: [f64; 3],
     travel_speed: f64,
     wire_feed_speed: f64,
     digits: usize,
@@ -74,6 +77,7 @@ impl YaskawaInform {
             name,
             comment: ascii(&job.part),
             supplies: job.supplies(MAX_COMMENT),
+            orientation: inform.orientation,
             inform,
             program: job.program.clone(),
             weave: job.weave.cloned(),
@@ -130,7 +134,7 @@ impl YaskawaInform {
     fn pose(&self, job: &mut JobText, to: DVec3) -> String {
         let name = format!("C{:05}", job.count);
         let [x, y, z] = to.to_array().map(|v| fixed(v, 3));
-        let [rx, ry, rz] = self.inform.orientation.map(|v| fixed(v, 4));
+        let [rx, ry, rz] = self.orientation.map(|v| fixed(v, 4));
         let _ = write!(job.positions, "{name}={x},{y},{z},{rx},{ry},{rz}\r\n");
         job.count += 1;
         name
@@ -151,6 +155,9 @@ impl YaskawaInform {
     }
 
     fn instruction(&mut self, job: &mut JobText, instruction: Instruction) {
+        if let Some(attitude) = instruction.attitude() {
+            self.orientation = orientation::xyz(self.inform.orientation, Turn::Attitude(attitude));
+        }
         match instruction {
             Instruction::Approach { to } => {
                 let pose = self.pose(job, to);
@@ -166,7 +173,7 @@ impl YaskawaInform {
                 self.lines(&mut job.instructions, &self.inform.hooks.arc_established);
                 self.weave.iter().for_each(|weave| job.line(&format!("WVON WEV#({})", weave.file)));
             }
-            Instruction::Weld { to, circle, speed, last } => {
+            Instruction::Weld { to, circle, speed, last, .. } => {
                 let level = if last { 0 } else { self.inform.position_level };
                 let Some(circle) = circle else { return self.motion(job, "MOVL", to, speed, level) };
                 if self.in_arc {
@@ -195,7 +202,7 @@ impl YaskawaInform {
                 self.lines(&mut job.instructions, &self.inform.hooks.before_arc_off);
                 self.lines(&mut job.instructions, &self.inform.arc_off);
             }
-            Instruction::PassStart { pass, above } => self.pass_start(job, pass, above),
+            Instruction::PassStart { pass, above, .. } => self.pass_start(job, pass, above),
             Instruction::PassEnd => {
                 self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));

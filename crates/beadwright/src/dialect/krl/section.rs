@@ -3,7 +3,8 @@
 use super::write::KukaKrl;
 use super::arctech;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::{orientation, needs};
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::needs;
 use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -159,7 +160,7 @@ impl Section for Krl {
             }
         }
         let mut section = self.clone();
-        section.orientation = orientation::zyx(section.orientation, job.program.torch_angle);
+        section.orientation = orientation::zyx(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(KukaKrl::new(job, section)))
     }
 }

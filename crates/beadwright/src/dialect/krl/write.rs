@@ -6,6 +6,7 @@
 
 use super::arctech::{Forms, Target};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
@@ -36,6 +37,8 @@ pub(super) struct KukaKrl {
     travel_speed: f64,
     /// Angle of the turn table, E1, °.
     table: Option<f64>,
+    /// A, B, C of the torch, °.
+    orientation: [f64; 3],
     digits: usize,
     layers: usize,
     /// Speed set last in the module, mm/s.
@@ -52,10 +55,10 @@ impl KukaKrl {
         let comment = job.comment();
         let values = Values::new(&name, job);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
-        let table = job.program.table_angle;
+        let (table, orientation) = (job.program.table_angle, krl.orientation);
         let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, digits: 3, layers: 0, speed: 0.0, volumes, main }
+        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, orientation, digits: 3, layers: 0, speed: 0.0, volumes, main }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -149,6 +152,14 @@ impl KukaKrl {
         self.lines(text, &self.krl.hooks.pass_start);
     }
 
+    /// Torch and table stand from here on as an instruction says.
+    fn stand(&mut self, instruction: &Instruction) {
+        if let Some(attitude) = instruction.attitude() {
+            self.orientation = orientation::zyx(self.krl.orientation, Turn::Attitude(attitude));
+            self.table = attitude.table.or(self.table);
+        }
+    }
+
     fn set_speed(&mut self, text: &mut String, speed: f64) {
         if speed != self.speed {
             self.speed = speed;
@@ -165,6 +176,7 @@ impl KukaKrl {
 
     /// Writes one instruction of a layer when ArcTech forms switch the arc; a form includes the move to its point.
     fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
+        self.stand(&all[i]);
         match all[i] {
             // ARCON itself moves there.
             Instruction::Travel { .. } if matches!(all.get(i + 1), Some(Instruction::ArcOn { .. })) => {}
@@ -228,7 +240,7 @@ impl KukaKrl {
         push_fixed(text, to.y, 3);
         text.push_str(",Z ");
         push_fixed(text, to.z, 3);
-        for (axis, angle) in [",A ", ",B ", ",C "].into_iter().zip(self.krl.orientation) {
+        for (axis, angle) in [",A ", ",B ", ",C "].into_iter().zip(self.orientation) {
             text.push_str(axis);
             push_fixed(text, angle, 4);
         }
@@ -240,6 +252,7 @@ impl KukaKrl {
     }
 
     fn instruction(&mut self, text: &mut String, instruction: Instruction) {
+        self.stand(&instruction);
         match instruction {
             Instruction::Approach { to } => {
                 text.push_str("PTP ");
@@ -255,7 +268,7 @@ impl KukaKrl {
                 self.lines(text, &self.krl.arc_on);
                 self.lines(text, &self.krl.hooks.arc_established);
             }
-            Instruction::Weld { to, circle, speed, last } => {
+            Instruction::Weld { to, circle, speed, last, .. } => {
                 self.set_speed(text, speed);
                 match circle {
                     Some(circle) => self.circ(text, circle.via, to, !last),
@@ -278,7 +291,7 @@ impl KukaKrl {
                 self.lines(text, &self.krl.hooks.before_arc_off);
                 self.lines(text, &self.krl.arc_off);
             }
-            Instruction::PassStart { pass, above } => self.pass_start(text, pass, above),
+            Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
             Instruction::PassEnd => {
                 self.lines(text, &self.krl.hooks.pass_end);
                 self.end_skippable(text);

@@ -6,7 +6,7 @@ use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, SETTINGS, data};
 use crate::dialect::writing::{DialectError, Job, Writer};
 use crate::pass::PassKind;
 use crate::process::Follow;
-use crate::program::{Circle, Instruction, LayerProgram};
+use crate::program::{Attitude, Circle, Instruction, LayerProgram};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,9 +15,14 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     let refuse = |file: &str, reason: String| {
         Err(DialectError::Own(OwnError { folder: own.folder.clone(), file: file.to_owned(), line: None, reason }))
     };
-    if job.program.table_angle.is_some() {
-        let reason = "a dialect of one's own does not write the turn table of program.table_angle. Take the key out, and \
-                      turn the table by hand.";
+    if job.program.turns_table() {
+        let reason = "a dialect of one's own does not write the turn table of program.table_angle or program.table_side. \
+                      Take the key out, and turn the table by hand.";
+        return refuse(SETTINGS, reason.to_owned());
+    }
+    if job.program.tilts() {
+        let reason =
+            "a dialect of one's own writes no orientation. Take out program.follow_wall and program.travel_angle.";
         return refuse(SETTINGS, reason.to_owned());
     }
     names(own, job)?;
@@ -96,7 +101,7 @@ fn travel(to: DVec3) -> Instruction {
 }
 
 fn weld(to: DVec3, circle: Option<Circle>, speed: f64) -> Instruction {
-    Instruction::Weld { to, circle, speed, last: false }
+    Instruction::Weld { to, circle, speed, last: false, attitude: Attitude::default() }
 }
 
 /// A quarter of a circle from the start to (15, 25), to the left or to the right.
@@ -115,7 +120,13 @@ fn pass(inside: impl IntoIterator<Item = Instruction>) -> Vec<Instruction> {
         travel(START),
         Instruction::ArcOn { pass: 1, kind: PassKind::Contour },
     ];
-    let last = Instruction::Weld { to: DVec3::new(40.0, 20.0, 2.0), circle: None, speed: 7.0, last: true };
+    let last = Instruction::Weld {
+        to: DVec3::new(40.0, 20.0, 2.0),
+        circle: None,
+        speed: 7.0,
+        last: true,
+        attitude: Attitude::default(),
+    };
     head.into_iter()
         .chain(inside)
         .chain([last, Instruction::ArcOff { pass: 1 }, Instruction::Retract { to: DVec3::new(40.0, 20.0, 7.0) }])

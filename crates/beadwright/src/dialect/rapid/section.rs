@@ -2,7 +2,8 @@
 
 use super::write::AbbRapid;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::{orientation, needs};
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::needs;
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use super::names;
@@ -252,7 +253,7 @@ impl Section for Rapid {
             needs::lines("rapid", &self.templates(), "SetAO aoWire,{{wire_feed_ratio}};", job)?;
         }
         let mut section = self.clone();
-        section.orientation = orientation::quaternion(section.orientation, job.program.torch_angle);
+        section.orientation = orientation::quaternion(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(AbbRapid::new(job, section)))
     }
 }

@@ -6,6 +6,7 @@
 //! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
 
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split};
 use crate::number::fixed;
 use super::{data, names};
@@ -33,7 +34,7 @@ pub(super) struct AbbRapid {
     values: Values,
     travel_speed: f64,
     orientation: String,
-    /// External axes of all targets.
+    /// External axes of targets.
     axes: String,
     digits: usize,
 }
@@ -241,6 +242,10 @@ impl AbbRapid {
         feed: &mut f64,
     ) {
         for (i, &instruction) in all.iter().enumerate() {
+            if let Some(attitude) = instruction.attitude() {
+                self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
+                self.axes = attitude.table.map_or(self.axes.clone(), |angle| data::external_axes(Some(angle)));
+            }
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself moves there.
                 (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
@@ -259,7 +264,7 @@ impl AbbRapid {
                     *feed = ratio;
                     self.wire_feed(text, ratio);
                 }
-                (Instruction::Weld { to, circle, speed, last }, _) => {
+                (Instruction::Weld { to, circle, speed, last, .. }, _) => {
                     self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, *feed), last);
                 }
                 // The seamdata fill the crater.
@@ -272,7 +277,7 @@ impl AbbRapid {
                     wait(text, seconds);
                 }
                 (Instruction::Dwell { seconds }, _) => wait(text, seconds),
-                (Instruction::PassStart { pass, above }, _) => self.pass_start(text, pass, above),
+                (Instruction::PassStart { pass, above, .. }, _) => self.pass_start(text, pass, above),
                 (Instruction::PassEnd, _) => {
                     self.hook(text, &self.rapid.hooks.pass_end);
                     self.end_skippable(text);

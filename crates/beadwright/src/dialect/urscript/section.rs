@@ -2,7 +2,8 @@
 
 use super::write::UniversalScript;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::{orientation, needs};
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::needs;
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -122,7 +123,7 @@ impl Section for Urscript {
         let example = "set_standard_analog_out(0, {{wire_feed_ratio}})";
         needs::lines("urscript", &self.templates(), example, job)?;
         let mut section = self.clone();
-        section.orientation = orientation::vector(section.orientation, job.program.torch_angle);
+        section.orientation = orientation::vector(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(UniversalScript::new(job, section)))
     }
 }

@@ -4,6 +4,7 @@
 //! robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but not
 //! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, upper_name};
 use crate::number::{fixed, push_fixed};
@@ -38,6 +39,8 @@ pub(super) struct UniversalScript {
     urscript: Urscript,
     program: ProgramSettings,
     values: Values,
+    /// Rotation vector of the torch, rad.
+    orientation: [f64; 3],
     travel_speed: f64,
     wire_feed_speed: f64,
     digits: usize,
@@ -62,8 +65,8 @@ impl UniversalScript {
         let values = Values::new(&name, job);
         let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
         let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
-        let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { name, comment, supplies, urscript, program, values, travel_speed, wire_feed_speed, digits: 3, count: 0, layers, at: None, volumes, main }
+        let (supplies, program, orientation) = (job.supplies(MAX_COMMENT), job.program.clone(), urscript.orientation);
+        Self { name, comment, supplies, urscript, program, values, orientation, travel_speed, wire_feed_speed, digits: 3, count: 0, layers, at: None, volumes, main }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
@@ -114,7 +117,7 @@ impl UniversalScript {
 
     fn pose(&self, text: &mut String, to: DVec3) {
         text.push_str("pose_trans(part_frame, ");
-        push_frame(text, to, &self.urscript.orientation);
+        push_frame(text, to, &self.orientation);
         text.push(')');
     }
 
@@ -150,6 +153,9 @@ impl UniversalScript {
     }
 
     fn instruction(&mut self, text: &mut String, indent: &str, instruction: Instruction, next: Option<&Instruction>) {
+        if let Some(attitude) = instruction.attitude() {
+            self.orientation = orientation::vector(self.urscript.orientation, Turn::Attitude(attitude));
+        }
         match instruction {
             Instruction::Approach { to } => {
                 text.push_str(&format!("{indent}movej("));
@@ -166,7 +172,7 @@ impl UniversalScript {
                 self.lines(text, indent, &self.urscript.arc_on);
                 self.lines(text, indent, &self.urscript.hooks.arc_established);
             }
-            Instruction::Weld { to, circle, speed, last } => {
+            Instruction::Weld { to, circle, speed, last, .. } => {
                 let blend = if last { 0.0 } else { self.blend(to, next) };
                 self.motion(text, indent, circle.map(|c| c.via), to, speed, blend);
                 self.at = Some(to);
@@ -187,7 +193,7 @@ impl UniversalScript {
                 self.lines(text, indent, &self.urscript.hooks.before_arc_off);
                 self.lines(text, indent, &self.urscript.arc_off);
             }
-            Instruction::PassStart { pass, above } => self.pass_start(text, indent, pass, above),
+            Instruction::PassStart { pass, above, .. } => self.pass_start(text, indent, pass, above),
             Instruction::PassEnd => {
                 self.lines(text, indent, &self.urscript.hooks.pass_end);
                 self.end_skippable(text, indent);

@@ -12,10 +12,12 @@ pub enum Extra {
     LayerOffsets,
     /// The controller's own weaving (`[weave]`).
     Weave,
+    /// A torch that leans (`program.follow_wall`, `program.travel_angle`).
+    Tilt,
 }
 
 impl Extra {
-    const ALL: [Self; 3] = [Self::Restart, Self::LayerOffsets, Self::Weave];
+    const ALL: [Self; 4] = [Self::Restart, Self::LayerOffsets, Self::Weave, Self::Tilt];
 
     fn is_asked(self, job: &Job<'_>) -> bool {
         match self {
@@ -23,6 +25,7 @@ impl Extra {
             Self::LayerOffsets => job.program.layer_offsets,
             // A dry run has no arc to weave.
             Self::Weave => job.weave.is_some() && !job.dry_run,
+            Self::Tilt => job.program.tilts(),
         }
     }
 
@@ -39,6 +42,10 @@ impl Extra {
             Self::Weave => (
                 "[weave]",
                 "Controllers weave with ArcTech, RobotWare Arc, FANUC and Yaskawa; take [weave] out for others.",
+            ),
+            Self::Tilt => (
+                "program.follow_wall or program.travel_angle",
+                "Only robots lean their torch; set both to 0 for others.",
             ),
         }
     }

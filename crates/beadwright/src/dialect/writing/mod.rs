@@ -162,7 +162,7 @@ pub enum DialectError {
     },
     /// The profile has a turn table that the dialect does not write.
     #[error(
-        "the post \"{0}\" does not write the turn table of program.table_angle; {others} do. Take the key out, and turn the table by hand.",
+        "the post \"{0}\" does not write the turn table of program.table_angle or program.table_side; {others} do. Take the key out, and turn the table by hand.",
         others = with_table().join(" and ")
     )]
     NoTable(&'static str),
@@ -184,7 +184,7 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
     let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
     let section = job.sections.get(name).ok_or_else(missing)?;
-    if job.program.table_angle.is_some() && !dialect.turns_table {
+    if job.program.turns_table() && !dialect.turns_table {
         return Err(DialectError::NoTable(dialect.name));
     }
     extra::check(dialect.name, section, job)?;

@@ -22,14 +22,14 @@ pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> V
 mod tests {
     use super::passes;
     use crate::pass::PassKind;
-    use crate::program::Instruction;
+    use crate::program::{Attitude, Instruction};
     use glam::DVec3;
 
     /// Passes of these numbers of moves, each with a travel, arc on, arc off and the way up.
     fn layer(moves: &[usize]) -> Vec<Instruction> {
         let to = DVec3::ZERO;
         let pass = |&count: &usize| {
-            let weld = Instruction::Weld { to, circle: None, speed: 1.0, last: false };
+            let weld = Instruction::Weld { to, circle: None, speed: 1.0, last: false, attitude: Attitude::default() };
             let head = [Instruction::Travel { to }];
             let on = Instruction::ArcOn { pass: 1, kind: PassKind::Infill };
             head.into_iter()

@@ -1,0 +1,34 @@
+//! How the torch leans over the part, and how the turn table under it stands.
+
+use glam::{DQuat, DVec2, DVec3};
+
+/// How torch and turn table stand at the end of a move.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Attitude {
+    /// Where the torch leans: the level part of the unit vector from the wire's tip along the torch. 0 is the orientation
+    /// in the robot's section.
+    pub lean: DVec2,
+    /// Angle of a table that turns during the program, °; `None` where it stands still.
+    pub table: Option<f64>,
+}
+
+impl Attitude {
+    /// Whether the torch stands as in the robot's section.
+    pub fn is_upright(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// What turns the tool's orientation in the part's frame: the table's turn taken back, so that the torch stays as it
+    /// is in the cell, then the lean.
+    pub fn rotation(&self) -> DQuat {
+        let up = self.lean.extend((1.0 - self.lean.length_squared()).max(0.0).sqrt());
+        DQuat::from_rotation_arc(DVec3::Z, up.normalize())
+            * DQuat::from_rotation_z(-self.table.unwrap_or(0.0).to_radians())
+    }
+
+    /// The attitude on the way to another, at the fraction `part` of the way.
+    pub fn towards(&self, to: &Self, part: f64) -> Self {
+        let table = to.table.map(|angle| self.table.map_or(angle, |from| from + (angle - from) * part));
+        Self { lean: self.lean.lerp(to.lean, part), table }
+    }
+}
