@@ -7,6 +7,7 @@
 //! | --- | --- |
 //! | [`ring`] | [`Ring`], [`Polygon`], [`Region`]: the shapes and their measures |
 //! | [`arcs`] | lines fitted by straight pieces and arcs |
+//! | [`bands`] | straight pieces sorted so that those that may meet are found |
 //! | [`boolean`] | union, difference, intersection of regions |
 //! | [`offset`](mod@offset) | growing and shrinking, with round or mitred joins |
 //! | [`clip`] | open lines cut by a region |
@@ -30,8 +31,10 @@
 //! An offset is then simplified by [`offset::SIMPLIFY_MM`].
 
 pub mod arcs;
+pub mod bands;
 pub mod boolean;
 pub mod clip;
+mod disc;
 mod grid;
 pub mod hull;
 pub mod isolines;
@@ -44,6 +47,7 @@ pub mod polyline;
 pub mod ring;
 mod rows;
 pub mod scan;
+mod simple_offset;
 pub mod stroke;
 pub mod triangulate;
 pub mod turns;

@@ -4,6 +4,7 @@
 //! chained offsets would otherwise become slower with every step.
 
 use crate::grid::{GRID_MM, region_from_grid, region_to_grid};
+use crate::simple_offset::simple_offset;
 use crate::{Polygon, Region, Ring};
 use i_overlay::core::overlay::IntOverlayOptions;
 use i_overlay::i_float::int::angle::Angle;
@@ -34,16 +35,18 @@ impl Join {
     /// A round join within [`ARC_TOLERANCE_MM`].
     pub const ROUND: Self = Self::Round(ARC_TOLERANCE_MM);
 
+    /// The angle between the points of an arc whose chords keep within a tolerance (mm), radians.
+    pub(crate) fn step(tolerance: f64, distance: f64) -> f64 {
+        (2.0 * (1.0 - tolerance / distance.abs().max(tolerance)).acos()).min(std::f64::consts::FRAC_PI_4)
+    }
+
     pub(crate) fn to_style(self, distance: f64) -> IntLineJoin {
         let angle = |radians: f64| Angle::from_radians(radians).unwrap_or(Angle::from_bits(0));
         match self {
-            Self::Round(tolerance) => {
-                let step = 2.0 * (1.0 - tolerance / distance.abs().max(tolerance)).acos();
-                IntLineJoin::Round(ArcOptions {
-                    max_step: angle(step.min(std::f64::consts::FRAC_PI_4)),
-                    ..ArcOptions::default()
-                })
-            }
+            Self::Round(tolerance) => IntLineJoin::Round(ArcOptions {
+                max_step: angle(Self::step(tolerance, distance)),
+                ..ArcOptions::default()
+            }),
             Self::Miter(limit) => IntLineJoin::Miter(angle(2.0 * (1.0 / limit.max(1.0)).asin())),
         }
     }
@@ -60,6 +63,10 @@ impl Region {
     }
 
     fn unsimplified_offset(&self, distance: f64, join: Join) -> Self {
+        simple_offset(self, distance, join).unwrap_or_else(|| self.boolean_offset(distance, join))
+    }
+
+    fn boolean_offset(&self, distance: f64, join: Join) -> Self {
         let steps = (distance / GRID_MM).round() as i32;
         let style = IntOutlineStyle::new(steps).line_join(join.to_style(distance)).math(MathMode::Float);
         let options = IntOverlayOptions {
@@ -109,4 +116,78 @@ fn emptied_corners(ring: &Ring, radius: f64, smallest: f64) -> f64 {
         if turn > 0.0 && alone && area <= smallest { area } else { 0.0 }
     };
     (0..n).map(corner).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Join, SIMPLIFY_MM};
+    use crate::simple_offset::simple_offset;
+    use crate::{FillRule, Region, Ring};
+    use glam::DVec2;
+
+    /// Outlines with holes, notches and fine edges, from a fixed sequence.
+    fn outlines() -> Vec<Region> {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        let mut blob = |centre: DVec2, radius: f64, rough: f64, count: usize| {
+            let waves: Vec<(f64, f64)> = (0..5).map(|_| (rough * next(), std::f64::consts::TAU * next())).collect();
+            let at = |k: usize| {
+                let angle = std::f64::consts::TAU * k as f64 / count as f64;
+                let wave = |(i, (a, shift)): (usize, &(f64, f64))| a * (angle * (i + 2) as f64 + shift).sin();
+                centre + DVec2::from_angle(angle) * radius * (1.0 + waves.iter().enumerate().map(wave).sum::<f64>())
+            };
+            Ring::new((0..count).map(at).collect())
+        };
+        (0..60)
+            .map(|i| {
+                let mut rings =
+                    vec![blob(DVec2::new(3.0, 7.0), 40.0, 0.02 * f64::from(i % 12), 12 + 23 * i as usize % 400)];
+                for k in 0..i % 4 {
+                    let at = DVec2::new(3.0, 7.0) + 18.0 * DVec2::from_angle(f64::from(k) * 1.7);
+                    rings.push(blob(at, 3.0 + f64::from(i % 5), 0.05, 8 + 5 * k as usize).reversed());
+                }
+                Region::from_rings(&rings, FillRule::NonZero)
+            })
+            .collect()
+    }
+
+    /// Offsets drawn edge by edge are those of the boolean.
+    #[test]
+    fn simple_offsets_are_offsets() {
+        let (mut simple, mut all) = (0, 0);
+        for region in outlines() {
+            for distance in [-9.0, -4.0, -1.5, -0.4, -0.1, 0.1, 0.4, 1.5, 4.0, 9.0] {
+                for (join, tolerance) in [(Join::Round(1e-4), 1e-4), (Join::Round(0.03), 0.03), (Join::Miter(2.0), 2e-3)]
+                {
+                    all += 1;
+                    let Some(drawn) = simple_offset(&region, distance, join) else { continue };
+                    simple += 1;
+                    let exact = region.boolean_offset(distance, join);
+                    let off = drawn.difference(&exact).area() + exact.difference(&drawn).area();
+                    // Both round arcs within the tolerance, and corners to the grid.
+                    assert!(off < (4e-4 + tolerance) * exact.perimeter(), "{distance} {join:?}: {off} mm²");
+                    assert_eq!(drawn.euler(), exact.euler());
+                }
+            }
+        }
+        println!("{simple} of {all} offsets are simple");
+        assert!(simple > all / 3, "{simple} of {all}");
+    }
+
+    /// Rings that pass through each other without crossing in the end: nothing may be left of a thin wall.
+    #[test]
+    fn what_passes_through_itself_is_not_simple() {
+        let circle =
+            |radius: f64| Ring::new((0..90).map(|k| DVec2::from_angle(f64::from(k) * 0.0698) * radius).collect());
+        let wall = Region::from_rings(&[circle(10.0), circle(9.0).reversed()], FillRule::NonZero);
+        let island = Region::from_rings(&[circle(20.0), circle(9.0).reversed(), circle(8.0)], FillRule::NonZero);
+        for join in [Join::ROUND, Join::Miter(2.0)] {
+            assert!(wall.offset(-3.0, join).is_empty());
+            assert!((island.offset(3.0, join).area() - std::f64::consts::PI * 23.0 * 23.0).abs() < 3.0);
+        }
+        assert_eq!(SIMPLIFY_MM, 0.003);
+    }
 }

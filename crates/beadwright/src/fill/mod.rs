@@ -19,7 +19,6 @@
 //! | [`wall`] | thin walls along their middle, in the fewest paths that do not cross (Li et al.) |
 
 pub mod angle;
-mod bands;
 pub mod compound;
 pub mod contour;
 pub mod coverage;

@@ -3,9 +3,9 @@
 //! Every fill is checked, whatever strategy it is of, so that a fault of a strategy never reaches a robot.
 
 use super::Path;
-use super::bands::{Bands, Piece};
 use glam::DVec2;
 use planar::Polygon;
+use planar::bands::{Bands, Piece};
 use planar::polyline::distance_squared_to_segment;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

@@ -94,7 +94,7 @@ fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
 fn is_narrow(piece: &Polygon, settings: &FillSettings) -> bool {
     // The contours lie a gap beyond its edge on both sides.
     let inner = settings.hybrid.region_width / 2.0 - settings.hybrid.least_gap;
-    piece.offset(-inner.max(0.0), Join::ROUND).is_empty()
+    !piece.holds_disc(inner.max(0.0))
 }
 
 /// A zigzag along the smallest rectangle of a piece.

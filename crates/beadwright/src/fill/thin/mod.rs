@@ -160,13 +160,15 @@ pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     let whole = Region::from_rings(&rings, FillRule::NonZero);
     let round = Join::Round(ACCURACY * limits.bead_width);
     let open = opened(&whole, limits.double / 2.0, GROWN * limits.bead_width, round);
-    let needs_two = |part: &&Polygon| !part.offset(-limits.single.1 / 2.0, round).is_empty();
-    let thick: Vec<Polygon> = open.polygons().iter().filter(needs_two).cloned().collect();
+    let needs_two = |part: &&Polygon| part.holds_disc(limits.single.1 / 2.0);
+    // The disc that opened a part fits into it.
+    let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || needs_two(part);
+    let thick: Vec<Polygon> = open.polygons().iter().filter(opens_two).cloned().collect();
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
     let (mut thin, mut pieces) = (Vec::new(), Vec::new());
     // Most pieces are corners, in which no bead could lie.
-    let roomy = |piece: &Polygon| !piece.offset(-ROOMY * limits.single.0 / 2.0, round).is_empty();
+    let roomy = |piece: &Polygon| piece.holds_disc(ROOMY * limits.single.0 / 2.0);
     let candidates = rest.into_polygons().into_iter().filter(|piece| piece.area() > smallest && roomy(piece));
     let candidates: Vec<Polygon> = candidates.collect();
     let axis = axis(&candidates, &whole, round, limits);

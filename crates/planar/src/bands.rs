@@ -7,13 +7,13 @@ use glam::DVec2;
 use std::ops::Range;
 
 /// From one point to another, mm.
-pub(super) type Piece = [DVec2; 2];
+pub type Piece = [DVec2; 2];
 
 /// Boxes are larger than their pieces by this part of the extent of all, so that rounding loses none.
 const ROUNDING: f64 = 1e-9;
 
 /// Pieces sorted into bands.
-pub(super) struct Bands {
+pub struct Bands {
     /// Direction of the bands.
     axis: DVec2,
     /// Where the first band begins and how wide each is, mm across the axis.
@@ -30,7 +30,7 @@ pub(super) struct Bands {
 
 impl Bands {
     /// Sorts finite pieces.
-    pub(super) fn new(mut pieces: Vec<Piece>) -> Self {
+    pub fn new(mut pieces: Vec<Piece>) -> Self {
         let square = |[a, b]: &Piece| a.distance_squared(*b);
         let longest = pieces.iter().max_by(|a, b| square(a).total_cmp(&square(b)));
         let axis = longest.map_or(DVec2::ZERO, |[a, b]| *b - *a).try_normalize().unwrap_or(DVec2::X);
@@ -91,7 +91,7 @@ impl Bands {
     }
 
     /// Visits every pair of pieces whose boxes meet, once.
-    pub(super) fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
+    pub fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
         for (band, range) in self.starts.windows(2).enumerate() {
             let items = &self.items[range[0]..range[1]];
             for (k, &i) in items.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Bands {
     }
 
     /// Whether a point lies inside the rings that the first `edges` pieces are the edges of, by winding parity.
-    pub(super) fn inside(&self, point: DVec2, edges: usize) -> bool {
+    pub fn inside(&self, point: DVec2, edges: usize) -> bool {
         let (p, band) = (turned(self.axis, point), self.band(turned(self.axis, point).y));
         let Some(range) = self.starts.get(band..band + 2) else { return false };
         let before = self.items[range[0]..range[1]].iter().map(|&i| i as usize);
@@ -169,7 +169,7 @@ mod tests {
     fn inside_agrees_with_the_polygon() {
         let ring: Vec<DVec2> =
             (0..40).map(|k| DVec2::from_angle(f64::from(k) * 0.157) * f64::from(5 + k % 3 * 4)).collect();
-        let polygon = planar::Ring::new(ring);
+        let polygon = crate::Ring::new(ring);
         let bands = Bands::new(polygon.edges().map(|(a, b)| [a, b]).collect());
         let places = pieces(500).into_iter().map(|[p, _]| p * 0.3 - 15.0);
         let (mut inside, mut total) = (0, 0);
