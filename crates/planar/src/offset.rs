@@ -37,7 +37,9 @@ impl Join {
 
     /// The angle between the points of an arc whose chords keep within a tolerance (mm), radians.
     pub(crate) fn step(tolerance: f64, distance: f64) -> f64 {
-        (2.0 * (1.0 - tolerance / distance.abs().max(tolerance)).acos()).min(std::f64::consts::FRAC_PI_4)
+        // The boolean takes no finer steps than 1024 a turn.
+        const LEAST: f64 = std::f64::consts::TAU / 1024.0;
+        (2.0 * (1.0 - tolerance / distance.abs().max(tolerance)).acos()).clamp(LEAST, std::f64::consts::FRAC_PI_4)
     }
 
     pub(crate) fn to_style(self, distance: f64) -> IntLineJoin {
@@ -160,7 +162,8 @@ mod tests {
         let (mut simple, mut all) = (0, 0);
         for region in outlines() {
             for distance in [-9.0, -4.0, -1.5, -0.4, -0.1, 0.1, 0.4, 1.5, 4.0, 9.0] {
-                for (join, tolerance) in [(Join::Round(1e-4), 1e-4), (Join::Round(0.03), 0.03), (Join::Miter(2.0), 2e-3)]
+                for (join, tolerance) in
+                    [(Join::Round(1e-4), 1e-4), (Join::Round(0.03), 0.03), (Join::Miter(2.0), 2e-3)]
                 {
                     all += 1;
                     let Some(drawn) = simple_offset(&region, distance, join) else { continue };

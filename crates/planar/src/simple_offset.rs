@@ -100,9 +100,11 @@ fn moved(ring: &Ring, distance: f64, join: Join) -> Option<Ring> {
     while points.len() > 1 && points.first() == points.last() {
         points.pop();
     }
-    // As the boolean does, a ring begins at its leftmost point.
-    let first = (0..points.len()).min_by_key(|&i| (points[i].x, points[i].y))?;
-    points.rotate_left(first);
+    // As the boolean does, a hole begins at its leftmost point, and an outer ring at the point before it.
+    let leftmost = (0..points.len()).min_by_key(|&i| (points[i].x, points[i].y))?;
+    let back = usize::from(ring.area() > 0.0);
+    let count = points.len();
+    points.rotate_left((leftmost + count - back) % count);
     let offset = Ring::new(points.into_iter().map(from_grid).collect());
     (offset.points().len() >= 3 && offset.area() * ring.area() > 0.0).then_some(offset)
 }
@@ -179,12 +181,12 @@ fn join_gap(points: &mut Vec<GridPoint>, edge: &Edge, next: &Edge, distance: f64
     let (start, end) = (edge.moved + edge.length * edge.way, next.moved);
     match join {
         Join::Round(tolerance) => {
-            let angle = edge.way.angle_to(next.way);
-            let count = (angle.abs() / Join::step(tolerance, distance)).ceil().max(1.0);
-            let centre = next.from;
+            // As the boolean does: whole steps, and what is left of the angle at the end.
+            let (angle, step) = (edge.way.angle_to(next.way), Join::step(tolerance, distance));
+            let count = ((angle.abs() - 1e-9).max(0.0) / step) as usize;
+            let turned = |k: usize| DVec2::from_angle((step * k as f64).copysign(angle)).rotate(start - next.from);
             points.push(to_grid(start));
-            let turned = |k: usize| centre + DVec2::from_angle(angle * k as f64 / count).rotate(start - centre);
-            points.extend((1..count as usize).map(|k| to_grid(turned(k))));
+            points.extend((1..=count).map(|k| to_grid(next.from + turned(k))));
             points.push(to_grid(end));
         }
         Join::Miter(limit) => {

@@ -42,6 +42,9 @@ const LARGEST_GAP: f64 = 0.2;
 /// Seams tried for a chain, and whole paths tried for an island until one crosses nothing.
 const SEAMS: usize = 24;
 const TRIES: usize = 8;
+/// Where all of them cross, rings this much closer to each other are tried, and again, up to so many times.
+const CLOSER: f64 = 0.995;
+const CLOSER_TIMES: i32 = 6;
 /// The golden ratio spreads the seams of successive layers.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
@@ -56,7 +59,9 @@ pub(super) fn joined(island: &Polygon, settings: &FillSettings, join: Join) -> F
 fn path_through(part: &Polygon, island: &Polygon, settings: &FillSettings, join: Join) -> Vec<Path> {
     let width = settings.bead.width;
     let mut last = Vec::new();
-    for attempt in 0..TRIES {
+    let tries = (0..=CLOSER_TIMES).flat_map(|closer| (0..TRIES).map(move |attempt| (closer, attempt)));
+    for (closer, attempt) in tries {
+        let settings = &FillSettings { stepover: settings.stepover * CLOSER.powi(closer), ..*settings };
         let mut tree = RingTree::of(part, settings);
         let turn = (settings.layer as f64 + attempt as f64 / TRIES as f64) * GOLDEN;
         let lines = tree.paths(join, turn);

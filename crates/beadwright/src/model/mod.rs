@@ -2,7 +2,10 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
+//! | `formats` | the formats of solids, and how loose triangles become a mesh |
 //! | [`stl`] | binary and ASCII STL, told apart by content |
+//! | `threemf`, `amf`, `obj`, `ply` | one other format each |
+//! | `xml` | elements of XML files, one after another |
 //! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
@@ -12,13 +15,19 @@
 //! | [`wall_curves`] | walls given by their centre-lines |
 
 pub(crate) mod adjacency;
+mod amf;
+mod formats;
 pub mod iges;
 pub(crate) mod merge_vertices;
+mod obj;
 mod part;
+mod ply;
 pub mod repair;
 pub mod stl;
+mod threemf;
 pub mod units;
 pub mod wall_curves;
+mod xml;
 
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;
@@ -55,6 +64,19 @@ pub struct Import {
     pub repair: RepairReport,
     /// The format, for people: `binary STL`.
     pub format: &'static str,
+    /// The unit of the coordinates, where the file tells it.
+    pub units: Option<Units>,
+    /// The objects that the file holds, where it names them.
+    pub objects: Vec<Object>,
+}
+
+/// An object of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Object {
+    /// Its name.
+    pub name: String,
+    /// Its triangles, as read.
+    pub triangles: usize,
 }
 
 /// Why a model was refused.
@@ -65,7 +87,7 @@ pub enum ImportError {
     Empty,
     /// A format that is known but not read.
     #[error(
-        "this is {found}, which Beadwright does not read yet. Save the model as STL (binary or ASCII) and try again."
+        "this is {found}, which Beadwright does not read by itself. Save the model as STL, 3MF, OBJ, PLY or AMF and try again."
     )]
     OtherFormat {
         /// What the content looks like.
@@ -77,7 +99,9 @@ pub enum ImportError {
     )]
     Iges,
     /// No known format.
-    #[error("this is not an STL file: {reason}. Save the model as STL (binary or ASCII) and try again.")]
+    #[error(
+        "this is no model in a known format: it is neither 3MF, OBJ, PLY nor AMF, and not STL: {reason}. Save the model in one of these and try again."
+    )]
     NotStl {
         /// What speaks against it, with the byte or line.
         reason: String,
@@ -86,6 +110,14 @@ pub enum ImportError {
     #[error("the STL file is damaged: {reason}. Copy or export it again.")]
     Damaged {
         /// Where it ends and where it should.
+        reason: String,
+    },
+    /// A file in another format that does not hold what it should.
+    #[error("the {format} file cannot be read: {reason}. Export the model again.")]
+    Broken {
+        /// The format.
+        format: &'static str,
+        /// Where, and what is wrong.
         reason: String,
     },
     /// The text cannot be decoded.
@@ -163,7 +195,8 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
     {
         return Err(ImportError::OtherFormat { found });
     }
-    stl::read(bytes, task)
+    let known = formats::ALL.iter().find(|format| (format.is)(bytes));
+    known.map_or_else(|| stl::read(bytes, task), |format| (format.read)(bytes, task))
 }
 
 /// Text as UTF-8 with usual line ends; anything else as it is.
@@ -186,17 +219,10 @@ pub fn is_iges(bytes: &[u8]) -> bool {
 /// Formats that people hand over by mistake.
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(400)];
-    let has = |needle: &[u8]| head.windows(needle.len()).any(|w| w == needle);
-    if head.starts_with(b"PK\x03\x04") {
-        Some("a ZIP archive, such as 3MF")
-    } else if head.starts_with(b"\x1f\x8b") {
+    if head.starts_with(b"\x1f\x8b") {
         Some("a gzip archive (unpack it first)")
     } else if head.starts_with(b"ISO-10303-21") {
         Some("a STEP file")
-    } else if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
-        Some("a PLY file")
-    } else if head.starts_with(b"v ") || has(b"\nv ") || has(b"\nmtllib ") {
-        Some("an OBJ file")
     } else {
         None
     }

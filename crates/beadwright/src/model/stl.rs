@@ -3,9 +3,11 @@
 //! A file is binary when its size is 84 + 50 · n for the count n that it announces, whatever its header says:
 //! binary files that begin with "solid" are common.
 
-use super::merge_vertices::{BLOCK, VertexMerger};
-use super::{Import, ImportError, repair};
-use crate::task::{Stage, Task};
+use super::formats::{self, Facet, Format};
+use super::{Import, ImportError};
+use crate::task::Task;
+
+pub(super) const FORMAT: Format = Format { is: |_| true, read };
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
@@ -88,7 +90,7 @@ fn read_binary(bytes: &[u8], damage: Option<String>, task: &Task) -> Result<Impo
         (triple(0), [triple(3), triple(6), triple(9)])
     });
     let place = |i: usize| format!("byte {}", HEADER + RECORD * i);
-    build(facets, (records.len(), damage), "binary STL", place, task)
+    damaged(formats::of_facets(facets, records.len(), "binary STL", place, task)?, damage)
 }
 
 fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
@@ -100,10 +102,14 @@ fn read_ascii(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         return Err(ImportError::NotStl { reason: "it begins with \"solid\" but holds no \"facet\"".to_owned() });
     }
     let count = facets.len();
-    build(facets.into_iter(), (count, damage), "ASCII STL", |i| format!("line {}", lines[i]), task)
+    let place = |i: usize| format!("line {}", lines[i]);
+    damaged(formats::of_facets(facets.into_iter(), count, "ASCII STL", place, task)?, damage)
 }
 
-type Facet = ([f32; 3], [[f32; 3]; 3]);
+fn damaged(mut import: Import, damage: Option<String>) -> Result<Import, ImportError> {
+    import.repair.damage = damage;
+    Ok(import)
+}
 
 type Parsed = (Vec<Facet>, Vec<u32>, Option<String>);
 
@@ -162,54 +168,4 @@ fn triple<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; 3], Str
         text.parse::<f32>().map_err(|_| format!("\"{}\" is not a number", String::from_utf8_lossy(word)))
     };
     Ok([number()?, number()?, number()?])
-}
-
-fn build(
-    facets: impl Iterator<Item = Facet>,
-    (count, damage): (usize, Option<String>),
-    format: &'static str,
-    place: impl Fn(usize) -> String,
-    task: &Task,
-) -> Result<Import, ImportError> {
-    task.step(Stage::Import, 0.0)?;
-    let mut welder = VertexMerger::for_triangles(count);
-    let mut triangles = Vec::with_capacity(count);
-    let mut against = 0;
-    let mut block = Vec::with_capacity(BLOCK);
-    for (i, (normal, corners)) in facets.enumerate() {
-        if i % 65_536 == 0 {
-            task.step(Stage::Import, 0.6 * i as f64 / count as f64)?;
-        }
-        if !corners.as_flattened().iter().all(|v| v.is_finite()) {
-            return Err(ImportError::NotFinite { triangle: i + 1, place: place(i) });
-        }
-        against += usize::from(opposes(normal, corners));
-        block.push(corners);
-        if block.len() == BLOCK {
-            welder.add(&block, &mut triangles);
-            block.clear();
-        }
-    }
-    welder.add(&block, &mut triangles);
-    task.step(Stage::Import, 0.6)?;
-    let (mesh, mut repair) = repair::mend(welder.into_vertices(), triangles);
-    let area = |&[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|i| mesh.vertices[i as usize]);
-        (b - a).cross(c - a).length_squared()
-    };
-    if !mesh.triangles.iter().any(|t| area(t) > 0.0) {
-        return Err(ImportError::NoTriangles { triangles: count });
-    }
-    repair.normals_against_winding = against;
-    repair.damage = damage;
-    task.step(Stage::Import, 1.0)?;
-    Ok(Import { mesh, repair, format })
-}
-
-/// Whether a stored normal points against the winding of its corners.
-fn opposes(normal: [f32; 3], [a, b, c]: [[f32; 3]; 3]) -> bool {
-    let sub = |p: [f32; 3], q: [f32; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let (u, v) = (sub(b, a), sub(c, a));
-    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    cross[0] * normal[0] + cross[1] * normal[1] + cross[2] * normal[2] < 0.0
 }

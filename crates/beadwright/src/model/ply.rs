@@ -1,0 +1,105 @@
+//! PLY, as text or binary: the vertices and faces; colours and anything else are passed over.
+
+use super::formats::{self, Format};
+use super::{Import, ImportError};
+use crate::task::Task;
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{DefaultElement, Property, PropertyAccess, PropertyAccessResult};
+
+pub(super) const FORMAT: Format =
+    Format { is: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r"), read };
+
+/// x, y, z.
+struct Vertex([f32; 3]);
+
+/// Numbers of the corners.
+struct Face(Vec<u32>);
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self([f32::NAN; 3])
+    }
+
+    fn set_property(&mut self, key: &str, property: Property) -> PropertyAccessResult {
+        let axis = match key {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        self.0[axis] = match property {
+            Property::Float(v) => v,
+            Property::Double(v) => v as f32,
+            Property::Int(v) => v as f32,
+            Property::Short(v) => v.into(),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, key: &str, property: Property) -> PropertyAccessResult {
+        if !matches!(key, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        // A negative number names no vertex.
+        let number = |v: i64| u32::try_from(v).unwrap_or(u32::MAX);
+        self.0 = match property {
+            Property::ListInt(v) => v.into_iter().map(|v| number(v.into())).collect(),
+            Property::ListUInt(v) => v,
+            Property::ListShort(v) => v.into_iter().map(|v| number(v.into())).collect(),
+            Property::ListUShort(v) => v.into_iter().map(u32::from).collect(),
+            Property::ListUChar(v) => v.into_iter().map(u32::from).collect(),
+            Property::ListChar(v) => v.into_iter().map(|v| number(v.into())).collect(),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let broken = |reason: String| ImportError::Broken { format: "PLY", reason };
+    let mut reader = Reader::new(bytes);
+    let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| broken(error.to_string()))?;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for (name, element) in &header.elements {
+        // Each value takes a byte at least, so that a count beyond the file is a lie.
+        if element.count > bytes.len() {
+            return Err(broken(format!("it announces {} of \"{name}\", but has {} bytes", element.count, bytes.len())));
+        }
+        task.check()?;
+        match name.as_ref() {
+            "vertex" => {
+                let read = Parser::<Vertex>::new().read_payload_for_element(&mut reader, element, &header);
+                vertices = read.map_err(|error| broken(error.to_string()))?;
+            }
+            "face" => {
+                let read = Parser::<Face>::new().read_payload_for_element(&mut reader, element, &header);
+                faces = read.map_err(|error| broken(error.to_string()))?;
+            }
+            _ => {
+                Parser::<DefaultElement>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|error| broken(error.to_string()))?;
+            }
+        }
+    }
+    if faces.is_empty() {
+        return Err(broken("it holds no faces: a cloud of points is no solid".to_owned()));
+    }
+    let vertices: Vec<[f32; 3]> = vertices.into_iter().map(|Vertex(at)| at).collect();
+    let mut facets = Vec::with_capacity(2 * faces.len());
+    for (number, Face(corners)) in (1..).zip(&faces) {
+        for triangle in formats::fan(corners) {
+            let facet = formats::indexed(&vertices, triangle);
+            facets.push(facet.ok_or_else(|| broken(format!("face {number} names a vertex that is not there")))?);
+        }
+    }
+    let count = facets.len();
+    formats::of_facets(facets.into_iter(), count, "PLY", |i| format!("triangle {}", i + 1), task)
+}

@@ -1,0 +1,319 @@
+//! 3MF: the core specification with build transforms, components and several objects, and the production extension's parts
+//! in several files.
+//!
+//! Nothing is unpacked to the disk, and a path only names an entry of the archive. What an archive may unfold to is
+//! bounded: bytes of its model files, triangles with all copies, components in components.
+
+use super::formats::{self, Facet, Format, MOST_TRIANGLES};
+use super::xml::{Element, Elements, Step};
+use super::{Import, ImportError, Object, Units};
+use crate::task::Task;
+use glam::{DAffine3, DMat3, DVec3};
+use std::collections::BTreeMap;
+use std::io::{BufReader, Cursor, Read};
+use zip::ZipArchive;
+
+pub(super) const FORMAT: Format = Format { is: |bytes| bytes.starts_with(b"PK\x03\x04"), read };
+
+/// The model files of an archive hold no more, bytes.
+const MOST_BYTES: u64 = 4 << 30;
+/// An archive has no more entries.
+const MOST_ENTRIES: usize = 10_000;
+/// Components lie no deeper in each other.
+const DEEPEST: usize = 32;
+/// Where the model lies if the archive does not say.
+const USUAL: &str = "3D/3dmodel.model";
+/// Extensions that a file may require: they change neither shape nor place.
+const KNOWN: [&str; 4] = [
+    "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07",
+];
+
+type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
+
+/// A file of the archive and a number in it.
+type Id = (String, u32);
+
+/// What an object consists of.
+enum Shape {
+    Mesh { vertices: Vec<DVec3>, triangles: Vec<[u32; 3]> },
+    Components(Vec<(Id, DAffine3)>),
+}
+
+/// An object of the file.
+struct Resource {
+    name: String,
+    /// Whether it is part of what is to be built: supports are not.
+    solid: bool,
+    shape: Shape,
+}
+
+#[derive(Default)]
+struct Resources {
+    objects: BTreeMap<Id, Resource>,
+    /// What the main file builds.
+    items: Vec<(Id, DAffine3)>,
+    /// mm.
+    unit: f64,
+    triangles: usize,
+}
+
+fn broken(reason: impl Into<String>) -> ImportError {
+    ImportError::Broken { format: "3MF", reason: reason.into() }
+}
+
+fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| broken(error.to_string()))?;
+    if archive.len() > MOST_ENTRIES {
+        return Err(broken(format!("its archive has {} entries, at most {MOST_ENTRIES} are read", archive.len())));
+    }
+    let main = main_file(&mut archive)?;
+    let (mut resources, mut left) = (Resources { unit: 1.0, ..Resources::default() }, MOST_BYTES);
+    let mut wanted = vec![main.clone()];
+    let mut done: Vec<String> = Vec::new();
+    while let Some(path) = wanted.pop() {
+        if done.contains(&path) {
+            continue;
+        }
+        let others = read_model(&mut archive, &path, path == main, &mut resources, &mut left, task)?;
+        wanted.extend(others);
+        done.push(path);
+    }
+    build(&resources, task)
+}
+
+/// The path of the model in the archive, as its relationships tell it.
+fn main_file(archive: &mut Archive<'_>) -> Result<String, ImportError> {
+    let mut found = None;
+    if let Ok(entry) = archive.by_name("_rels/.rels") {
+        let mut elements = Elements::new(BufReader::new(entry.take(1 << 20)), "3MF");
+        while let Some(step) = elements.next()? {
+            let Step::Begin(element) = step else { continue };
+            let is_model = element.attribute("Type").is_some_and(|kind| kind.ends_with("/3dmodel"));
+            if element.name() == "Relationship" && is_model {
+                found = element.attribute("Target");
+            }
+        }
+    }
+    let path = found.map_or(USUAL.to_owned(), |path| entry_name(&path));
+    if archive.by_name(&path).is_err() {
+        return Err(broken(format!("this ZIP archive holds no model ({path} is not in it)")));
+    }
+    Ok(path)
+}
+
+/// A path in a 3MF file as the name of an archive's entry.
+fn entry_name(path: &str) -> String {
+    path.trim_start_matches('/').to_owned()
+}
+
+/// Reads a model file of the archive; returns the other files that it names.
+fn read_model(
+    archive: &mut Archive<'_>,
+    path: &str,
+    main: bool,
+    resources: &mut Resources,
+    left: &mut u64,
+    task: &Task,
+) -> Result<Vec<String>, ImportError> {
+    let entry = archive.by_name(path).map_err(|error| broken(format!("{path}: {error}")))?;
+    let limited = Counted { inner: entry, left };
+    let mut elements = Elements::new(BufReader::with_capacity(1 << 16, limited), "3MF");
+    let mut others = Vec::new();
+    let mut open: Option<(u32, Resource)> = None;
+    let mut steps = 0_u64;
+    while let Some(step) = elements.next()? {
+        steps += 1;
+        if steps.is_multiple_of(65_536) {
+            task.check()?;
+        }
+        let element = match step {
+            Step::Begin(element) => element,
+            Step::End(name) if name == "object" => {
+                if let Some((id, object)) = open.take() {
+                    resources.objects.insert((path.to_owned(), id), object);
+                }
+                continue;
+            }
+            _ => continue,
+        };
+        let id = |key: &str| -> Result<Id, ImportError> {
+            let file = element.attribute("path").map_or(path.to_owned(), |path| entry_name(&path));
+            Ok((file, element.number(key).map_err(broken)?))
+        };
+        match element.name() {
+            "model" => {
+                check_extensions(&element)?;
+                let unit = in_mm(&element.attribute("unit").unwrap_or_default())?;
+                resources.unit = if main { unit } else { resources.unit };
+            }
+            "object" => {
+                let kind = element.attribute("type").unwrap_or_default();
+                let number = element.number("id").map_err(broken)?;
+                let name = element.attribute("name").unwrap_or_else(|| format!("object {number}"));
+                let solid = matches!(kind.as_str(), "" | "model" | "solidsupport" | "surface");
+                open = Some((number, Resource { name, solid, shape: Shape::Components(Vec::new()) }));
+            }
+            "mesh" => {
+                if let Some((_, object)) = &mut open {
+                    object.shape = Shape::Mesh { vertices: Vec::new(), triangles: Vec::new() };
+                }
+            }
+            "vertex" => {
+                if let Some((_, Resource { shape: Shape::Mesh { vertices, .. }, .. })) = &mut open {
+                    let number = |key: &str| element.number::<f64>(key).map_err(broken);
+                    vertices.push(DVec3::new(number("x")?, number("y")?, number("z")?));
+                }
+            }
+            "triangle" => {
+                if let Some((_, Resource { shape: Shape::Mesh { triangles, .. }, .. })) = &mut open {
+                    let number = |key: &str| element.number::<u32>(key).map_err(broken);
+                    triangles.push([number("v1")?, number("v2")?, number("v3")?]);
+                    resources.triangles += 1;
+                    if resources.triangles > MOST_TRIANGLES {
+                        return Err(too_many());
+                    }
+                }
+            }
+            "component" => {
+                let (id, transform) = (id("objectid")?, transform(&element)?);
+                others.push(id.0.clone());
+                if let Some((_, Resource { shape: Shape::Components(parts), .. })) = &mut open {
+                    parts.push((id, transform));
+                }
+            }
+            "item" if main => {
+                let (id, transform) = (id("objectid")?, transform(&element)?);
+                others.push(id.0.clone());
+                resources.items.push((id, transform));
+            }
+            _ => {}
+        }
+    }
+    Ok(others)
+}
+
+fn too_many() -> ImportError {
+    broken(format!("it has more than {MOST_TRIANGLES} triangles, with all copies"))
+}
+
+/// Refuses a file that requires what is not read.
+fn check_extensions(model: &Element) -> Result<(), ImportError> {
+    let spaces: BTreeMap<String, String> = model
+        .attributes()
+        .into_iter()
+        .filter_map(|(key, value)| Some((key.strip_prefix("xmlns:")?.to_owned(), value)))
+        .collect();
+    let required = model.attribute("requiredextensions").unwrap_or_default();
+    for prefix in required.split_whitespace() {
+        let space = spaces.get(prefix).map_or(prefix, String::as_str);
+        if !KNOWN.contains(&space) {
+            return Err(broken(format!(
+                "it requires the extension {space}, which is not read; save it with triangles alone"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Millimetres in a unit of 3MF.
+fn in_mm(unit: &str) -> Result<f64, ImportError> {
+    Ok(match unit {
+        "" | "millimeter" => 1.0,
+        "micron" => 1e-3,
+        "centimeter" => 10.0,
+        "meter" => 1000.0,
+        "inch" => 25.4,
+        "foot" => 304.8,
+        other => return Err(broken(format!("its unit \"{other}\" is not one of 3MF"))),
+    })
+}
+
+/// The transform of a component or item: twelve numbers, the rows of a matrix that is applied to row vectors.
+fn transform(element: &Element) -> Result<DAffine3, ImportError> {
+    let Some(text) = element.attribute("transform") else { return Ok(DAffine3::IDENTITY) };
+    let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let [a, b, c, d, e, f, g, h, i, x, y, z] = numbers[..] else {
+        return Err(broken(format!("transform=\"{text}\" does not hold twelve numbers")));
+    };
+    let axes = DMat3::from_cols(DVec3::new(a, b, c), DVec3::new(d, e, f), DVec3::new(g, h, i));
+    if axes.determinant() == 0.0 || !axes.is_finite() {
+        return Err(broken(format!("transform=\"{text}\" makes the object flat")));
+    }
+    Ok(DAffine3 { matrix3: axes, translation: DVec3::new(x, y, z) })
+}
+
+/// Puts the items of the build together.
+fn build(resources: &Resources, task: &Task) -> Result<Import, ImportError> {
+    let (mut facets, mut objects): (Vec<Facet>, Vec<Object>) = (Vec::new(), Vec::new());
+    for (id, at) in &resources.items {
+        let first = facets.len();
+        lay(resources, id, &(DAffine3::from_scale(DVec3::splat(resources.unit)) * *at), 0, &mut facets)?;
+        task.check()?;
+        if let (Some(object), true) = (resources.objects.get(id), facets.len() > first) {
+            objects.push(Object { name: object.name.clone(), triangles: facets.len() - first });
+        }
+    }
+    if facets.is_empty() {
+        return Err(broken("its build holds no object with triangles"));
+    }
+    let count = facets.len();
+    let import = formats::of_facets(facets.into_iter(), count, "3MF", |i| format!("triangle {}", i + 1), task)?;
+    Ok(Import { units: Some(Units::Millimetre), objects, ..import })
+}
+
+/// Adds the triangles of an object and of its components.
+fn lay(
+    resources: &Resources,
+    id: &Id,
+    at: &DAffine3,
+    depth: usize,
+    facets: &mut Vec<Facet>,
+) -> Result<(), ImportError> {
+    if depth > DEEPEST {
+        return Err(broken(format!("components lie more than {DEEPEST} deep in each other, or in themselves")));
+    }
+    let object = resources.objects.get(id);
+    let object = object.ok_or_else(|| broken(format!("object {} of {} is not there", id.1, id.0)))?;
+    if !object.solid {
+        return Ok(());
+    }
+    match &object.shape {
+        Shape::Components(parts) => {
+            parts.iter().try_for_each(|(part, place)| lay(resources, part, &(*at * *place), depth + 1, facets))
+        }
+        Shape::Mesh { vertices, triangles } => {
+            if facets.len() + triangles.len() > MOST_TRIANGLES {
+                return Err(too_many());
+            }
+            let placed: Vec<[f32; 3]> = vertices.iter().map(|v| at.transform_point3(*v).as_vec3().to_array()).collect();
+            let mirrored = at.matrix3.determinant() < 0.0;
+            for &[a, b, c] in triangles {
+                let corners = if mirrored { [a, c, b] } else { [a, b, c] };
+                let facet = formats::indexed(&placed, corners);
+                let missing = || broken(format!("a triangle of \"{}\" names a vertex that is not there", object.name));
+                facets.push(facet.ok_or_else(missing)?);
+            }
+            Ok(())
+        }
+    }
+}
+
+/// Reads on until too much has come out of an archive.
+struct Counted<'a, R> {
+    inner: R,
+    left: &'a mut u64,
+}
+
+impl<R: Read> Read for Counted<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        *self.left = self
+            .left
+            .checked_sub(count as u64)
+            .ok_or_else(|| std::io::Error::other(format!("it unfolds to more than {} GB", MOST_BYTES >> 30)))?;
+        Ok(count)
+    }
+}
