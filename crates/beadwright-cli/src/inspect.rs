@@ -1,17 +1,17 @@
 //! `beadwright inspect`.
 
-use crate::{file, model, profile, program, progress};
+use crate::{convert, file, model, profile, program, progress};
 use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::{decoded, import_damaged};
+use beadwright::model::{decoded, import_damaged, is_solid};
 use glam::DVec3;
 use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A model (binary or ASCII STL, IGES), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// A model (STL, 3MF, OBJ, PLY, AMF, IGES, or STEP with a converter), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
@@ -28,29 +28,34 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(file) = model::read_iges(&arguments.file, bytes)? {
         return Ok(curves(&file, arguments)?);
     }
-    if is_program(bytes) {
+    if !is_solid(bytes) && is_program(bytes) {
         return read_program(arguments);
     }
     let (task, bar) = progress::task()?;
-    let import = import_damaged(bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
+    let bytes = convert::solid(&arguments.file, bytes.to_vec())?;
+    let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let value = serde_json::json!({
-            "format": import.format, "min": low.to_array(), "max": high.to_array(), "volume": volume, "repair": repair,
+            "format": import.format, "units": import.units, "objects": import.objects, "min": low.to_array(), "max": high.to_array(), "volume": volume, "repair": repair,
         });
         writeln!(out, "{value:#}")?;
         return Ok(());
     }
     writeln!(out, "{}: {}", arguments.file.display(), import.format)?;
-    writeln!(out, "  size       {:.3} × {:.3} × {:.3} (units of the file)", size.x, size.y, size.z)?;
+    let unit = if import.units.is_some() { "mm" } else { "units of the file" };
+    writeln!(out, "  size       {:.3} × {:.3} × {:.3} ({unit})", size.x, size.y, size.z)?;
     writeln!(out, "  from       x {:.3} y {:.3} z {:.3}", low.x, low.y, low.z)?;
     writeln!(out, "  triangles  {}", repair.triangles)?;
     writeln!(out, "  vertices   {}", repair.vertices)?;
     writeln!(out, "  shells     {}", repair.shells)?;
     writeln!(out, "  volume     {volume:.3}{}", if repair.open_edges > 0 { " (not closed: approximate)" } else { "" })?;
+    for object in &import.objects {
+        writeln!(out, "  object     {}, {} triangles", object.name, object.triangles)?;
+    }
     if repair.is_clean() {
         writeln!(out, "  The mesh is closed and clean.")?;
     }

@@ -5,6 +5,7 @@
 mod bead;
 mod check;
 mod compare;
+mod convert;
 mod example;
 mod file;
 mod inspect;

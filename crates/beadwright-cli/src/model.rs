@@ -1,6 +1,6 @@
 //! Model files, imported and placed.
 
-use crate::file;
+use crate::{convert, file};
 use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
 use beadwright::model::{self, Import, Part, Placement, Units};
@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 /// Which model, and how it is placed.
 #[derive(clap::Args)]
 pub(crate) struct Model {
-    /// The model: binary or ASCII STL; for `plan`, also IGES with the centre-lines of walls.
+    /// The model: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
+    /// centre-lines of walls.
     pub(crate) model: PathBuf,
     /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]
@@ -22,6 +23,9 @@ pub(crate) struct Model {
     /// Turn the part about x, then y, then z, in degrees, such as --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
     pub(crate) turn: DVec3,
+    /// Turn the part so that the largest flat face on which it can stand lies below.
+    #[arg(long)]
+    pub(crate) lay_flat: bool,
     /// Move the middle of the part to x = y = 0.
     #[arg(long)]
     pub(crate) centre: bool,
@@ -61,8 +65,20 @@ impl Model {
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());
         let read = if self.accept_damaged { model::Model::read_damaged } else { model::Model::read };
-        let model = read(&file::read(&self.model)?, task).with_context(context)?;
-        model.place(&self.placement(), height, bead_width).with_context(context)
+        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
+        let model = read(&bytes, task).with_context(context)?;
+        let placement = self.placement();
+        let part = if self.lay_flat { model.clone() } else { model };
+        let part = part.place(&placement, height, bead_width).with_context(context)?;
+        match part.mesh().filter(|_| self.lay_flat) {
+            None => Ok(part),
+            Some(mesh) => {
+                let turn = placement.laid_flat(mesh);
+                let flat = read(&bytes, task)
+                    .and_then(|model| model.place(&Placement { turn, ..placement }, height, bead_width));
+                flat.with_context(context)
+            }
+        }
     }
 
     fn placement(&self) -> Placement {
@@ -78,7 +94,15 @@ impl Model {
     pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
         let context = || format!("{}", self.model.display());
         let import = if self.accept_damaged { model::import_damaged } else { model::import };
-        let import = import(&file::read(&self.model)?, task).with_context(context)?;
-        self.placement().solid(import, bead_width).with_context(|| format!("{}", self.model.display()))
+        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
+        let import = import(&bytes, task).with_context(context)?;
+        let placement = self.placement();
+        let part = if self.lay_flat {
+            let turn = placement.laid_flat(&placement.solid(import.clone(), bead_width).with_context(context)?.mesh);
+            Placement { turn, ..placement }.solid(import, bead_width)
+        } else {
+            placement.solid(import, bead_width)
+        };
+        part.with_context(context)
     }
 }

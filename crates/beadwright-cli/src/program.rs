@@ -285,6 +285,7 @@ pub(crate) fn part(
             model: path.to_owned(),
             units,
             scale: 1.0,
+            lay_flat: false,
             turn: glam::DVec3::ZERO,
             centre: false,
             accept_damaged: false,

@@ -55,7 +55,7 @@ fn names_are_sorted_and_found() {
 #[test]
 fn every_part_is_one_clean_shell() {
     for example in ALL {
-        let Import { mesh, repair, format } = imported(example);
+        let Import { mesh, repair, format, .. } = imported(example);
         println!("{}: {repair:?}", example.name);
         assert_eq!(format, "binary STL");
         assert!(repair.is_clean(), "{}: {:?}", example.name, repair.sentences());

@@ -120,8 +120,7 @@ fn without_used_up(edges: &[Edge], distance: f64) -> Option<(Vec<usize>, Vec<Cor
         end <= start
     };
     for i in 0..edges.len() {
-        loop {
-            let Some(&last) = kept.last() else { break };
+        while let Some(&last) = kept.last() {
             let after = corner(edges, last, i, distance)?;
             let Some(&before) = corners.last() else {
                 corners.push(after);

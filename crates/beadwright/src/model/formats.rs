@@ -19,7 +19,7 @@ pub(super) const ALL: [Format; 5] = [threemf::FORMAT, amf::FORMAT, ply::FORMAT, 
 pub(super) type Facet = ([f32; 3], [[f32; 3]; 3]);
 
 /// No model has more triangles: their numbers have 32 bits, and a hostile file shall not fill the memory.
-pub(super) const MOST_TRIANGLES: usize = 200_000_000;
+pub(super) const MOST_TRIANGLES: usize = 100_000_000;
 
 /// A mesh of `count` loose triangles; `place` tells where in the file a triangle stands.
 pub(super) fn of_facets(

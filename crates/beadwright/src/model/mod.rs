@@ -36,6 +36,7 @@ pub use units::Units;
 use crate::task::{Cancelled, Task};
 use crate::text::{self, TextError};
 use glam::{DMat3, DVec3};
+use serde::Serialize;
 use std::borrow::Cow;
 
 /// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
@@ -71,7 +72,7 @@ pub struct Import {
 }
 
 /// An object of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Object {
     /// Its name.
     pub name: String,
@@ -214,6 +215,12 @@ pub fn is_iges(bytes: &[u8]) -> bool {
     let first = bytes.get(72..80);
     first.is_some_and(|end| end[0] == b'S' && end[1..].iter().all(|b| b" 01".contains(b)))
         && stl::announced_size(bytes) != Some(bytes.len())
+}
+
+/// Whether the bytes are those of a solid in a format that its content tells, as that of STL does not.
+pub fn is_solid(bytes: &[u8]) -> bool {
+    let [known @ .., _stl] = &formats::ALL;
+    known.iter().any(|format| (format.is)(bytes))
 }
 
 /// Formats that people hand over by mistake.

@@ -23,7 +23,7 @@ pub enum Model {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
-    /// Unit of the coordinates; guessed where it is left out.
+    /// Unit of the coordinates; where it is left out, that of the file, or guessed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
     /// Factor that enlarges the part.
@@ -148,7 +148,7 @@ impl Placement {
     /// # Errors
     /// [`PartError::Units`] where the unit must be given, [`ImportError::TooFar`].
     pub fn solid(&self, mut import: Import, bead_width: f64) -> Result<Import, PartError> {
-        let units = match self.units {
+        let units = match self.units.or(import.units) {
             Some(units) => units,
             None => units::guess(import.mesh.size() * self.scale, bead_width)?,
         };

@@ -247,10 +247,17 @@ fn transform(element: &Element) -> Result<DAffine3, ImportError> {
 
 /// Puts the items of the build together.
 fn build(resources: &Resources, task: &Task) -> Result<Import, ImportError> {
-    let (mut facets, mut objects): (Vec<Facet>, Vec<Object>) = (Vec::new(), Vec::new());
+    let (mut counts, mut sum) = (BTreeMap::new(), 0_usize);
+    for (id, _) in &resources.items {
+        sum = sum.saturating_add(count(resources, id, 0, &mut counts)?);
+    }
+    if sum > MOST_TRIANGLES {
+        return Err(too_many());
+    }
+    let (mut facets, mut objects): (Vec<Facet>, Vec<Object>) = (Vec::with_capacity(sum), Vec::new());
     for (id, at) in &resources.items {
         let first = facets.len();
-        lay(resources, id, &(DAffine3::from_scale(DVec3::splat(resources.unit)) * *at), 0, &mut facets)?;
+        lay(resources, id, &(DAffine3::from_scale(DVec3::splat(resources.unit)) * *at), &mut facets)?;
         task.check()?;
         if let (Some(object), true) = (resources.objects.get(id), facets.len() > first) {
             objects.push(Object { name: object.name.clone(), triangles: facets.len() - first });
@@ -264,30 +271,38 @@ fn build(resources: &Resources, task: &Task) -> Result<Import, ImportError> {
     Ok(Import { units: Some(Units::Millimetre), objects, ..import })
 }
 
-/// Adds the triangles of an object and of its components.
-fn lay(
-    resources: &Resources,
-    id: &Id,
-    at: &DAffine3,
-    depth: usize,
-    facets: &mut Vec<Facet>,
-) -> Result<(), ImportError> {
+/// The triangles of an object with all its components, each object counted once.
+fn count(resources: &Resources, id: &Id, depth: usize, counts: &mut BTreeMap<Id, usize>) -> Result<usize, ImportError> {
+    if let Some(known) = counts.get(id) {
+        return Ok(*known);
+    }
     if depth > DEEPEST {
         return Err(broken(format!("components lie more than {DEEPEST} deep in each other, or in themselves")));
     }
     let object = resources.objects.get(id);
     let object = object.ok_or_else(|| broken(format!("object {} of {} is not there", id.1, id.0)))?;
-    if !object.solid {
-        return Ok(());
+    let mut sum = 0_usize;
+    match &object.shape {
+        _ if !object.solid => {}
+        Shape::Mesh { triangles, .. } => sum = triangles.len(),
+        Shape::Components(parts) => {
+            for (part, _) in parts {
+                sum = sum.saturating_add(count(resources, part, depth + 1, counts)?);
+            }
+        }
     }
+    counts.insert(id.clone(), sum);
+    Ok(sum)
+}
+
+/// Adds the triangles of an object and of its components, which [`count`] has looked at.
+fn lay(resources: &Resources, id: &Id, at: &DAffine3, facets: &mut Vec<Facet>) -> Result<(), ImportError> {
+    let Some(object) = resources.objects.get(id).filter(|object| object.solid) else { return Ok(()) };
     match &object.shape {
         Shape::Components(parts) => {
-            parts.iter().try_for_each(|(part, place)| lay(resources, part, &(*at * *place), depth + 1, facets))
+            parts.iter().try_for_each(|(part, place)| lay(resources, part, &(*at * *place), facets))
         }
         Shape::Mesh { vertices, triangles } => {
-            if facets.len() + triangles.len() > MOST_TRIANGLES {
-                return Err(too_many());
-            }
             let placed: Vec<[f32; 3]> = vertices.iter().map(|v| at.transform_point3(*v).as_vec3().to_array()).collect();
             let mirrored = at.matrix3.determinant() < 0.0;
             for &[a, b, c] in triangles {
