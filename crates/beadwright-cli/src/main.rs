@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod convert;
 mod example;
+mod export;
 mod file;
 mod inspect;
 mod memory;
@@ -52,6 +53,8 @@ enum Command {
     Reach(reach::Arguments),
     /// Reproduce the papers' experiments: our results beside theirs.
     Reproduce(reproduce::Arguments),
+    /// Write the beads of a plan for other programs: a table (CSV), or lines for ParaView (VTP).
+    Export(export::Arguments),
     /// Show what a model, a plan or a program contains, and what is wrong with it.
     Inspect(inspect::Arguments),
     /// Write one of the example parts as STL; without a name, list them.
@@ -74,6 +77,7 @@ fn main() -> ExitCode {
         Command::Bead(command) => bead::run(&command),
         Command::Reach(arguments) => reach::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),
         Command::Profile(command) => profile::run(&command),

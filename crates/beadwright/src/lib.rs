@@ -26,6 +26,7 @@ pub mod compare;
 pub mod deposit;
 pub mod dialect;
 pub mod example;
+pub mod export;
 pub mod files;
 pub mod fill;
 pub mod model;

@@ -28,7 +28,7 @@ const ROWS: &[&[&str]] = &[
     &["plan"],
     &["plan_file", "check"],
     &["report"],
-    &["files", "robot", "simulate"],
+    &["export", "files", "robot", "simulate"],
     &["example"],
     &["compare"],
     &["reproduce"],
