@@ -96,11 +96,9 @@ fn every_model_is_cut_or_refused() {
 fn models_in_other_formats_are_recognised() {
     for path in paths() {
         let expect = match path.extension().and_then(|e| e.to_str()) {
-            Some("3mf") => "a ZIP archive, such as 3MF",
             Some("gz") => "a gzip archive",
             Some("step") => "a STEP file",
             Some("iges" | "igs") => "an IGES file",
-            Some("obj") => "an OBJ file",
             _ => continue,
         };
         let error = import(&fs::read(&path).unwrap(), &Task::new()).unwrap_err().to_string();

@@ -88,7 +88,7 @@ pub enum ImportError {
     Empty,
     /// A format that is known but not read.
     #[error(
-        "this is {found}, which Beadwright does not read by itself. Save the model as STL, 3MF, OBJ, PLY or AMF and try again."
+        "this is {found}, which Beadwright does not read by itself. Save the model as STL, 3MF or OBJ and try again."
     )]
     OtherFormat {
         /// What the content looks like.
@@ -101,7 +101,7 @@ pub enum ImportError {
     Iges,
     /// No known format.
     #[error(
-        "this is no model in a known format: it is neither 3MF, OBJ, PLY nor AMF, and not STL: {reason}. Save the model in one of these and try again."
+        "this is not an STL file: {reason}; nor is it 3MF, OBJ, PLY or AMF. Save the model as STL (binary or ASCII) and try again."
     )]
     NotStl {
         /// What speaks against it, with the byte or line.
@@ -197,7 +197,11 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
         return Err(ImportError::OtherFormat { found });
     }
     let known = formats::ALL.iter().find(|format| (format.is)(bytes));
-    known.map_or_else(|| stl::read(bytes, task), |format| (format.read)(bytes, task))
+    // A file of the right size is binary STL, whatever its header looks like.
+    match known.filter(|_| stl::announced_size(bytes) != Some(bytes.len())) {
+        Some(format) => (format.read)(bytes, task),
+        None => stl::read(bytes, task),
+    }
 }
 
 /// Text as UTF-8 with usual line ends; anything else as it is.
@@ -220,7 +224,7 @@ pub fn is_iges(bytes: &[u8]) -> bool {
 /// Whether the bytes are those of a solid in a format that its content tells, as that of STL does not.
 pub fn is_solid(bytes: &[u8]) -> bool {
     let [known @ .., _stl] = &formats::ALL;
-    known.iter().any(|format| (format.is)(bytes))
+    stl::announced_size(bytes) != Some(bytes.len()) && known.iter().any(|format| (format.is)(bytes))
 }
 
 /// Formats that people hand over by mistake.
