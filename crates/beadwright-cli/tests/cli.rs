@@ -109,7 +109,7 @@ fn a_refused_model_leaves_nothing_behind() {
     for (name, bytes, part) in [
         ("empty.stl", &b""[..], "empty"),
         ("text.stl", b"hello, this is a letter and not a model", "not an STL"),
-        ("part.3mf", b"PK\x03\x04....", "ZIP archive"),
+        ("part.3mf", b"PK\x03\x04....", "the 3MF file cannot be read"),
         ("cut.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "line 5"),
     ] {
         fs::write(folder.path().join(name), bytes).unwrap();
