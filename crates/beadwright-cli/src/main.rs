@@ -9,6 +9,7 @@ mod convert;
 mod example;
 mod export;
 mod file;
+mod heat;
 mod inspect;
 mod memory;
 mod model;
@@ -51,6 +52,8 @@ enum Command {
     Bead(bead::Command),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),
+    /// Compute how warm the metal is before each pass of a plan, and what waiting for a limit costs.
+    Heat(heat::Arguments),
     /// Reproduce the papers' experiments: our results beside theirs.
     Reproduce(reproduce::Arguments),
     /// Write the beads of a plan for other programs: a table (CSV), or lines for ParaView (VTP).
@@ -76,6 +79,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
         Command::Reach(arguments) => reach::run(&arguments),
+        Command::Heat(arguments) => heat::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -451,7 +451,7 @@ fn a_dry_run_has_names_of_its_own_and_no_arc() {
     let ends = ["--set", "start_stop.end_overlap=5", "--set", "start_stop.min_layer_time=900"];
     let plan = [&["plan", "cross.stl", "--post", "krl", "--no-deposit"][..], &ends[..]].concat();
     let said = ok(folder.path(), &[&plan[..], &["-o", "hot"]].concat());
-    assert!(said.contains("waits between layers"), "{said}");
+    assert!(said.contains("waits "), "{said}");
     ok(folder.path(), &[&plan[..], &["-o", "dry", "--dry-run"]].concat());
     let (hot, dry) = (files(&folder.path().join("hot")), files(&folder.path().join("dry")));
     assert_eq!(hot["plan.json"], dry["plan.json"]);

@@ -158,6 +158,7 @@ fn lifted(path: fill::Path, z: f64, profile: &Profile) -> Pass {
         points: path.points.iter().map(|p| p.extend(z)).collect(),
         pace: path.width.map(|width| speed * law.pace(&bead, width)),
         width: path.width,
+        wait: 0.0,
     }
 }
 

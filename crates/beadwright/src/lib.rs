@@ -29,6 +29,7 @@ pub mod example;
 pub mod export;
 pub mod files;
 pub mod fill;
+pub mod heat;
 pub mod model;
 pub mod plan;
 pub mod process;

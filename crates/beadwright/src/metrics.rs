@@ -3,7 +3,7 @@
 use crate::bead::wire_area;
 use crate::layer::Layer;
 use crate::profile::Profile;
-use crate::weld::{Torch, path};
+use crate::weld::{Pause, Torch, path};
 use serde::Serialize;
 
 /// Totals of a plan, or of some of its layers.
@@ -21,7 +21,7 @@ pub struct Metrics {
     pub travel_length_mm: f64,
     /// Time with the arc on, the torch moving or standing in craters, s; with acceleration where the profile gives it.
     pub arc_time_s: f64,
-    /// Waits between layers, s.
+    /// Waits between layers and passes, s.
     pub dwell_time_s: f64,
     /// Whole time with travels, delays, gas and waits, s; with acceleration where the profile gives it.
     pub total_time_s: f64,
@@ -103,12 +103,13 @@ impl Metrics {
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += layer.slice_area * layer.height;
         if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten() {
-            self.travel_length_mm += pause.length;
-            self.dwell_time_s += pause.seconds;
-            self.total_time_s += pause.moving + pause.seconds;
+            self.pause(pause);
         }
         for pass in &layer.passes {
             let Some(start) = pass.start() else { continue };
+            if let Some(pause) = self.torch.wait(pass.wait) {
+                self.pause(pause);
+            }
             let approach = self.torch.approach(start);
             let welded = self.torch.weld(&path(pass, self.torch.ends()));
             let retract = self.torch.retract();
@@ -127,6 +128,12 @@ impl Metrics {
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
         }
+    }
+
+    fn pause(&mut self, pause: Pause) {
+        self.travel_length_mm += pause.length;
+        self.dwell_time_s += pause.seconds;
+        self.total_time_s += pause.moving + pause.seconds;
     }
 
     /// Planned area over slice area, 0 to 1.

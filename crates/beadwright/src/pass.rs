@@ -105,6 +105,8 @@ pub struct Pass {
     /// Pace, mm/s: the speed at which the nominal wire feed lays the metal of a piece. [`Process::speed_at`] gives the
     /// speed of the torch.
     pub pace: Along,
+    /// How long the torch waits before it, s, so that the metal below can cool.
+    pub wait: f64,
 }
 
 /// One straight piece of a pass.
@@ -153,6 +155,24 @@ impl Pass {
     /// Where the arc ends.
     pub fn end(&self) -> Option<DVec3> {
         if self.closed { self.points.first().copied() } else { self.points.last().copied() }
+    }
+
+    /// Begins a closed pass at the point with an index; an open one stays as it is.
+    pub fn begin_at(&mut self, index: usize) {
+        if self.closed && index < self.points.len() {
+            self.points.rotate_left(index);
+            self.width.rotate_left(index);
+            self.pace.rotate_left(index);
+        }
+    }
+
+    /// Turns an open pass around; a closed one stays as it is.
+    pub fn reverse(&mut self) {
+        if !self.closed {
+            self.points.reverse();
+            self.width.reverse();
+            self.pace.reverse();
+        }
     }
 
     /// Deposited length, mm.

@@ -5,6 +5,7 @@
 
 use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
+use crate::heat::LONGEST_WAIT;
 use crate::layer::Layer;
 use crate::model::MAX_REACH_MM;
 use crate::number::push_fixed;
@@ -64,6 +65,10 @@ fn pass(text: &mut String, pass: &Pass) {
     along(text, &pass.width);
     text.push_str(",\"pace\":");
     along(text, &pass.pace);
+    if pass.wait > 0.0 {
+        text.push_str(",\"wait\":");
+        push_fixed(text, pass.wait, DECIMALS);
+    }
     text.push('}');
 }
 
@@ -245,6 +250,8 @@ struct FilePass {
     width: FileAlong,
     #[serde(alias = "speed")]
     pace: FileAlong,
+    #[serde(default)]
+    wait: f64,
 }
 
 #[derive(Deserialize)]
@@ -321,6 +328,9 @@ impl FilePass {
             _ => Err("widths and paces must be greater than 0 and at most 2000"),
         };
         let (width, pace) = (along(self.width)?, along(self.pace)?);
-        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace })
+        if !(0.0..=LONGEST_WAIT).contains(&self.wait) {
+            return Err("a wait must last 0 to 36000 s");
+        }
+        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace, wait: self.wait })
     }
 }

@@ -102,7 +102,7 @@ pub enum Instruction {
         /// Number of the pass in its layer, from 1.
         pass: usize,
     },
-    /// The torch waits with the arc off until the next layer may begin.
+    /// The torch waits with the arc off until the next layer or pass may begin.
     Dwell {
         /// How long, s.
         seconds: f64,
@@ -258,7 +258,11 @@ impl Programmer {
 
     fn pause(&self, pause: Pause, out: &mut Vec<Instruction>) {
         out.extend((pause.length > 0.0).then_some(Instruction::Travel { to: pause.at }));
-        out.push(Instruction::Dwell { seconds: pause.seconds });
+        match out.last_mut() {
+            // The wait of the layer and that of its first pass are one.
+            Some(Instruction::Dwell { seconds }) => *seconds += pause.seconds,
+            _ => out.push(Instruction::Dwell { seconds: pause.seconds }),
+        }
     }
 
     /// A pass, after the wait of its layer if there is still one.
@@ -275,11 +279,12 @@ impl Programmer {
         let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
         let table = self.table.as_mut().map(|table| table.begin(start));
         let begins = self.torch.at().is_none();
+        let pauses = [pause.take(), self.torch.wait(pass.wait)];
         let legs = self.torch.approach(start).legs;
         let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
         let mut legs = legs.into_iter();
         out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
-        pause.take().into_iter().for_each(|pause| self.pause(pause, out));
+        pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
         if self.restarts {
             self.feed = None;
         }

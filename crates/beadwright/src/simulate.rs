@@ -74,7 +74,7 @@ fn pass(
     widths.push(*widths.last()?);
     paces.push(*paces.last()?);
     let kind = crate::pass::PassKind::Infill;
-    Some(Pass { kind, closed: false, points, width: Along::Each(widths), pace: Along::Each(paces) })
+    Some(Pass { kind, closed: false, points, width: Along::Each(widths), pace: Along::Each(paces), wait: 0.0 })
 }
 
 /// The shift, mm, that brings the middle of the program's passes to the middle of the part. `None` where the passes

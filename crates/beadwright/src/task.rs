@@ -14,6 +14,8 @@ pub enum Stage {
     Plan,
     /// Working out what would be deposited.
     Deposit,
+    /// Working out how warm the part is before each pass.
+    Heat,
 }
 
 impl Stage {
@@ -24,6 +26,7 @@ impl Stage {
             Self::Slice => "slice",
             Self::Plan => "plan",
             Self::Deposit => "deposit",
+            Self::Heat => "heat",
         }
     }
 }

@@ -43,6 +43,10 @@ pub enum WarningKind {
     Sliver,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,
+    /// Metal does not cool to interpass.max_temperature before a pass; the size is its temperature, °C.
+    NeverCools,
+    /// Metal is colder than interpass.min_temperature where a pass begins; the size is its temperature, °C.
+    TooCold,
     /// A layer between the lowest and the highest holds nothing.
     EmptyLayer,
 }
@@ -196,6 +200,16 @@ impl WarningSummary {
                 "{layers}: {} thinner than {SLIVER_MM} mm left out, {total:.2} mm² in all, the largest {size:.2} mm² {place}: \
                  gaps between shells that touch, or remains of the model's rounding.",
                 times("hole or island", "holes or islands")
+            ),
+            WarningKind::NeverCools => format!(
+                "{layers}: {} on metal that does not cool to interpass.max_temperature in ten hours; at most {size:.0} °C \
+                 {place}.",
+                times("pass begins", "passes begin")
+            ),
+            WarningKind::TooCold => format!(
+                "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}: heat the plate \
+                 (substrate.preheat).",
+                times("pass begins", "passes begin")
             ),
             WarningKind::EmptyLayer => {
                 format!("{layers}: nothing to deposit: the part has a gap there, or all of its contours were dropped.")

@@ -19,6 +19,7 @@ const ROWS: &[&[&str]] = &[
     &["fill"],
     &["order"],
     &["weld"],
+    &["heat"],
     &["program"],
     // Writes and reads programs without knowing who planned them.
     &["dialect"],

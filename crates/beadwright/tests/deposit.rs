@@ -22,7 +22,7 @@ fn stroke(from: (f64, f64), to: (f64, f64)) -> Stroke {
 
 fn open_pass(points: &[(f64, f64)]) -> Pass {
     let points = points.iter().map(|&(x, y)| DVec3::new(x, y, 1.5)).collect();
-    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(4.0) }
+    Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(4.0), wait: 0.0 }
 }
 
 fn rectangle(low: (f64, f64), high: (f64, f64)) -> Polygon {

@@ -91,7 +91,14 @@ fn hatch(spacing: f64, turn: f64) -> Layer {
     let line = |k: i32| {
         let (y, x) = (f64::from(k) * spacing, if k % 2 == 0 { 85.0 } else { -85.0 });
         let (width, pace) = (Along::Same(nominal.bead.width), Along::Same(nominal.pace));
-        Pass { kind: PassKind::Infill, closed: false, points: vec![turned(-x, y), turned(x, y)], width, pace }
+        Pass {
+            kind: PassKind::Infill,
+            closed: false,
+            points: vec![turned(-x, y), turned(x, y)],
+            width,
+            pace,
+            wait: 0.0,
+        }
     };
     let lines = (85.0 / spacing) as i32;
     let islands = vec![Polygon::simple(Ring::new(square.to_vec()))];

@@ -48,7 +48,7 @@ fn bend(count: usize, z: f64) -> Pass {
     let turn = (0..=count).map(|i| FRAC_PI_2 * i as f64 / count as f64 - FRAC_PI_2);
     let bend = turn.map(|angle| DVec2::new(30.0, 8.0) + 8.0 * DVec2::from_angle(angle));
     let points: Vec<DVec3> = [DVec2::ZERO].into_iter().chain(bend).map(|p| p.extend(z)).collect();
-    Pass { kind: PassKind::Contour, closed: false, points, width: Along::Same(4.5), pace: Along::Same(8.0) }
+    Pass { kind: PassKind::Contour, closed: false, points, width: Along::Same(4.5), pace: Along::Same(8.0), wait: 0.0 }
 }
 
 /// One layer with one pass.

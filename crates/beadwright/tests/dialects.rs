@@ -49,6 +49,7 @@ fn job() -> Vec<Layer> {
             points: points.iter().map(|p| p.extend(z)).collect(),
             width: Along::Same(4.5),
             pace: speed,
+            wait: 0.0,
         };
         let line: Vec<DVec2> = straight.chain(bend).chain(tail).collect();
         let speeds = (0..line.len()).map(|i| if i < 28 { 8.0 } else { 6.0 }).collect();

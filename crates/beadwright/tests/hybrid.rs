@@ -152,6 +152,7 @@ fn lifted(passes: impl IntoIterator<Item = Path>, speed: f64, width: f64) -> Vec
         points: p.points.into_iter().map(|q| q.extend(0.0)).collect(),
         pace: p.width.map(|w| speed * width / w),
         width: p.width,
+        wait: 0.0,
     };
     passes.into_iter().map(lift).collect()
 }

@@ -57,6 +57,7 @@ fn lifted(passes: &[Path], profile: &Profile) -> Vec<pass::Pass> {
         points: path.points.iter().map(|p| p.extend(2.0)).collect(),
         pace: path.width.map(|width| speed * law.pace(&bead, width)),
         width: path.width.clone(),
+        wait: 0.0,
     };
     passes.iter().map(lift).collect()
 }
@@ -361,6 +362,7 @@ fn starts_stand_up_and_ends_sink() {
         points: vec![glam::DVec3::new(0.0, 0.0, 2.0), glam::DVec3::new(100.0, 0.0, 2.0)],
         pace: pass::Along::Same(profile.process.deposition_speed),
         width: pass::Along::Same(profile.bead.width),
+        wait: 0.0,
     };
     let layer = Layer { passes: vec![line], ..Layer::default() };
     let metal = |profile: &Profile| {

@@ -38,6 +38,7 @@ fn job() -> Vec<Layer> {
             points: points(&[[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [-0.0004, 20.0]]),
             width: Along::Same(4.5),
             pace: Along::Same(8.0),
+            wait: 0.0,
         };
         let line = Pass {
             kind: PassKind::Infill,
@@ -45,6 +46,7 @@ fn job() -> Vec<Layer> {
             points: points(&[[5.0, 10.0], [10.0, 10.0], [10.005, 10.0], [15.0, 10.0], [20.0, 10.5], [25.0, 10.0]]),
             width: Along::Each(vec![4.5; 6]),
             pace: Along::Each(vec![8.0, 7.95, 7.55, 7.14, 6.13, 6.13]),
+            wait: 0.0,
         };
         Layer {
             index,

@@ -113,7 +113,7 @@ fn square(size: f64) -> Layer {
     let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
     let pass = |kind, closed, points: &[DVec2]| {
         let points = points.iter().map(|p| p.extend(3.0)).collect();
-        Pass { kind, closed, points, width: Along::Same(7.54), pace: Along::Same(10.5) }
+        Pass { kind, closed, points, width: Along::Same(7.54), pace: Along::Same(10.5), wait: 0.0 }
     };
     let passes = vec![
         pass(PassKind::Contour, true, &corners),

@@ -36,7 +36,14 @@ fn place(x: f64, y: f64, z: f64, rotation: f64) -> PartPlace {
 /// One layer with one open pass through these points, 10 mm/s.
 fn track(points: &[[f64; 3]]) -> Track {
     let points: Vec<DVec3> = points.iter().map(|&p| p.into()).collect();
-    let pass = Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(10.0) };
+    let pass = Pass {
+        kind: PassKind::Infill,
+        closed: false,
+        points,
+        width: Along::Same(5.0),
+        pace: Along::Same(10.0),
+        wait: 0.0,
+    };
     let layer = Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
     // Travels 20 mm above at 100 mm/s.
     Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap())
@@ -214,7 +221,14 @@ fn the_part_as_far_as_it_is_welded_is_hit() {
     let welded = |beside: f64, post_first: bool| {
         let line = |x: f64, z: f64| {
             let points = vec![DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)];
-            Pass { kind: PassKind::Infill, closed: false, points, width: Along::Same(5.0), pace: Along::Same(10.0) }
+            Pass {
+                kind: PassKind::Infill,
+                closed: false,
+                points,
+                width: Along::Same(5.0),
+                pace: Along::Same(10.0),
+                wait: 0.0,
+            }
         };
         let (post, foot) = (line(0.0, 150.0), line(beside, 2.0));
         let passes = if post_first { vec![post, foot] } else { vec![foot, post] };

@@ -86,7 +86,7 @@ fn job() -> Vec<Layer> {
         let points = |xy: &[[f64; 2]]| xy.iter().map(|p| DVec3::new(p[0], p[1], z)).collect::<Vec<_>>();
         let square = points(&[[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0]]);
         let line = points(&[[50.0, 0.0], [70.0, 0.0], [90.0, 0.0]]);
-        let pass = |kind, closed, points, width, speed| Pass { kind, closed, points, width, pace: speed };
+        let pass = |kind, closed, points, width, speed| Pass { kind, closed, points, width, pace: speed, wait: 0.0 };
         let passes = vec![
             pass(PassKind::Contour, true, square, Along::Same(4.5), Along::Same(8.0)),
             pass(PassKind::Infill, false, line, Along::Each(vec![4.5, 6.0, 6.0]), Along::Each(vec![8.0, 6.0, 6.0])),
@@ -445,6 +445,7 @@ fn passes_too_short_for_their_ends_share_them() {
         points,
         width: Along::Same(4.5),
         pace: Along::Same(8.0),
+        wait: 0.0,
     };
     // 5 and 4 mm on 4.5 mm: half of each.
     let short = weld::path(&pass(false, vec![x(0.0), x(4.5)]), &ends);

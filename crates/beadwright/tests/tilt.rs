@@ -23,7 +23,7 @@ fn cone(centre: DVec2, slope: f64) -> Vec<Layer> {
         let (z, radius) = (2.0 * (index + 1) as f64, 40.0 + 2.0 * index as f64 * slope.to_radians().tan());
         let points = circle(centre, radius - 2.25).into_iter().map(|p| p.extend(z)).collect();
         let (width, pace) = (Along::Same(4.5), Along::Same(8.0));
-        let passes = vec![Pass { kind: PassKind::Contour, closed: true, points, width, pace }];
+        let passes = vec![Pass { kind: PassKind::Contour, closed: true, points, width, pace, wait: 0.0 }];
         let islands = vec![Polygon { outer: Ring::new(circle(centre, radius)), holes: Vec::new() }];
         Layer { index, z, height: 2.0, islands, passes, ..Layer::default() }
     };

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 fn job() -> Vec<Layer> {
     let points = vec![DVec3::new(0.0, 0.0, 2.0), DVec3::new(60.0, 0.0, 2.0), DVec3::new(60.0, 40.0, 2.0)];
     let (width, speed) = (Along::Same(4.5), Along::Same(8.0));
-    let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace: speed };
+    let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace: speed, wait: 0.0 };
     vec![Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() }]
 }
 

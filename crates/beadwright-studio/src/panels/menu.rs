@@ -132,6 +132,7 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
 fn stage_text(stage: Stage) -> &'static str {
     match stage {
         Stage::Import => "stage-import",
+        Stage::Heat => "stage-heat",
         Stage::Slice => "stage-slice",
         Stage::Plan => "stage-plan",
         Stage::Deposit => "stage-deposit",

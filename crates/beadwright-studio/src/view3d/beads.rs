@@ -144,7 +144,9 @@ impl LayerBeads {
         let first = self.beads.len();
         let (travel_start, mut arrival, mut travel) = (self.seconds, self.seconds, Vec::new());
         if let Some(start) = pass.start() {
-            let (from, ways) = (torch.at(), [torch.retract(), torch.approach(start)]);
+            let (from, up) = (torch.at(), torch.retract());
+            arrival += torch.wait(pass.wait).map_or(0.0, |pause| pause.moving + pause.seconds);
+            let ways = [up, torch.approach(start)];
             arrival += ways.iter().map(|way| way.moving).sum::<f64>();
             let legs = ways.into_iter().flat_map(|way| way.legs).filter(|_| from.is_some());
             travel = from.into_iter().chain(legs).collect();

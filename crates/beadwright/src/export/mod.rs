@@ -68,6 +68,7 @@ pub fn pieces(layers: &[Layer], profile: &Profile) -> Vec<Piece> {
         now += torch.begin_layer(layer.index).map_or(0.0, |pause| pause.moving + pause.seconds);
         for (number, pass) in (1..).zip(&layer.passes) {
             let Some(start) = pass.start() else { continue };
+            now += torch.wait(pass.wait).map_or(0.0, |pause| pause.moving + pause.seconds);
             now += torch.approach(start).moving;
             let moves = path(pass, torch.ends());
             let welded = torch.weld(&moves);

@@ -241,9 +241,7 @@ fn check_reach(file: &IgesFile, scale: f64) -> Result<(), ImportError> {
 }
 
 fn curve_bounds(curves: &WallCurves, height: f64) -> Bounds {
-    let sections = [0.0, height].into_iter().flat_map(|z| curves.at(z, 1.0));
-    let points = sections.flat_map(|section| section.points);
-    Bounds::of(points).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
+    curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
 }
 
 /// Normals whose difference is shorter than this belong to one face.

@@ -4,6 +4,7 @@
 use super::iges::IgesFile;
 use crate::curve::Nurbs;
 use glam::{DAffine3, DVec2};
+use planar::Bounds;
 use std::f64::consts::PI;
 
 /// A curve may rise by this over its length and still count as level, mm.
@@ -122,6 +123,12 @@ impl WallCurves {
     /// Number of curves at each height.
     pub fn count(&self) -> usize {
         self.levels.first().map_or(0, |level| level.1.len())
+    }
+
+    /// Their extent from the ground up to `height`, mm; `None` without curves.
+    pub fn bounds(&self, height: f64) -> Option<Bounds> {
+        let sections = [0.0, height].into_iter().flat_map(|z| self.at(z, 1.0));
+        Bounds::of(sections.flat_map(|section| section.points))
     }
 
     /// The centre-lines at height `z` (mm), their chords within `error` (mm): those given there, or, between two

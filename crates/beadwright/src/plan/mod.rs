@@ -26,6 +26,7 @@ use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, Path, Strategy, coverage};
+use crate::heat::Build;
 use crate::layer::{Layer, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
@@ -246,13 +247,15 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let slabs = slabs_of(mesh, profile, task)?;
     let left = left_over(mesh, &slabs, profile);
+    let (low, high) = mesh.bounds();
+    let heat = heated(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
         filled::fill_batch(planned, strategy, profile, datum, task)
     };
-    let mut summary = run([name, strategy.name()], slicer.layer_count(), profile, task, sink, fill_batch)?;
+    let mut summary = run([name, strategy.name()], slicer.layer_count(), heat, profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
@@ -385,6 +388,7 @@ fn plan_curves<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let slabs = levels::of_curves(curves, height, &profile.single_wall()?);
+    let heat = curves.bounds(height).and_then(|bounds| heated(profile, &bounds, &slabs));
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
         let fill = |index: usize| {
@@ -393,7 +397,7 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let summary = run([name, &profile.fill.strategy], slabs.len(), profile, task, sink, fill_batch)?;
+    let summary = run([name, &profile.fill.strategy], slabs.len(), heat, profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
             "each curve is shorter than fill.min_pass_length, or than the distance within which ends meet \
@@ -408,6 +412,7 @@ fn plan_curves<S: Sink + Send>(
 fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
     layers: usize,
+    heat: Option<Build>,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
@@ -419,6 +424,7 @@ fn run<S: Sink + Send>(
         profile,
         sink,
         torch: None,
+        heat,
         memory: order::Memory::default(),
         below: Vec::new(),
         built: 0.0,
@@ -444,6 +450,13 @@ fn run<S: Sink + Send>(
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; {most} are the most (check.max_plan_points)."));
     Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
+}
+
+/// The plate for a part whose passes have a limit of temperature; `None` where they have none.
+fn heated(profile: &Profile, bounds: &Bounds, slabs: &[Slab]) -> Option<Build> {
+    let settings = profile.heat_settings().ok().filter(|settings| settings.interpass.is_some())?;
+    let layers: Vec<(f64, f64)> = slabs.iter().map(|slab| (slab.z, slab.height)).collect();
+    Some(Build::new(&settings, &profile.weld_settings(), bounds, &layers))
 }
 
 /// The centre-lines of a layer as passes; the area they cover stands in for the slice.
@@ -496,6 +509,8 @@ struct Emitter<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
     torch: Option<DVec2>,
+    /// The part as it warms up, where a limit holds for it.
+    heat: Option<Build>,
     memory: order::Memory,
     /// Outlines of the layer below, of the islands that are welded.
     below: Vec<Polygon>,
@@ -521,11 +536,31 @@ impl<S: Sink> Emitter<'_, S> {
         let passes = lifted(paths, index, (z, height), self.profile);
         let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
         relight::relight(&mut layer, self.profile);
+        self.cool(&mut layer);
         self.doubts(&mut layer);
         self.below = laid;
         layer.warnings.iter().for_each(|w| self.warnings.add(*w));
         self.metrics.add(&layer);
         self.sink.layer(layer)
+    }
+
+    /// Keeps the limits of `[interpass]`, and warns where that cannot be.
+    fn cool(&mut self, layer: &mut Layer) {
+        let (Some(build), Some(limits)) = (&mut self.heat, self.profile.interpass) else { return };
+        let heat = build.layer_within_limits(layer);
+        // The next layer is ordered from where this one ends.
+        self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
+        for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
+            let kind = if heat.start > limits.max_temperature + 1.0 {
+                WarningKind::NeverCools
+            } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
+                WarningKind::TooCold
+            } else {
+                continue;
+            };
+            let place = pass.start().unwrap_or_default().truncate();
+            layer.warnings.push(Warning { kind, layer: layer.index, place, size: heat.start });
+        }
     }
 
     /// Warns of what a layer cannot be welded on, and of what a controller may refuse.
@@ -578,6 +613,7 @@ fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile:
         // The wire feed stays the same: a wider bead is laid more slowly.
         pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
         width: path.width,
+        wait: 0.0,
     };
     paths.into_iter().map(lift).collect()
 }

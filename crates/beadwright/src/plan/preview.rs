@@ -38,6 +38,7 @@ pub fn preview(
         profile,
         sink: &mut last,
         torch: None,
+        heat: None,
         memory: Memory::default(),
         below: Vec::new(),
         built,

@@ -71,5 +71,5 @@ fn stretch(pass: &Pass, from: f64, to: f64) -> Pass {
     // A value applies from its point to the next.
     let values = |value: fn(&Segment) -> f64| Along::Each(kept.iter().chain(kept.last()).map(value).collect());
     let (width, pace) = (values(|s| s.width), values(|s| s.pace));
-    Pass { kind: pass.kind, closed: false, points, width, pace }
+    Pass { kind: pass.kind, closed: false, points, width, pace, wait: pass.wait }
 }

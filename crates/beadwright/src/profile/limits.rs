@@ -39,6 +39,10 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.one_loop.limits(),
         p.start_stop.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),
+        p.heat.iter().flat_map(|heat| heat.limits()).collect(),
+        p.material.iter().flat_map(|material| material.limits()).collect(),
+        p.substrate.iter().flat_map(|substrate| substrate.limits()).collect(),
+        p.interpass.iter().flat_map(|interpass| interpass.limits()).collect(),
     ];
     general.into_iter().flatten().chain(p.dialects.iter().flat_map(|section| section.limits())).collect()
 }
@@ -56,6 +60,17 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         }
         (None, None) => return Some(Broken::text("fill.overlap", "free", "fill.stepover must then be given, mm.")),
         _ => {}
+    }
+    if let (Some(_), Err(lacks)) = (&p.interpass, p.heat_settings()) {
+        let reason = lacks.to_string();
+        return Some(Broken { key: "interpass".to_owned(), value: "a limit".to_owned(), reason });
+    }
+    if let (Some(limits), Some(heat)) = (&p.interpass, &p.heat)
+        && limits.max_temperature < heat.ambient + 10.0
+    {
+        let (key, value) = ("interpass.max_temperature".to_owned(), limits.max_temperature.to_string());
+        let reason = format!("no part cools so far: its surroundings have {} °C (heat.ambient).", heat.ambient);
+        return Some(Broken { key, value, reason });
     }
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));

@@ -33,6 +33,7 @@ use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
 use crate::dialect::{Job, Sections};
 use crate::fill::FillSettings;
+use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
@@ -128,6 +129,14 @@ pub struct Profile {
     pub start_stop: StartStop,
     /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
+    /// What the arc gives and the surroundings take, for temperatures; optional.
+    pub heat: Option<HeatSection>,
+    /// Thermal values of the part; optional.
+    pub material: Option<Material>,
+    /// The plate on which the part is built; optional.
+    pub substrate: Option<Substrate>,
+    /// How warm the metal may be where passes begin; optional.
+    pub interpass: Option<Interpass>,
     /// Settings of the dialects; each has a section of its own.
     #[serde(flatten, skip_deserializing)]
     #[cfg_attr(feature = "schema", schemars(!skip_deserializing))]
@@ -321,6 +330,27 @@ impl Profile {
         let weld = WeldSettings { process, ends, travel: self.travel.clone(), motion: self.motion, arc_end_time: None };
         let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
         WeldSettings { arc_end_time, ..weld }
+    }
+
+    /// What the heat model needs.
+    ///
+    /// # Errors
+    /// [`HeatError`] names what the profile lacks.
+    pub fn heat_settings(&self) -> Result<HeatSettings, HeatError> {
+        let heat = self.heat.ok_or(HeatError("section [heat]"))?;
+        let material = self.material.ok_or(HeatError("section [material]"))?;
+        let substrate = self.substrate.ok_or(HeatError("section [substrate]"))?;
+        self.process.current.ok_or(HeatError("process.current"))?;
+        self.process.voltage.ok_or(HeatError("process.voltage"))?;
+        Ok(HeatSettings {
+            material,
+            density: self.wire.density,
+            substrate,
+            heat,
+            interpass: self.interpass,
+            bead_area: self.bead().area(),
+            bead_width: self.bead.width,
+        })
     }
 
     /// The programmer that makes the instructions of layers.

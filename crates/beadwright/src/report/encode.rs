@@ -177,6 +177,8 @@ fn short(warning: &Warning) -> String {
         WarningKind::Relit => format!("pass longer than a program: arc lit again {size:.0} times"),
         WarningKind::ManyPoints => format!("{size:.0} points, more than check.max_points"),
         WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
+        WarningKind::NeverCools => format!("does not cool, {size:.0} °C"),
+        WarningKind::TooCold => format!("too cold, {size:.0} °C"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),
     }
 }

@@ -23,6 +23,7 @@ pub mod sketch;
 pub mod steps;
 pub mod svg;
 mod tables;
+pub mod temperature;
 
 use crate::deposit::{Figures, Judgement};
 use crate::layer::Layer;

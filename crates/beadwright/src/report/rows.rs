@@ -19,7 +19,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("covered / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
     if m.dwell_time_s > 0.0 {
-        rows.insert(5, ("waits between layers", hours(m.dwell_time_s)));
+        rows.insert(5, ("waits", hours(m.dwell_time_s)));
     }
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows

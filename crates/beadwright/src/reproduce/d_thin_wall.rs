@@ -310,6 +310,7 @@ fn straight_through(layer: &Layer, degrees: f64) -> Layer {
         points: points.iter().map(|&p| turn.rotate(half * DVec2::from(p)).extend(layer.z)).collect(),
         width: Along::Same(first.width.after(0)),
         pace: Along::Same(first.pace.after(0)),
+        wait: 0.0,
     };
     let passes = [
         pass(true, &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),

@@ -33,7 +33,7 @@ pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     // A value applies from its point to the next.
     let along = |value: fn(&Move) -> f64| Along::Each(moves[1..].iter().chain(moves.last()).map(value).collect());
     let (width, pace) = (along(|m| m.width), along(|m| m.pace));
-    Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace }
+    Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace, wait: pass.wait }
 }
 
 fn moves(pass: &Pass, ends: &StartStop) -> Vec<Move> {

@@ -26,7 +26,7 @@ pub struct Torch {
     seconds: f64,
 }
 
-/// A wait between layers, with the arc off.
+/// A wait with the arc off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pause {
     /// Where the torch waits, mm.
@@ -129,11 +129,23 @@ impl Torch {
     pub fn begin_layer(&mut self, index: usize) -> Option<Pause> {
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
         let missing = self.ends.min_layer_time - self.seconds;
-        let seconds = (missing.max(self.ends.interpass_time).max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
+        let pause = self.pause(missing.max(self.ends.interpass_time));
+        // The wait counts for neither layer.
         self.seconds = 0.0;
+        pause
+    }
+
+    /// Waits for `seconds` before a pass, above the part; `None` where there is nothing to wait for.
+    pub fn wait(&mut self, seconds: f64) -> Option<Pause> {
+        let pause = self.pause(seconds)?;
+        self.seconds += pause.moving + pause.seconds;
+        Some(pause)
+    }
+
+    fn pause(&mut self, seconds: f64) -> Option<Pause> {
+        let seconds = (seconds.max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
         let from = self.at.filter(|_| seconds > 0.0)?;
         let at = from.with_z(from.z.max(self.low + self.clearance + self.ends.dwell_height));
-        // The move up belongs to the wait: it counts for neither layer.
         let (length, moving) = self.travel(&[at]);
         self.at = Some(at);
         Some(Pause { at, seconds, length, moving })

@@ -1,0 +1,90 @@
+//! `beadwright heat`, and programs that wait for metal to cool.
+#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn the_heat_of_a_plan_is_told_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
+    said(&beadwright(at, &["plan", "cross.stl", "--no-deposit", "-o", "plan"]));
+    let text = said(&beadwright(at, &["heat", "plan/plan.json"]));
+    assert!(text.contains("hottest start") && text.contains("taken by air and table"), "{text}");
+    let page = fs::read_to_string(at.join("heat.html")).unwrap();
+    assert!(page.matches("<svg").count() > 3, "a plot, a scale and pictures");
+    let all = json(&said(&beadwright(at, &["heat", "plan/plan.json", "--json"])));
+    let metrics = json(&fs::read_to_string(at.join("plan/metrics.json")).unwrap());
+    let passes: usize = all["layers"].as_array().unwrap().iter().map(|l| l["passes"].as_array().unwrap().len()).sum();
+    assert_eq!(passes as u64, metrics["passes"].as_u64().unwrap());
+    let seconds = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((seconds(&all["seconds"]) / seconds(&metrics["total_time_s"]) - 1.0).abs() < 1e-3, "the same time");
+    let balance = seconds(&all["supplied"]) - seconds(&all["lost"]) - seconds(&all["held"]);
+    assert!(balance.abs() < 1e-6 * seconds(&all["supplied"]));
+}
+
+#[test]
+fn programs_wait_for_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
+    let plan = ["plan", "cross.stl", "--no-deposit", "--profile", "cmt-steel-robots", "--post", "urscript"];
+    let metrics = |out: &str| json(&fs::read_to_string(at.join(out).join("metrics.json")).unwrap());
+    said(&beadwright(at, &[&plan[..], &["-o", "without"]].concat()));
+    said(&beadwright(at, &[&plan[..], &["-o", "with", "--set", "interpass.max_temperature=150"]].concat()));
+    let (without, with) = (metrics("without"), metrics("with"));
+    let waits = with["dwell_time_s"].as_f64().unwrap();
+    assert!(without["dwell_time_s"].as_f64() == Some(0.0) && waits > 100.0, "{waits} s");
+    // The model finds the waits of the plan long enough, and no longer than needed.
+    let text = said(&beadwright(at, &["heat", "with/plan.json"]));
+    assert!(!text.contains("warning"), "{text}");
+    let heat = json(&said(&beadwright(at, &["heat", "with/plan.json", "--json"])));
+    let starts = heat["layers"].as_array().unwrap().iter().flat_map(|l| l["passes"].as_array().unwrap());
+    let hottest = starts.map(|pass| pass["start"].as_f64().unwrap()).fold(0.0, f64::max);
+    assert!((140.0..151.0).contains(&hottest), "{hottest} °C");
+    // The waits stand in the program.
+    let programs = fs::read_dir(at.join("with")).unwrap().map(|entry| entry.unwrap().path());
+    let text: String = programs
+        .filter(|path| path.extension().is_some_and(|e| e == "script"))
+        .map(|p| fs::read_to_string(p).unwrap())
+        .collect();
+    let sleeps =
+        text.lines().filter_map(|line| line.trim().strip_prefix("sleep(")?.strip_suffix(')')?.parse::<f64>().ok());
+    let slept: f64 = sleeps.filter(|seconds| *seconds > 5.0).sum();
+    assert!((slept - waits).abs() < 0.1 * waits, "{slept} s of {waits} s");
+    // Before a plan with limits, the plain one is told what it lacks.
+    let text = said(&beadwright(at, &["heat", "without/plan.json", "--limit", "150"]));
+    assert!(text.contains("waits for cooling"), "{text}");
+}
+
+#[test]
+fn what_a_profile_lacks_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
+    said(&beadwright(
+        at,
+        &["plan", "cross.stl", "--no-deposit", "--profile", "fdm-abs-0.4", "-o", "plan", "--set", "bead.width=4"],
+    ));
+    let refused = beadwright(at, &["heat", "plan/plan.json"]);
+    let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(1) && text.contains("[heat]") && !at.join("heat.html").exists(), "{text}");
+    let refused =
+        beadwright(at, &["plan", "cross.stl", "--profile", "fdm-abs-0.4", "--set", "interpass.max_temperature=90"]);
+    assert!(!refused.status.success());
+}

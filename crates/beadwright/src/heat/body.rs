@@ -1,0 +1,257 @@
+//! Metal in voxels: what each holds, what it conducts to its neighbours, how warm it is.
+//!
+//! A voxel holds a volume of metal and the area that this covers seen from above; the two may be less than the voxel's
+//! own. So thin walls keep their metal and cross-section wherever they lie on the grid. What a face conducts follows from
+//! the geometric mean of the two cross-sections beside it, and what lies bare from their difference (finite volumes; Patankar,
+//! Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
+
+use super::grid::Grid;
+
+/// Stefan-Boltzmann constant, W/(mm²·K⁴).
+pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374e-14;
+
+/// Absolute temperature of 0 °C, K.
+pub(super) const KELVIN: f64 = 273.15;
+
+/// What takes heat from bare faces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Air {
+    /// Temperature of surroundings and table, °C.
+    pub ambient: f64,
+    /// Convection, W/(mm²·K).
+    pub convection: f64,
+    /// Emissivity, 0 to 1.
+    pub emissivity: f64,
+    /// Contact of the lowest voxels with the table, W/(mm²·K).
+    pub contact: f64,
+}
+
+impl Air {
+    /// Surroundings that take nothing, °C.
+    pub fn none(ambient: f64) -> Self {
+        Self { ambient, convection: 0.0, emissivity: 0.0, contact: 0.0 }
+    }
+}
+
+/// What a level of voxels is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stuff {
+    /// Heat capacity, J/(mm³·K).
+    pub capacity: f64,
+    /// Conductivity, W/(mm·K).
+    pub conductivity: f64,
+}
+
+/// Metal in voxels. Temperatures are kept above that of the surroundings.
+#[derive(Debug, Clone)]
+pub struct Body {
+    pub(super) grid: Grid,
+    pub(super) air: Air,
+    /// One for each level.
+    stuff: Vec<Stuff>,
+    /// Above the surroundings, K.
+    pub(super) theta: Vec<f64>,
+    /// mm³.
+    metal: Vec<f64>,
+    /// mm², seen from above.
+    area: Vec<f64>,
+    /// Heat capacity, J/K.
+    pub(super) capacity: Vec<f64>,
+    /// Conductance to the next voxel along each axis, W/K.
+    pub(super) across: [Vec<f64>; 3],
+    /// Bare area across each axis, mm².
+    pub(super) bare: [Vec<f64>; 3],
+    /// Area of the lowest level that lies on the table, mm².
+    pub(super) table: Vec<f64>,
+    /// True area of the sides of a level over that of its voxels' sides.
+    pub(super) sides: Vec<f64>,
+    /// Number of levels that hold metal, from the lowest on.
+    pub(super) levels: usize,
+    supplied: f64,
+    lost: f64,
+    pub(super) reverse: bool,
+    /// Levels below this one take longer steps, of up to `patience` seconds; `owed` is what they are behind.
+    pub(super) deep: usize,
+    pub(super) patience: f64,
+    pub(super) owed: f64,
+    /// A level of zeros.
+    pub(super) nothing: Vec<f64>,
+}
+
+impl Body {
+    /// An empty grid; one [`Stuff`] for each level.
+    pub fn new(grid: Grid, stuff: Vec<Stuff>, air: Air) -> Self {
+        let none = vec![0.0; grid.len()];
+        let three = || [none.clone(), none.clone(), none.clone()];
+        let sides = vec![1.0; stuff.len()];
+        Self {
+            table: vec![0.0; grid.strides()[2]],
+            air,
+            stuff,
+            theta: none.clone(),
+            metal: none.clone(),
+            area: none.clone(),
+            capacity: none.clone(),
+            across: three(),
+            bare: three(),
+            sides,
+            levels: 0,
+            supplied: 0.0,
+            lost: 0.0,
+            reverse: false,
+            deep: 0,
+            patience: 0.0,
+            owed: 0.0,
+            nothing: vec![0.0; grid.strides()[2]],
+            grid,
+        }
+    }
+
+    /// The lowest `levels` full of metal at a temperature, °C.
+    pub fn fill(&mut self, levels: usize, temperature: f64) {
+        let plane = self.grid.strides()[2];
+        for voxel in 0..plane * levels {
+            let size = self.grid.size(voxel);
+            self.add(voxel, size.x * size.y * size.z, size.x * size.y);
+            self.theta[voxel] = temperature - self.air.ambient;
+        }
+        self.supplied += self.energy();
+        self.refresh(&(0..plane * levels).collect::<Vec<_>>());
+    }
+
+    /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is all that the voxel's metal then covers seen
+    /// from above. [`Self::refresh`] must follow.
+    pub(super) fn add(&mut self, voxel: usize, volume: f64, area: f64) {
+        let [_, _, level] = self.grid.place(voxel);
+        let capacity = volume * self.stuff[level].capacity;
+        let size = self.grid.size(voxel);
+        self.theta[voxel] *= self.capacity[voxel] / (self.capacity[voxel] + capacity).max(f64::MIN_POSITIVE);
+        self.capacity[voxel] += capacity;
+        self.metal[voxel] += volume;
+        self.area[voxel] = self.area[voxel].max(area).min(size.x * size.y);
+        self.levels = self.levels.max(level + 1);
+    }
+
+    /// Heats a voxel, J. One without metal takes nothing.
+    pub fn heat(&mut self, voxel: usize, joules: f64) {
+        if self.capacity[voxel] > 0.0 {
+            self.theta[voxel] += joules / self.capacity[voxel];
+            self.supplied += joules;
+        }
+    }
+
+    /// Computes anew what conducts and what lies bare, at these voxels and beside them.
+    pub(super) fn refresh(&mut self, voxels: &[usize]) {
+        let strides = self.grid.strides();
+        for &voxel in voxels {
+            let place = self.grid.place(voxel);
+            for axis in 0..3 {
+                self.connect(voxel, axis);
+                if place[axis] > 0 {
+                    self.connect(voxel - strides[axis], axis);
+                }
+            }
+        }
+        for &voxel in voxels {
+            let (place, counts) = (self.grid.place(voxel), self.grid.counts());
+            self.expose(voxel);
+            for axis in 0..3 {
+                if place[axis] > 0 {
+                    self.expose(voxel - strides[axis]);
+                }
+                if place[axis] + 1 < counts[axis] {
+                    self.expose(voxel + strides[axis]);
+                }
+            }
+        }
+    }
+
+    /// Cross-section of a voxel's metal across an axis, mm².
+    fn section(&self, voxel: usize, axis: usize) -> f64 {
+        if axis == 2 { self.area[voxel] } else { self.metal[voxel] / self.grid.size(voxel)[axis] }
+    }
+
+    /// Half of the way through a voxel's metal, over its conductivity, mm²·K/W.
+    fn resistance(&self, voxel: usize, axis: usize) -> f64 {
+        let length = if axis == 2 { self.metal[voxel] / self.area[voxel] } else { self.grid.size(voxel)[axis] };
+        length / 2.0 / self.stuff[self.grid.place(voxel)[2]].conductivity
+    }
+
+    fn connect(&mut self, voxel: usize, axis: usize) {
+        let next = voxel + self.grid.strides()[axis];
+        let inside = self.grid.place(voxel)[axis] + 1 < self.grid.counts()[axis];
+        let shared = if inside { (self.section(voxel, axis) * self.section(next, axis)).sqrt() } else { 0.0 };
+        self.across[axis][voxel] =
+            if shared > 0.0 { shared / (self.resistance(voxel, axis) + self.resistance(next, axis)) } else { 0.0 };
+    }
+
+    fn expose(&mut self, voxel: usize) {
+        let (place, counts, strides) = (self.grid.place(voxel), self.grid.counts(), self.grid.strides());
+        for axis in 0..3 {
+            let own = self.section(voxel, axis);
+            let after = if place[axis] + 1 < counts[axis] { self.section(voxel + strides[axis], axis) } else { 0.0 };
+            let before = if place[axis] > 0 {
+                self.section(voxel - strides[axis], axis)
+            } else {
+                // The lowest voxels lie on the table.
+                if axis == 2 { own } else { 0.0 }
+            };
+            if axis == 2 && place[2] == 0 {
+                self.table[voxel] = own;
+            }
+            self.bare[axis][voxel] = (own - before).max(0.0) + (own - after).max(0.0);
+        }
+    }
+
+    /// Side area of a level as its voxels have it, mm².
+    pub(super) fn voxel_sides(&self, level: usize) -> f64 {
+        let plane = self.grid.strides()[2];
+        let of = |axis: usize| self.bare[axis][plane * level..plane * (level + 1)].iter().sum::<f64>();
+        of(0) + of(1)
+    }
+
+    /// Lets time pass, s, in one step of the implicit scheme (`sweep.rs`).
+    pub fn step(&mut self, seconds: f64) {
+        self.lost += super::sweep::step(self, seconds);
+    }
+
+    /// Temperature of a voxel, °C.
+    pub fn temperature(&self, voxel: usize) -> f64 {
+        self.air.ambient + self.theta[voxel]
+    }
+
+    /// Metal of a voxel, mm³.
+    pub fn metal(&self, voxel: usize) -> f64 {
+        self.metal[voxel]
+    }
+
+    /// Where the voxels lie.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Heat that the metal holds above the temperature of the surroundings, J.
+    pub fn energy(&self) -> f64 {
+        self.theta.iter().zip(&self.capacity).map(|(theta, capacity)| theta * capacity).sum()
+    }
+
+    /// Heat put in so far, J.
+    pub fn supplied(&self) -> f64 {
+        self.supplied
+    }
+
+    /// Heat that surroundings and table have taken so far, J, counted face by face.
+    pub fn lost(&self) -> f64 {
+        self.lost
+    }
+
+    /// Mean temperature of a level's metal, °C; that of the surroundings where it has none.
+    pub fn level_temperature(&self, level: usize) -> f64 {
+        let plane = self.grid.strides()[2];
+        let voxels = plane * level..plane * (level + 1);
+        let (heat, capacity) = voxels.fold((0.0, 0.0), |(heat, capacity), v| {
+            (heat + self.theta[v] * self.capacity[v], capacity + self.capacity[v])
+        });
+        self.air.ambient + if capacity > 0.0 { heat / capacity } else { 0.0 }
+    }
+}

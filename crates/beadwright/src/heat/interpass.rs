@@ -1,0 +1,93 @@
+//! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and at which end to begin.
+
+use super::build::{Build, LayerHeat};
+use super::settings::Interpass;
+use crate::layer::Layer;
+use crate::pass::Pass;
+use glam::DVec3;
+use std::collections::VecDeque;
+
+/// Places on a closed pass at which it may begin instead.
+const STARTS: usize = 16;
+
+/// A start must be cooler than the planned one by this to be taken instead, K.
+const WORTH_MOVING: f64 = 2.0;
+
+impl Build {
+    /// Builds a layer within the limits of `[interpass]`: sets the waits of its passes and, where that saves waiting, their
+    /// order and starts. Without limits the same as [`Self::layer`].
+    pub fn layer_within_limits(&mut self, layer: &mut Layer) -> LayerHeat {
+        let Some(limits) = self.limits() else { return self.layer(layer) };
+        let mut heat = self.begin(layer);
+        let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
+        let mut current = 0;
+        while queues.iter().any(|queue| !queue.is_empty()) {
+            self.catch_up();
+            current = self.next(layer.index, &mut queues, current, &limits);
+            let Some(mut pass) = queues[current].pop_front() else { break };
+            let Some(start) = pass.start() else { continue };
+            let (limit, way) = (limits.max_temperature, self.way(start));
+            let wait = self.wait_for(layer.index, start.truncate(), limit, way);
+            pass.wait += wait.unwrap_or(super::LONGEST_WAIT);
+            heat.passes.extend(self.pass(layer.index, &pass));
+            layer.passes.push(pass);
+        }
+        self.end(layer);
+        LayerHeat { end: self.seconds(), ..heat }
+    }
+
+    /// The queue whose first pass comes next: that of the present island while its metal is cool enough, then the first one
+    /// in the planned order that is, then the one that waits least. Its pass begins where it is coolest if it must wait.
+    fn next(&self, layer: usize, queues: &mut [VecDeque<Pass>], current: usize, limits: &Interpass) -> usize {
+        let hot = |at: DVec3| self.surface(layer, at.truncate()) - limits.max_temperature;
+        let starts = |queue: &VecDeque<Pass>| queue.front().and_then(Pass::start);
+        let open: Vec<(usize, DVec3)> = (0..queues.len()).filter_map(|q| Some((q, starts(&queues[q])?))).collect();
+        let Some(&(first, _)) = open.first() else { return current };
+        let cool = |&&(_, start): &&(usize, DVec3)| hot(start) <= 0.0;
+        let here = open.iter().filter(|(q, _)| *q == current).find(cool);
+        if let Some(&(queue, _)) = here.or_else(|| open.iter().find(cool)) {
+            return queue;
+        }
+        if !limits.reorder {
+            return first;
+        }
+        for &(q, _) in &open {
+            let pass = &mut queues[q][0];
+            begin_cooler(pass, hot);
+        }
+        let coolest = open.iter().min_by(|a, b| {
+            let of = |q: usize| starts(&queues[q]).map_or(f64::INFINITY, hot);
+            of(a.0).total_cmp(&of(b.0))
+        });
+        coolest.map_or(first, |(queue, _)| *queue)
+    }
+}
+
+/// The passes of each island in their order, islands in the order in which they were to begin.
+fn by_island(layer: &mut Layer) -> Vec<VecDeque<Pass>> {
+    let mut queues: Vec<(Option<usize>, VecDeque<Pass>)> = Vec::new();
+    for pass in layer.passes.drain(..) {
+        let at = pass.start().unwrap_or_default().truncate();
+        let island = layer.islands.iter().position(|island| island.contains(at));
+        match queues.iter_mut().find(|(known, _)| *known == island) {
+            Some((_, queue)) => queue.push_back(pass),
+            None => queues.push((island, VecDeque::from([pass]))),
+        }
+    }
+    queues.into_iter().map(|(_, queue)| queue).collect()
+}
+
+/// Turns a pass so that it begins where it is coolest: anywhere on a closed one, at either end of an open one.
+fn begin_cooler(pass: &mut Pass, hot: impl Fn(DVec3) -> f64) {
+    let Some(planned) = pass.start().map(&hot) else { return };
+    if pass.closed {
+        let count = pass.points.len();
+        let places = (0..STARTS.min(count)).map(|s| s * count / STARTS.min(count));
+        let best = places.min_by(|a, b| hot(pass.points[*a]).total_cmp(&hot(pass.points[*b])));
+        if let Some(index) = best.filter(|index| hot(pass.points[*index]) < planned - WORTH_MOVING) {
+            pass.begin_at(index);
+        }
+    } else if pass.end().is_some_and(|end| hot(end) < planned - WORTH_MOVING) {
+        pass.reverse();
+    }
+}

@@ -1,0 +1,32 @@
+//! Heat: how warm the metal is before each pass, and the waits and the order that a limit needs.
+//!
+//! A part is divided into voxels about a bead wide. They are born as the torch lays their metal, in the order of the
+//! program and in its time, and take the power of the arc; heat is conducted within part and plate, and lost to the air,
+//! by radiation, and to the table (`docs/heat.md` has the equations, their limits and how they were checked).
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `settings` | the sections `[material]`, `[substrate]`, `[heat]` and `[interpass]` |
+//! | `grid` | where the voxels lie |
+//! | `body` | their metal: what it holds, conducts and leaves bare |
+//! | `sweep` | one step in time |
+//! | `build` | the torch goes, metal is laid and heated; temperatures of passes and layers |
+//! | `history` | all layers of a plan, one after another |
+//! | `interpass` | waits, and the order of passes that saves waiting |
+//! | `walls` | thickness and width of layers by heat, fitted on measured walls |
+
+mod body;
+mod build;
+mod grid;
+mod history;
+mod interpass;
+mod settings;
+mod sweep;
+mod walls;
+
+pub use body::{Air, Body, Stuff};
+pub use build::{Build, LONGEST_WAIT, LayerHeat, PassHeat};
+pub use grid::Grid;
+pub use history::{History, history};
+pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
+pub use walls::{ByHeat, ForetoldWall, MeasuredWall, Wall, WallFitError, WallLaw};

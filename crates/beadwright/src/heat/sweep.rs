@@ -1,0 +1,209 @@
+//! One step in time: implicit along x, y and z in turn (locally one-dimensional scheme; Yanenko, The Method of Fractional
+//! Steps, 1971). Each sweep solves the lines of one axis exactly, so it is stable for steps of any length, makes no new
+//! hottest or coldest place, and keeps the heat but for what the bare faces lose in it. The order turns with every
+//! step, which cancels most of the error of splitting.
+
+use super::body::{Air, Body, KELVIN, STEFAN_BOLTZMANN};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Strips into which planes are cut for sweeps along z; the same for any number of threads.
+const STRIPS: usize = 4;
+
+/// Bodies with fewer voxels are not worth a second thread.
+const WORTH_SHARING: usize = 8_000;
+
+/// No face radiates as if it were hotter than melting steel, K: what the arc and its pool lose is left out of the arc's
+/// efficiency already.
+const HOTTEST: f64 = 1800.0;
+
+/// Levels below the highest one that take part in every step.
+const NEAR: usize = 8;
+
+/// One step of `seconds`; gives the heat lost, J. What lies deep below the torch changes slowly: it takes its time in longer
+/// steps, of up to `body.patience` seconds.
+pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
+    let (cut, levels) = (body.deep, body.levels);
+    let mut lost = sweep(body, seconds, cut..levels, cut..levels);
+    if cut > 0 {
+        body.owed += seconds;
+    }
+    if body.owed >= body.patience {
+        if cut > 0 {
+            let owed = std::mem::take(&mut body.owed);
+            // The level at the cut conducts downward now; upward it did before.
+            lost += sweep(body, owed, 0..cut, 0..cut + 1);
+        }
+        body.deep = if body.patience > 0.0 { levels.saturating_sub(NEAR) } else { 0 };
+    }
+    body.reverse = !body.reverse;
+    lost
+}
+
+/// The sweeps along x and y within the levels `flat`, and along z within the levels `tall`.
+fn sweep(body: &mut Body, seconds: f64, flat: Range<usize>, tall: Range<usize>) -> f64 {
+    if body.reverse {
+        vertical(body, seconds, tall, flat.end) + level(body, seconds, flat, [1, 0])
+    } else {
+        level(body, seconds, flat.clone(), [0, 1]) + vertical(body, seconds, tall, flat.end)
+    }
+}
+
+/// A row of voxels along x, as one sweep sees it.
+struct Row<'a> {
+    theta: &'a mut [f64],
+    capacity: &'a [f64],
+    /// Conductance to the next voxel along the axis of the sweep.
+    across: &'a [f64],
+    bare: &'a [f64],
+    /// Area on the table, mm²; empty above.
+    table: &'a [f64],
+    /// True over computed bare area.
+    scale: f64,
+}
+
+impl Row<'_> {
+    /// What the bare faces of every voxel lose, W/K.
+    fn leaks(&self, air: &Air, leaks: &mut [f64]) {
+        let cold = air.ambient + KELVIN;
+        for ((leak, bare), theta) in leaks.iter_mut().zip(self.bare).zip(&*self.theta) {
+            let hot = (cold + theta).min(HOTTEST);
+            let film = air.convection + air.emissivity * STEFAN_BOLTZMANN * (hot * hot + cold * cold) * (hot + cold);
+            *leak = bare * self.scale * film;
+        }
+        leaks.iter_mut().zip(self.table).for_each(|(leak, area)| *leak += area * air.contact);
+    }
+
+    /// The heat lost at the new temperatures, J.
+    fn lost(&self, leaks: &[f64], seconds: f64) -> f64 {
+        self.theta.iter().zip(leaks).map(|(theta, leak)| theta * leak).sum::<f64>() * seconds
+    }
+}
+
+/// Heat stored a second and kelvin, W/K; an empty voxel stores something, so that it keeps its own temperature.
+fn stored(capacity: f64, seconds: f64) -> f64 {
+    if capacity > 0.0 { capacity / seconds } else { 1.0 }
+}
+
+/// The sweeps along x and y, in the order of `axes`, level by level.
+fn level(body: &mut Body, seconds: f64, levels: Range<usize>, axes: [usize; 2]) -> f64 {
+    let ([nx, ..], plane) = (body.grid.counts(), body.grid.strides()[2]);
+    let Body { air, theta, capacity, across, bare, sides, .. } = body;
+    let first = levels.start;
+    let sweep = |(k, theta): (usize, &mut [f64])| {
+        let (k, mut lost) = (first + k, 0.0);
+        let mut scratch = Scratch::default();
+        for axis in axes {
+            let rows = theta.chunks_mut(nx).enumerate().map(|(j, theta)| {
+                let from = k * plane + j * nx;
+                let part = from..from + nx;
+                let [capacity, across, bare] =
+                    [&capacity[..], &across[axis], &bare[axis]].map(|all| &all[part.clone()]);
+                Row { theta, capacity, across, bare, table: &[], scale: sides[k] }
+            });
+            lost += match axis {
+                0 => rows.map(|row| along(row, air, seconds, &mut scratch)).sum(),
+                _ => between(&mut rows.collect::<Vec<_>>(), air, seconds),
+            };
+        }
+        lost
+    };
+    let theta = &mut theta[plane * levels.start..plane * levels.end];
+    if theta.len() > WORTH_SHARING {
+        let lost: Vec<f64> = theta.par_chunks_mut(plane).enumerate().map(sweep).collect();
+        lost.iter().sum()
+    } else {
+        theta.chunks_mut(plane).enumerate().map(sweep).sum()
+    }
+}
+
+/// The sweep along z, in strips. What lies bare of levels from `known` on has been counted before.
+fn vertical(body: &mut Body, seconds: f64, levels: Range<usize>, known: usize) -> f64 {
+    let plane = body.grid.strides()[2];
+    let Body { air, theta, capacity, across, bare, table, nothing, .. } = body;
+    let width = plane.div_ceil(STRIPS);
+    let shared = plane * levels.len() > WORTH_SHARING;
+    let mut strips: Vec<Vec<Row<'_>>> = (0..plane.div_ceil(width)).map(|_| Vec::with_capacity(levels.len())).collect();
+    let planes = theta[plane * levels.start..plane * levels.end].chunks_mut(plane);
+    for (k, theta) in levels.zip(planes) {
+        for (s, theta) in theta.chunks_mut(width).enumerate() {
+            let within = s * width..s * width + theta.len();
+            let part = k * plane + within.start..k * plane + within.end;
+            let [across, bare] = match k < known {
+                true => [&across[2][part.clone()], &bare[2][part.clone()]],
+                false => [&nothing[within.clone()], &nothing[within.clone()]],
+            };
+            let table = if k == 0 { &table[within] } else { &[] };
+            strips[s].push(Row { theta, capacity: &capacity[part], across, bare, table, scale: 1.0 });
+        }
+    }
+    if shared {
+        let lost: Vec<f64> = strips.par_iter_mut().map(|rows| between(rows, air, seconds)).collect();
+        lost.iter().sum()
+    } else {
+        strips.iter_mut().map(|rows| between(rows, air, seconds)).sum()
+    }
+}
+
+/// Room for the values of a row.
+#[derive(Default)]
+struct Scratch {
+    leaks: Vec<f64>,
+    ratios: Vec<f64>,
+}
+
+/// Solves the line of one row; gives the heat lost, J.
+fn along(row: Row<'_>, air: &Air, seconds: f64, scratch: &mut Scratch) -> f64 {
+    let Scratch { leaks, ratios } = scratch;
+    leaks.resize(row.theta.len(), 0.0);
+    ratios.resize(row.theta.len(), 0.0);
+    row.leaks(air, leaks);
+    let (mut before, mut ratio, mut solved) = (0.0, 0.0, 0.0);
+    let voxels = row.theta.iter_mut().zip(row.capacity).zip(row.across).zip(&*leaks).zip(&mut *ratios);
+    for ((((theta, capacity), after), leak), kept) in voxels {
+        let stored = stored(*capacity, seconds);
+        let share = 1.0 / (stored + leak + after + before * (1.0 - ratio));
+        solved = (stored * *theta + before * solved) * share;
+        ratio = after * share;
+        (*theta, *kept, before) = (solved, ratio, *after);
+    }
+    let mut next = 0.0;
+    for (theta, ratio) in row.theta.iter_mut().zip(&*ratios).rev() {
+        *theta += ratio * next;
+        next = *theta;
+    }
+    row.lost(leaks, seconds)
+}
+
+/// Solves the lines that cross rows lying one behind the other; gives the heat lost, J.
+fn between(rows: &mut [Row<'_>], air: &Air, seconds: f64) -> f64 {
+    let width = rows.first().map_or(0, |row| row.theta.len());
+    let mut leaks = vec![0.0; rows.len() * width];
+    let mut ratios = vec![0.0; rows.len() * width];
+    // Of the row before the first.
+    let none = vec![0.0; width];
+    for n in 0..rows.len() {
+        let (done, rest) = rows.split_at_mut(n);
+        let (before, solved) = done.last().map_or((&none[..], &none[..]), |row| (row.across, &*row.theta));
+        let (kept, ratios) = ratios.split_at_mut(n * width);
+        let ratio_before = if n > 0 { &kept[(n - 1) * width..] } else { &none[..] };
+        let (row, leaks) = (&mut rest[0], &mut leaks[n * width..(n + 1) * width]);
+        row.leaks(air, leaks);
+        let (theta, ratios) = (&mut row.theta[..width], &mut ratios[..width]);
+        let (capacity, across) = (&row.capacity[..width], &row.across[..width]);
+        let (before, solved, ratio_before) = (&before[..width], &solved[..width], &ratio_before[..width]);
+        for v in 0..width {
+            let stored = stored(capacity[v], seconds);
+            let share = 1.0 / (stored + leaks[v] + across[v] + before[v] * (1.0 - ratio_before[v]));
+            theta[v] = (stored * theta[v] + before[v] * solved[v]) * share;
+            ratios[v] = across[v] * share;
+        }
+    }
+    for n in (0..rows.len().saturating_sub(1)).rev() {
+        let (near, far) = rows.split_at_mut(n + 1);
+        let (row, next) = (&mut near[n], &far[0]);
+        let ratios = &ratios[n * width..];
+        row.theta.iter_mut().zip(ratios).zip(&*next.theta).for_each(|((theta, ratio), next)| *theta += ratio * next);
+    }
+    rows.iter().zip(leaks.chunks(width.max(1))).map(|(row, leaks)| row.lost(leaks, seconds)).sum()
+}
