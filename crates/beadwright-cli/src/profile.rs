@@ -9,8 +9,12 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
-    /// List the built-in profiles.
-    List,
+    /// List the built-in profiles, and your own in the folder BEADWRIGHT_PROFILES (default ~/.config/beadwright/profiles).
+    List {
+        /// Print machine-readable JSON.
+        #[arg(long)]
+        json: bool,
+    },
     /// Print a built-in profile, to save and edit.
     Show {
         /// Name of the profile.
@@ -28,10 +32,23 @@ pub(crate) enum Command {
 pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match command {
-        Command::List => {
-            for (name, text) in BUILT_IN {
-                writeln!(out, "{name:<18} {}", Profile::parse(text)?.description)?;
+        Command::List { json: false } => {
+            for (name, place, profile) in known() {
+                let own = if place == "built in" { String::new() } else { format!(" ({place})") };
+                let told = profile.map_or_else(|error| format!("error: {error:#}"), |profile| profile.description);
+                writeln!(out, "{name:<18} {told}{own}")?;
             }
+        }
+        Command::List { json: true } => {
+            let entry = |(name, place, profile): (String, String, anyhow::Result<Profile>)| match profile {
+                Ok(Profile { description, posts, wire, bead, layers, .. }) => serde_json::json!({
+                    "name": name, "place": place, "description": description, "posts": posts, "material": wire.material,
+                    "bead_width_mm": bead.width, "layer_height_mm": layers.height,
+                }),
+                Err(error) => serde_json::json!({ "name": name, "place": place, "error": format!("{error:#}") }),
+            };
+            let list: Vec<serde_json::Value> = known().into_iter().map(entry).collect();
+            writeln!(out, "{:#}", serde_json::Value::from(list))?;
         }
         Command::Show { name } => write!(out, "{}", Profile::built_in_text(name)?)?,
         Command::Check { profile } => {
@@ -69,15 +86,64 @@ pub(crate) const USUAL: &str = "cmt-al2319-kuka";
 
 /// The profile with a built-in name or from a file, with `key=value` settings applied to it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
-    let path = Path::new(profile);
-    let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
-    let text = if is_file { crate::file::text(path)? } else { Profile::built_in_text(profile)?.to_owned() };
-    let parsed = Profile::parse(&text).with_context(|| profile.to_owned())?;
-    if settings.is_empty() { Ok(parsed) } else { with_settings(text, settings) }
+    let text = match file_of(profile) {
+        Some(path) => crate::file::text(&path)?,
+        None => Profile::built_in_text(profile)?.to_owned(),
+    };
+    let parsed = parse(&text, &folder(profile)).with_context(|| profile.to_owned())?;
+    if settings.is_empty() { Ok(parsed) } else { with_settings(text, &folder(profile), settings) }
 }
 
-/// The profile of a text with `key=value` settings applied to it.
-pub(crate) fn with_settings(text: String, settings: &[String]) -> anyhow::Result<Profile> {
+/// The file that a word means: a path, or the name of one of the user's own profiles.
+fn file_of(profile: &str) -> Option<PathBuf> {
+    let path = Path::new(profile);
+    let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
+    let own = || own_folder().map(|folder| folder.join(format!("{profile}.toml"))).filter(|own| own.is_file());
+    if is_file { Some(path.to_owned()) } else { own() }
+}
+
+/// Where a user keeps profiles to be called by their names: `BEADWRIGHT_PROFILES`, or beadwright/profiles in the folder for
+/// settings.
+fn own_folder() -> Option<PathBuf> {
+    let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let settings = || {
+        let home = || variable("HOME").map(|home| home.join(".config"));
+        variable("XDG_CONFIG_HOME").or_else(|| variable("APPDATA")).or_else(home)
+    };
+    variable("BEADWRIGHT_PROFILES").or_else(|| settings().map(|folder| folder.join("beadwright").join("profiles")))
+}
+
+/// Reads a profile whose `inherits` may name a built-in profile, one of the user's own, or a file from `folder` on.
+fn parse(text: &str, folder: &Path) -> Result<Profile, ProfileError> {
+    let mut folder = folder.to_owned();
+    Profile::parse_with(text, &mut |name| {
+        let Some(named) = file_of(name) else { return Ok(Profile::built_in_text(name)?.to_owned()) };
+        let path = if named.is_absolute() { named } else { folder.join(named) };
+        folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+        crate::file::text(&path).map_err(|error| ProfileError::File { path, reason: format!("{error:#}") })
+    })
+}
+
+/// Built-in profiles and the user's own: name, place, description.
+fn known() -> Vec<(String, String, anyhow::Result<Profile>)> {
+    let built_in: Vec<_> = BUILT_IN
+        .iter()
+        .map(|(name, text)| ((*name).to_owned(), "built in".to_owned(), Profile::parse(text).map_err(Into::into)))
+        .collect();
+    let files = own_folder().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+    let mut own: Vec<PathBuf> =
+        files.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    own.sort();
+    let own = own.into_iter().map(|path| {
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let place = path.display().to_string();
+        (name, place.clone(), load(&place, &[]))
+    });
+    built_in.into_iter().chain(own).collect()
+}
+
+/// The profile of a text with `key=value` settings applied to it; `inherits` looks for files in `folder`.
+pub(crate) fn with_settings(text: String, folder: &Path, settings: &[String]) -> anyhow::Result<Profile> {
     let mut edited = text;
     for setting in settings {
         let lay = || -> anyhow::Result<String> {
@@ -88,7 +154,7 @@ pub(crate) fn with_settings(text: String, settings: &[String]) -> anyhow::Result
         edited = lay().with_context(|| format!("--set {setting}"))?;
     }
     // The text with the settings is not the user's own: a line number would mislead.
-    Profile::parse(&edited).map_err(|error| match error {
+    parse(&edited, folder).map_err(|error| match error {
         ProfileError::Text { reason, .. } => anyhow::anyhow!("--set {}: {reason}", settings.join(" --set ")),
         ProfileError::Value { key, value, reason, .. } => anyhow::anyhow!("{key} = {value} is impossible: {reason}"),
         other => other.into(),
@@ -98,7 +164,7 @@ pub(crate) fn with_settings(text: String, settings: &[String]) -> anyhow::Result
 /// The folder in which a profile lies, where its `posts` look for dialects of one's own; the current one for a built-in
 /// name.
 pub(crate) fn folder(profile: &str) -> PathBuf {
-    Path::new(profile).parent().map_or_else(PathBuf::new, Path::to_owned)
+    file_of(profile).as_deref().and_then(Path::parent).map_or_else(PathBuf::new, Path::to_owned)
 }
 
 /// Programs in these dialects, where folders begin at `base`; if the profile lacks a section, the error says which one to

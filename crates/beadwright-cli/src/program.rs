@@ -134,7 +134,7 @@ impl Source {
         if wanted.set.is_empty() {
             Ok(profile.clone())
         } else {
-            profile::with_settings(profile.toml_text()?, &wanted.set)
+            profile::with_settings(profile.toml_text()?, Path::new(""), &wanted.set)
         }
     }
 

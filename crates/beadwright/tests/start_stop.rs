@@ -100,11 +100,20 @@ fn job() -> Vec<Layer> {
 const LENGTH: f64 = 2.0 * (126.0 + 40.0);
 
 fn written(name: &str, profile: &Profile) -> Files {
-    dialect::write(name, &job(), &profile.job("demo")).unwrap()
+    written_of(name, profile, &job())
+}
+
+fn written_of(name: &str, profile: &Profile, layers: &[Layer]) -> Files {
+    dialect::write(name, layers, &profile.job("demo")).unwrap()
 }
 
 /// Every dialect with its files and what an independent reader finds in them; `part` is its name in the files.
 fn all(profile: &Profile, part: &str) -> Vec<(&'static str, Files, Motion)> {
+    all_of(profile, part, &job())
+}
+
+fn all_of(profile: &Profile, part: &str, layers: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
+    let written = |name: &str, profile: &Profile| written_of(name, profile, layers);
     let upper = part.to_uppercase();
     let mut plain = profile.clone();
     plain.dialects.rapid.as_mut().unwrap().arc = RapidArc::Plain;
@@ -367,6 +376,29 @@ fn a_layer_waits_for_what_it_lacks() {
     near(longer, whole + rest, 1e-6);
     assert_eq!(wait(5.0, 60.0).0, rest);
     assert_eq!(wait(rest + 5.0, 60.0).0, rest + 5.0);
+}
+
+#[test]
+fn passes_wait_for_cool_metal_in_every_dialect() {
+    let (profile, mut layers) = (plain(), job());
+    let before = all_of(&profile, "demo", &layers);
+    (layers[0].passes[1].wait, layers[1].passes[0].wait, layers[1].passes[1].wait) = (33.25, 12.0, 700.0);
+    let metrics = layers.iter().fold(Metrics::new(&profile), |mut metrics, layer| {
+        metrics.add(layer);
+        metrics
+    });
+    near(metrics.dwell_time_s, 745.25, 1e-9);
+    for ((name, _, without), (_, files, with)) in before.iter().zip(all_of(&profile, "demo", &layers)) {
+        near(with.waits - without.waits, 745.25, 0.01);
+        near(with.weld_length(), without.weld_length(), 1e-9);
+        let main = files.keys().find(|file| file.to_lowercase().starts_with("demo.")).unwrap();
+        println!("{name}: {main}");
+        // Our own reader counts the waits too.
+        if !name.starts_with("rapid") && *name != "krl" {
+            let waited = |files: &Files| back(files, main).dwell;
+            assert!(waited(&files) > 745.0, "{name}: {}", waited(&files));
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
 
 use super::grid::Grid;
+use super::sweep::{self, Deep};
 
 /// Stefan-Boltzmann constant, W/(mm²·K⁴).
 pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374e-14;
@@ -70,10 +71,8 @@ pub struct Body {
     supplied: f64,
     lost: f64,
     pub(super) reverse: bool,
-    /// Levels below this one take longer steps, of up to `patience` seconds; `owed` is what they are behind.
-    pub(super) deep: usize,
-    pub(super) patience: f64,
-    pub(super) owed: f64,
+    /// What lies deep, and deeper.
+    pub(super) deep: [Deep; 2],
     /// A level of zeros.
     pub(super) nothing: Vec<f64>,
 }
@@ -99,9 +98,7 @@ impl Body {
             supplied: 0.0,
             lost: 0.0,
             reverse: false,
-            deep: 0,
-            patience: 0.0,
-            owed: 0.0,
+            deep: [Deep::default(); 2],
             nothing: vec![0.0; grid.strides()[2]],
             grid,
         }
@@ -212,7 +209,7 @@ impl Body {
 
     /// Lets time pass, s, in one step of the implicit scheme (`sweep.rs`).
     pub fn step(&mut self, seconds: f64) {
-        self.lost += super::sweep::step(self, seconds);
+        self.lost += sweep::step(self, seconds);
     }
 
     /// Temperature of a voxel, °C.

@@ -20,14 +20,14 @@ const LEVEL: f64 = 0.5;
 const GROWTH: f64 = 1.4;
 
 /// … from this one on, over the time in which heat crosses a voxel …
-const FIRST_STEP: f64 = 0.5;
+const FIRST_STEP: f64 = 1.0;
 
 /// … to this one, or to this part of the wait so far: longer ones let too little heat turn the corner from wall to plate.
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
-/// Steps of what lies deep below the torch, over the same time.
-const PATIENCE: f64 = 5.0;
+/// Longest steps of what lies deep below the torch, and deeper, over the same time.
+const PATIENCE: [f64; 2] = [4.0, 20.0];
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
@@ -141,8 +141,14 @@ impl Build {
             now: 0.0,
             pending: 0.0,
         };
-        build.body.patience = PATIENCE * build.crossing();
+        build.be_patient(PATIENCE);
         build
+    }
+
+    /// Sets the longest steps of what lies deep, over the time in which heat crosses a voxel.
+    fn be_patient(&mut self, steps: [f64; 2]) {
+        let crossing = self.crossing();
+        self.body.deep.iter_mut().zip(steps).for_each(|(deep, steps)| deep.patience = steps * crossing);
     }
 
     /// The limits between passes.
@@ -408,4 +414,34 @@ struct Chunk {
     joules: f64,
     seconds: f64,
     length: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::profile::Profile;
+    use crate::{Task, example};
+
+    #[test]
+    fn longer_steps_below_change_next_to_nothing() {
+        let profile = Profile::built_in("cmt-steel-robots").unwrap();
+        let plan = crate::plan("vase", &example::find("vase").unwrap().mesh(), &profile, &Task::new()).unwrap();
+        let points = plan.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+        let bounds = Bounds::of(points).unwrap();
+        let tops: Vec<(f64, f64)> = plan.layers.iter().map(|l| (l.z, l.height)).collect();
+        let run = |patience: [f64; 2]| {
+            let settings = profile.heat_settings().unwrap();
+            let mut build = Build::new(&settings, &profile.weld_settings(), &bounds, &tops);
+            build.be_patient(patience);
+            let starts = plan.layers.iter().take(60).flat_map(|layer| build.layer(layer).passes).map(|pass| pass.start);
+            starts.collect::<Vec<f64>>()
+        };
+        let (eager, patient) = (run([0.0; 2]), run(PATIENCE));
+        assert!(eager.len() > 50);
+        let worst = eager.iter().zip(&patient).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+        println!("longer steps below change starts by {:.2} % at most", 100.0 * worst);
+        assert!(worst < 0.01, "{worst}");
+    }
 }

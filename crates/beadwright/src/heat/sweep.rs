@@ -17,31 +17,52 @@ const WORTH_SHARING: usize = 8_000;
 /// efficiency already.
 const HOTTEST: f64 = 1800.0;
 
-/// Levels below the highest one that take part in every step.
-const NEAR: usize = 8;
+/// Levels from the highest one down to the two depths, below which steps are longer and longer still.
+const DEPTHS: [usize; 2] = [5, 15];
 
-/// One step of `seconds`; gives the heat lost, J. What lies deep below the torch changes slowly: it takes its time in longer
-/// steps, of up to `body.patience` seconds.
+/// Lines along x that are solved side by side.
+const LANES: usize = 8;
+
+/// What lies deep below the torch: it changes slowly, so it takes its time in longer steps.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Deep {
+    /// It holds the levels below this one.
+    level: usize,
+    /// Its longest step, s; 0 where it takes the same steps as the rest.
+    pub(super) patience: f64,
+    /// Time that has passed since its last step, s.
+    owed: f64,
+}
+
+/// One step of `seconds`; gives the heat lost, J.
 pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
-    let (cut, levels) = (body.deep, body.levels);
-    let mut lost = sweep(body, seconds, cut..levels, cut..levels);
-    if cut > 0 {
-        body.owed += seconds;
+    let [upper, lower] = body.deep.map(|deep| deep.level);
+    let mut lost = sweep(body, seconds, upper..body.levels, body.levels);
+    body.deep.iter_mut().for_each(|deep| deep.owed += seconds);
+    let late = body.deep.map(|deep| deep.owed >= deep.patience);
+    if late[0] || late[1] {
+        lost += settle(body, 0, lower..upper);
     }
-    if body.owed >= body.patience {
-        if cut > 0 {
-            let owed = std::mem::take(&mut body.owed);
-            // The level at the cut conducts downward now; upward it did before.
-            lost += sweep(body, owed, 0..cut, 0..cut + 1);
-        }
-        body.deep = if body.patience > 0.0 { levels.saturating_sub(NEAR) } else { 0 };
+    if late[1] {
+        lost += settle(body, 1, 0..lower);
     }
     body.reverse = !body.reverse;
     lost
 }
 
-/// The sweeps along x and y within the levels `flat`, and along z within the levels `tall`.
-fn sweep(body: &mut Body, seconds: f64, flat: Range<usize>, tall: Range<usize>) -> f64 {
+/// Lets a deep part take the time that it is behind. Only now may its upper end move.
+fn settle(body: &mut Body, part: usize, levels: Range<usize>) -> f64 {
+    let owed = std::mem::take(&mut body.deep[part].owed);
+    let lost = if levels.is_empty() { 0.0 } else { sweep(body, owed, levels.clone(), levels.end + 1) };
+    // Nobody is behind when the lower part is done.
+    let until = body.levels.saturating_sub(DEPTHS[part]);
+    body.deep[part].level = if body.deep[part].patience > 0.0 { until.max(levels.end) } else { 0 };
+    lost
+}
+
+/// The sweeps along x and y within some levels, and along z from the lowest of them to the one before `end`.
+fn sweep(body: &mut Body, seconds: f64, flat: Range<usize>, end: usize) -> f64 {
+    let tall = flat.start..end;
     if body.reverse {
         vertical(body, seconds, tall, flat.end) + level(body, seconds, flat, [1, 0])
     } else {
@@ -101,9 +122,10 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>, axes: [usize; 2]) 
                     [&capacity[..], &across[axis], &bare[axis]].map(|all| &all[part.clone()]);
                 Row { theta, capacity, across, bare, table: &[], scale: sides[k] }
             });
+            let mut rows: Vec<Row<'_>> = rows.collect();
             lost += match axis {
-                0 => rows.map(|row| along(row, air, seconds, &mut scratch)).sum(),
-                _ => between(&mut rows.collect::<Vec<_>>(), air, seconds),
+                0 => rows.chunks_mut(LANES).map(|rows| along(rows, air, seconds, &mut scratch)).sum(),
+                _ => between(&mut rows, air, seconds),
             };
         }
         lost
@@ -149,30 +171,44 @@ fn vertical(body: &mut Body, seconds: f64, levels: Range<usize>, known: usize) -
 #[derive(Default)]
 struct Scratch {
     leaks: Vec<f64>,
-    ratios: Vec<f64>,
+    ratios: Vec<[f64; LANES]>,
 }
 
-/// Solves the line of one row; gives the heat lost, J.
-fn along(row: Row<'_>, air: &Air, seconds: f64, scratch: &mut Scratch) -> f64 {
+/// Solves the lines of a few rows side by side, since each waits for itself; gives the heat lost, J.
+fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -> f64 {
+    let (count, length) = (rows.len().min(LANES), rows.first().map_or(0, |row| row.theta.len()));
     let Scratch { leaks, ratios } = scratch;
-    leaks.resize(row.theta.len(), 0.0);
-    ratios.resize(row.theta.len(), 0.0);
-    row.leaks(air, leaks);
-    let (mut before, mut ratio, mut solved) = (0.0, 0.0, 0.0);
-    let voxels = row.theta.iter_mut().zip(row.capacity).zip(row.across).zip(&*leaks).zip(&mut *ratios);
-    for ((((theta, capacity), after), leak), kept) in voxels {
-        let stored = stored(*capacity, seconds);
-        let share = 1.0 / (stored + leak + after + before * (1.0 - ratio));
-        solved = (stored * *theta + before * solved) * share;
-        ratio = after * share;
-        (*theta, *kept, before) = (solved, ratio, *after);
+    leaks.resize(LANES * length, 0.0);
+    ratios.resize(length, [0.0; LANES]);
+    for (row, leaks) in rows.iter().zip(leaks.chunks_mut(length)) {
+        row.leaks(air, leaks);
     }
-    let mut next = 0.0;
-    for (theta, ratio) in row.theta.iter_mut().zip(&*ratios).rev() {
-        *theta += ratio * next;
-        next = *theta;
+    let [mut before, mut ratio, mut solved] = [[0.0; LANES]; 3];
+    for v in 0..length {
+        // Lanes without a row hold empty voxels.
+        let [mut capacity, mut after, mut leak, mut theta] = [[0.0; LANES]; 4];
+        for (lane, row) in rows.iter().enumerate().take(LANES) {
+            (capacity[lane], after[lane]) = (row.capacity[v], row.across[v]);
+            (leak[lane], theta[lane]) = (leaks[lane * length + v], row.theta[v]);
+        }
+        for lane in 0..LANES {
+            let stored = stored(capacity[lane], seconds);
+            let share = 1.0 / (stored + leak[lane] + after[lane] + before[lane] * (1.0 - ratio[lane]));
+            solved[lane] = (stored * theta[lane] + before[lane] * solved[lane]) * share;
+            ratio[lane] = after[lane] * share;
+        }
+        before = after;
+        ratios[v] = ratio;
+        rows.iter_mut().zip(solved).for_each(|(row, solved)| row.theta[v] = solved);
     }
-    row.lost(leaks, seconds)
+    let mut next = [0.0; LANES];
+    for v in (0..length).rev() {
+        for (lane, row) in rows.iter_mut().enumerate().take(count) {
+            row.theta[v] += ratios[v][lane] * next[lane];
+            next[lane] = row.theta[v];
+        }
+    }
+    rows.iter().zip(leaks.chunks(length)).map(|(row, leaks)| row.lost(leaks, seconds)).sum()
 }
 
 /// Solves the lines that cross rows lying one behind the other; gives the heat lost, J.

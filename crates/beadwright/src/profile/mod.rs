@@ -83,6 +83,10 @@ pub struct Profile {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
+    /// The profile whose values hold where this one gives none: a built-in name, or the path of a file from this one's folder
+    /// on; optional.
+    #[serde(default, skip_serializing)]
+    pub inherits: Option<String>,
     /// Names of the dialects in which programs are written if none is requested, such as `krl`; a path such as
     /// `./gantry` is that of a folder with a dialect of one's own, from the profile's folder on.
     pub posts: Vec<String>,
@@ -152,7 +156,18 @@ impl Profile {
     /// # Errors
     /// [`ProfileError`] with the line, the key and what would be right.
     pub fn parse(text: &str) -> Result<Self, ProfileError> {
-        read::parse(text)
+        read::parse(text, &mut read::built_in_base)
+    }
+
+    /// The same, where `inherits` may name more than built-in profiles: `base` gives the text for what it names.
+    ///
+    /// # Errors
+    /// [`ProfileError`], also that of `base`.
+    pub fn parse_with(
+        text: &str,
+        base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
+    ) -> Result<Self, ProfileError> {
+        read::parse(text, base)
     }
 
     /// Reads and checks a profile as [`serde_json`] writes it: a part of `plan.json`.

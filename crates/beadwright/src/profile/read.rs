@@ -6,7 +6,7 @@ use crate::limit::Broken;
 use serde::Deserialize as _;
 use std::path::PathBuf;
 use toml::Spanned;
-use toml::de::{DeTable, Deserializer};
+use toml::de::{DeTable, DeValue, Deserializer};
 
 /// Why a profile was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -55,8 +55,25 @@ pub enum ProfileError {
     },
 }
 
-pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
-    let profile = deserialize(text).map_err(|e| {
+/// The most profiles that may inherit from each other in a row.
+const MOST_ANCESTORS: usize = 8;
+
+/// Reads a profile; `base` gives the texts of those that it inherits from, by what stands behind `inherits`.
+pub(super) fn parse(
+    text: &str,
+    base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
+) -> Result<Profile, ProfileError> {
+    let mut ancestors: Vec<String> = Vec::new();
+    while let Some(name) = inherits(ancestors.last().map_or(text, |ancestor| ancestor)) {
+        if ancestors.len() == MOST_ANCESTORS {
+            return Err(ProfileError::Text {
+                line: line_of_key(text, "inherits"),
+                reason: format!("more than {MOST_ANCESTORS} profiles inherit from each other, perhaps in a circle."),
+            });
+        }
+        ancestors.push(base(&name)?);
+    }
+    let profile = deserialize(text, &ancestors).map_err(|e| {
         let line = e.span().map_or(1, |span| line_of(text, span.start));
         ProfileError::Text { line, reason: explain(e.message()) }
     })?;
@@ -70,7 +87,7 @@ pub(super) fn parse(text: &str) -> Result<Profile, ProfileError> {
 
 /// Reads a profile from the JSON that it was written as.
 pub(super) fn from_json(value: &serde_json::Value) -> Result<Profile, ProfileError> {
-    parse(&toml_text(value)?)
+    parse(&toml_text(value)?, &mut built_in_base)
 }
 
 /// The TOML text of a value of JSON; keys without a value are left out.
@@ -90,9 +107,38 @@ fn without_nulls(value: &serde_json::Value) -> serde_json::Value {
     }
 }
 
+/// What stands behind `inherits`.
+fn inherits(text: &str) -> Option<String> {
+    let table = DeTable::parse(text).ok()?;
+    Some(table.get_ref().get("inherits")?.get_ref().as_str()?.to_owned())
+}
+
+/// The text of a built-in profile to inherit from.
+pub(super) fn built_in_base(name: &str) -> Result<String, ProfileError> {
+    Profile::built_in_text(name).map(str::to_owned)
+}
+
+/// Adds the keys of `base` that a table lacks; sections are filled key by key.
+fn fill_in<'a>(table: &mut DeTable<'a>, base: DeTable<'a>) {
+    for (key, value) in base {
+        match table.get_mut(&key).map(Spanned::get_mut) {
+            None => drop(table.insert(key, value)),
+            Some(DeValue::Table(own)) => {
+                if let DeValue::Table(inner) = value.into_inner() {
+                    fill_in(own, inner);
+                }
+            }
+            Some(_) => {}
+        }
+    }
+}
+
 /// The sections of dialects are taken out and read separately, so that a profile need not know each of them.
-fn deserialize(text: &str) -> Result<Profile, toml::de::Error> {
+fn deserialize(text: &str, ancestors: &[String]) -> Result<Profile, toml::de::Error> {
     let mut general = DeTable::parse(text)?;
+    for ancestor in ancestors {
+        fill_in(general.get_mut(), DeTable::parse(ancestor)?.into_inner());
+    }
     let mut sections = Spanned::new(general.span(), DeTable::new());
     for name in dialect::names() {
         if let Some((key, section)) = general.get_mut().remove_entry(name) {
