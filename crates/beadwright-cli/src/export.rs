@@ -1,19 +1,20 @@
 //! `beadwright export`.
 
-use crate::{profile, program, progress};
+use crate::{profile, program};
 use anyhow::Context;
-use beadwright::export::{self, FORMATS};
+use beadwright::export::{self, Beads, FORMATS};
 use beadwright::files::write_file;
 use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json.
+    /// plan.json, or toolpaths in 3MF.
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// File to write; its ending tells the format: .csv (a table of all pieces of beads) or .vtp (ParaView, VTK, pyvista).
+    /// File to write; its ending tells the format: .csv (a table of all pieces of beads), .vtp (ParaView, VTK,
+    /// pyvista) or .3mf (the 3MF Toolpath extension).
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
 }
@@ -25,17 +26,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         format!("{}: the ending tells the format, and it may be {}", arguments.output.display(), known.join(" or "))
     })?;
     let source = program::Source::open(&arguments.plan)?;
-    anyhow::ensure!(
-        source.plan().is_some(),
-        "{}: plans are exported; give the plan.json of the program",
-        arguments.plan.display()
-    );
+    let plan = source.plan().with_context(|| {
+        format!("{}: plans are exported; give the plan.json of the program", arguments.plan.display())
+    })?;
     let profile = source.profile(&arguments.wanted)?;
-    let (task, bar) = progress::task()?;
-    let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
-    let pieces = export::pieces(&loaded.layers, &profile);
-    bar.finish_and_clear();
-    write_file(&arguments.output, &(format.write)(&pieces))?;
-    writeln!(std::io::stdout(), "{} pieces of beads in {}", pieces.len(), arguments.output.display())?;
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+    let bytes = (format.write)(&beads).with_context(|| format!("{}", arguments.plan.display()))?;
+    write_file(&arguments.output, &bytes)?;
+    let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
+    writeln!(std::io::stdout(), "{passes} passes in {} layers in {}", plan.layers.len(), arguments.output.display())?;
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::{convert, file, model, profile, program, progress};
 use anyhow::Context;
 use beadwright::dialect::reading;
+use beadwright::export::toolpath;
 use beadwright::model::iges::{IgesCurve, IgesFile};
 use beadwright::model::{decoded, import_damaged, is_solid};
 use glam::DVec3;
@@ -11,7 +12,7 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A model (STL, 3MF, OBJ, PLY, AMF, IGES, or STEP with a converter), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// A model (STL, 3MF, OBJ, PLY, AMF, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
@@ -28,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(file) = model::read_iges(&arguments.file, bytes)? {
         return Ok(curves(&file, arguments)?);
     }
-    if !is_solid(bytes) && is_program(bytes) {
+    if toolpath::is_toolpath(bytes) || !is_solid(bytes) && is_program(bytes) {
         return read_program(arguments);
     }
     let (task, bar) = progress::task()?;

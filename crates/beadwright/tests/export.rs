@@ -5,7 +5,7 @@ mod common;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use beadwright::export;
+use beadwright::export::{self, Beads};
 use common::{planned, profile_by};
 
 /// The values of a column by its name.
@@ -43,9 +43,10 @@ fn exported_beads_are_those_of_the_plan() {
         let profile = profile_by(name, strategy);
         let plan = planned(part, &profile);
         let metrics = &plan.summary.metrics;
-        let pieces = export::pieces(&plan.layers, &profile);
-        let csv = String::from_utf8((export::format("csv").unwrap().write)(&pieces)).unwrap();
-        let vtp = String::from_utf8((export::format("VTP").unwrap().write)(&pieces)).unwrap();
+        let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+        let pieces = beads.pieces();
+        let csv = String::from_utf8((export::format("csv").unwrap().write)(&beads).unwrap()).unwrap();
+        let vtp = String::from_utf8((export::format("VTP").unwrap().write)(&beads).unwrap()).unwrap();
         assert_eq!(csv.lines().count(), pieces.len() + 1);
         // Length, from both files.
         let points = numbers(&array(&vtp, "Points"));

@@ -1,6 +1,6 @@
 //! Beads as a table: one line a piece, units in the head.
 
-use super::{Format, Piece};
+use super::{Beads, ExportError, Format};
 use crate::number::push_fixed;
 
 pub(super) const FORMAT: Format =
@@ -9,10 +9,11 @@ pub(super) const FORMAT: Format =
 const HEAD: &str = "layer,pass,kind,x0 (mm),y0 (mm),z0 (mm),x1 (mm),y1 (mm),z1 (mm),width (mm),height (mm),speed (mm/s),\
                     pace (mm/s),wire feed (ratio),start (s),time (s)\n";
 
-fn write(pieces: &[Piece]) -> Vec<u8> {
+fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
+    let pieces = beads.pieces();
     let mut text = String::with_capacity(HEAD.len() + 120 * pieces.len());
     text.push_str(HEAD);
-    for p in pieces {
+    for p in &pieces {
         text.push_str(&format!("{},{},{}", p.layer, p.pass, p.kind.name()));
         let [from, to] = [p.from, p.to];
         let places = [from.x, from.y, from.z, to.x, to.y, to.z];
@@ -23,5 +24,5 @@ fn write(pieces: &[Piece]) -> Vec<u8> {
         }
         text.push('\n');
     }
-    text.into_bytes()
+    Ok(text.into_bytes())
 }

@@ -5,6 +5,7 @@
 //! | `formats` | the formats of solids, and how loose triangles become a mesh |
 //! | [`stl`] | binary and ASCII STL, told apart by content |
 //! | `threemf`, `amf`, `obj`, `ply` | one other format each |
+//! | `package` | a 3MF file as an archive of files |
 //! | `xml` | elements of XML files, one after another |
 //! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
@@ -20,6 +21,7 @@ mod formats;
 pub mod iges;
 pub(crate) mod merge_vertices;
 mod obj;
+pub(crate) mod package;
 mod part;
 mod ply;
 pub mod repair;
@@ -27,7 +29,7 @@ pub mod stl;
 mod threemf;
 pub mod units;
 pub mod wall_curves;
-mod xml;
+pub(crate) mod xml;
 
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;

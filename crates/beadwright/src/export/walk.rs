@@ -1,0 +1,89 @@
+//! The torch's walk over a plan: what each pass becomes when it is welded, with times and waits.
+
+use super::Piece;
+use crate::layer::Layer;
+use crate::pass::Pass;
+use crate::profile::Profile;
+use crate::weld::{Torch, path};
+
+/// A pass as it is welded.
+pub(super) struct Run<'a> {
+    pub(super) layer: &'a Layer,
+    pub(super) pass: &'a Pass,
+    /// Its straight pieces, with overlap, hot start and lead-out.
+    pub(super) pieces: Vec<Piece>,
+    /// Wait before the arc is struck: between layers, s.
+    pub(super) pause: f64,
+    /// Time for gas and arc start before the torch moves, s.
+    pub(super) before: f64,
+    /// Time for the crater, arc end and gas after the torch has stopped, s.
+    pub(super) after: f64,
+    /// Time of the travel to its start, s.
+    pub(super) travel: f64,
+}
+
+/// The passes of layers in the order in which they are welded.
+pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
+    let (mut torch, mut found, mut now) = (Torch::of(&profile.weld_settings()), Vec::new(), 0.0);
+    for layer in layers.iter().filter(|layer| !layer.passes.is_empty()) {
+        let mut pause = torch.begin_layer(layer.index);
+        // The way up belongs to the pass that ends, but is travelled before the next one.
+        let mut travel = pause.map_or(0.0, |pause| pause.moving);
+        for (number, pass) in (1..).zip(&layer.passes) {
+            let Some(start) = pass.start() else { continue };
+            travel += torch.approach(start).moving;
+            let waited = pause.take().map_or(0.0, |pause| pause.seconds);
+            let moves = path(pass, torch.ends());
+            let welded = torch.weld(&moves);
+            now += waited + travel + welded.before;
+            let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / torch.speed_at(w[1].1)).sum();
+            // Speeding up and slowing down is spread over the pass.
+            let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };
+            let (mut begin, mut way) = (now, 0.0);
+            let widths = widths(pass);
+            let mut pieces = Vec::with_capacity(moves.len());
+            for pair in moves.windows(2) {
+                let (from, (to, pace)) = (pair[0].0, pair[1]);
+                let (speed, feed) = (torch.speed_at(pace), torch.feed_at(pace));
+                let seconds = from.distance(to) / speed * slower;
+                let width = widths.iter().find(|(end, _)| way < end - 1e-9).or(widths.last()).map_or(0.0, |w| w.1);
+                way += from.distance(to);
+                let (index, height, kind) = (layer.index + 1, layer.height, pass.kind);
+                pieces.push(Piece {
+                    layer: index,
+                    pass: number,
+                    kind,
+                    from,
+                    to,
+                    width,
+                    height,
+                    speed,
+                    pace,
+                    feed,
+                    start: begin,
+                    seconds,
+                });
+                begin += seconds;
+            }
+            let after = welded.crater + welded.after;
+            found.push(Run { layer, pass, pieces, pause: waited, before: welded.before, after, travel });
+            now += welded.moving + after;
+            travel = torch.retract().moving;
+        }
+        now += travel;
+    }
+    found
+}
+
+/// How far along a pass each width reaches, mm, and the width, mm; the overlap of a closed pass begins anew.
+fn widths(pass: &Pass) -> Vec<(f64, f64)> {
+    let mut way = 0.0;
+    let mut once: Vec<(f64, f64)> = Vec::new();
+    for segment in pass.segments() {
+        way += segment.length();
+        once.push((way, segment.width));
+    }
+    let again: Vec<(f64, f64)> = once.iter().map(|(end, width)| (end + way, *width)).collect();
+    once.extend(again);
+    once
+}
