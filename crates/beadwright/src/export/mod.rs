@@ -5,9 +5,16 @@
 //! | `csv` | spreadsheets, pandas |
 //! | `vtp` | ParaView, VTK, pyvista |
 //! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
+//! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
+//! | `dxf`, `svg` | CAD and drawing programs, layer by layer |
 //! | `walk` | what all of them write: the passes as they are welded, with times and waits |
 
 mod csv;
+mod dxf;
+mod glb;
+mod stl;
+mod svg;
+mod swept;
 pub mod toolpath;
 mod vtp;
 mod walk;
@@ -48,17 +55,41 @@ pub enum ExportError {
     /// The archive of a 3MF file cannot be made.
     #[error("the archive cannot be written: {0}")]
     Archive(#[from] zip::result::ZipError),
+    /// More than the format can hold.
+    #[error("the file would have {gigabytes:.1} GB, and this format holds 4 GB; export it as STL")]
+    TooLarge {
+        /// Its size, GB.
+        gigabytes: f64,
+    },
     /// The content of an archive cannot be packed.
     #[error("the archive cannot be written: {0}")]
     Packing(#[from] std::io::Error),
 }
 
 /// All of them.
-pub const FORMATS: [Format; 3] = [csv::FORMAT, vtp::FORMAT, toolpath::FORMAT];
+pub const FORMATS: [Format; 5] = [csv::FORMAT, vtp::FORMAT, toolpath::FORMAT, stl::FORMAT, glb::FORMAT];
 
 /// The format of files with this ending.
 pub fn format(extension: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
+}
+
+/// A format for single layers.
+pub struct LayerFormat {
+    /// The ending of its files.
+    pub extension: &'static str,
+    /// What it is for.
+    pub purpose: &'static str,
+    /// Writes the text of a file.
+    pub write: fn(&Layer) -> String,
+}
+
+/// All of them.
+pub const LAYER_FORMATS: [LayerFormat; 2] = [dxf::FORMAT, svg::FORMAT];
+
+/// The format of layers in files with this ending.
+pub fn layer_format(extension: &str) -> Option<&'static LayerFormat> {
+    LAYER_FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
 }
 
 /// A straight piece of a bead, as it is welded: with overlap, hot start and lead-out.

@@ -109,7 +109,7 @@ const ON_EDGE_MM: f64 = 1e-9;
 
 /// Triangles over `base`, whose points are `points`. Ear clipping skips points in line with their neighbours; edges are
 /// split at these points, so that the cap has the same edges as the walls.
-fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
+pub(super) fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
     let mut open = triangulate(base);
     let mut done = Vec::with_capacity(open.len());
     while let Some([a, b, c]) = open.pop() {
