@@ -5,8 +5,7 @@ mod solids;
 
 use beadwright::example;
 use beadwright::model::{Mesh, cut};
-use glam::DVec3;
-use solids::{cuboid, facets_of, flipped, imported, joined, moved, sphere};
+use solids::{cuboid, facets_of, flipped, imported, joined, sphere};
 
 /// The volume of a mesh up to a height, by its slices' areas: an integral of its own.
 fn volume_above(mesh: &Mesh, z: f64) -> f64 {
@@ -15,7 +14,7 @@ fn volume_above(mesh: &Mesh, z: f64) -> f64 {
 
 #[test]
 fn a_cut_ball_is_a_cap() {
-    let ball = imported(&moved(&sphere(20.0, 64), DVec3::Z * 20.0)).mesh;
+    let ball = imported(&sphere(20.0, 64)).mesh;
     let whole = ball.volume();
     for z in [0.0, 3.3, 10.0, 20.0, 31.7, 39.0] {
         let (cap, repair) = cut::above(&ball, z).unwrap();

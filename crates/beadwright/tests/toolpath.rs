@@ -140,6 +140,36 @@ fn lengths_times_and_waits_are_the_plans() {
     }
 }
 
+/// On a cone the torch leans with the wall: the quaternion turns the vertical into the lean, and the plan comes back.
+#[test]
+fn a_leaning_torch_is_written_with_its_orientation() {
+    let mut profile = profile_by("cmt-al2319-kuka", "contour");
+    (profile.program.follow_wall, profile.program.max_work_angle) = (1.0, 40.0);
+    let plan = planned("vase", &profile);
+    let bytes = written(&plan, &profile);
+    assert_same(&toolpath::read(&bytes).unwrap().layers, &plan.layers, "vase");
+    let files = unpacked(&bytes);
+    assert!(files["3D/3dmodel.model"].contains("toolpathtype=\"6axis\""));
+    let mut leaning = 0;
+    for text in files.iter().filter(|(name, _)| name.starts_with("Toolpath/")).map(|(_, text)| text) {
+        assert!(!text.contains("point3d") && !text.contains("polyline3d"));
+        for point in text.split("<point6d ").skip(1) {
+            let value = |key: &str| -> f64 {
+                let rest = format!(" {point}");
+                let rest = rest.split(&format!(" {key}=\"")).nth(1).unwrap();
+                rest.split('"').next().unwrap().parse().unwrap()
+            };
+            let [i, j, k, w] = ["i", "j", "k", "w"].map(value);
+            assert!((i * i + j * j + k * k + w * w - 1.0).abs() < 1e-7);
+            // The third column of the rotation, as the specification has it: the torch's own axis.
+            let axis = [2.0 * (i * k + j * w), 2.0 * (j * k - i * w), 1.0 - 2.0 * (i * i + j * j)];
+            assert!(axis[2] > 40.5_f64.to_radians().cos(), "{axis:?}");
+            leaning += usize::from(axis[2] < 0.999);
+        }
+    }
+    assert!(leaning > 100, "{leaning} points lean");
+}
+
 fn schemas() -> PathBuf {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/3mf");
     std::env::var_os("BEADWRIGHT_SCHEMAS").map_or_else(default, PathBuf::from)
@@ -169,7 +199,10 @@ fn files_follow_the_schemas() {
         assert paths and paths == [e.get('Target') for e in bound]\n\
         [layer.assertValid(etree.fromstring(file.read(path[1:]))) for path in paths]\n\
         print(len(paths))\n";
-    for profile in [with_ends(profile_by("cmt-al2319-kuka", "hybrid")), profile_by("fdm-abs-0.4", "contour")] {
+    let mut leaning = profile_by("cmt-al2319-kuka", "contour");
+    (leaning.name, leaning.program.travel_angle) = ("leaning".to_owned(), 10.0);
+    let ends = with_ends(profile_by("cmt-al2319-kuka", "hybrid"));
+    for profile in [ends, profile_by("fdm-abs-0.4", "contour"), leaning] {
         let plan = planned("cross", &profile);
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.3mf", profile.name));
         std::fs::write(&path, written(&plan, &profile)).unwrap();

@@ -4,7 +4,9 @@ use super::Piece;
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::profile::Profile;
+use crate::program::Tilt;
 use crate::weld::{Torch, path};
+use glam::DVec2;
 
 /// A pass as it is welded.
 pub(super) struct Run<'a> {
@@ -12,6 +14,8 @@ pub(super) struct Run<'a> {
     pub(super) pass: &'a Pass,
     /// Its straight pieces, with overlap, hot start and lead-out.
     pub(super) pieces: Vec<Piece>,
+    /// Where the torch leans at the ends of the pieces, one more than those; none where it stays upright.
+    pub(super) leans: Vec<DVec2>,
     /// Wait before the arc is struck: between layers, s.
     pub(super) pause: f64,
     /// Time for gas and arc start before the torch moves, s.
@@ -25,7 +29,9 @@ pub(super) struct Run<'a> {
 /// The passes of layers in the order in which they are welded.
 pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
     let (mut torch, mut found, mut now) = (Torch::of(&profile.weld_settings()), Vec::new(), 0.0);
+    let mut tilt = Tilt::new(&profile.program);
     for layer in layers.iter().filter(|layer| !layer.passes.is_empty()) {
+        tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
         let mut pause = torch.begin_layer(layer.index);
         // The way up belongs to the pass that ends, but is travelled before the next one.
         let mut travel = pause.map_or(0.0, |pause| pause.moving);
@@ -33,7 +39,11 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
             let Some(start) = pass.start() else { continue };
             travel += torch.approach(start).moving;
             let waited = pause.take().map_or(0.0, |pause| pause.seconds);
-            let moves = path(pass, torch.ends());
+            let (mut moves, wide) = (path(pass, torch.ends()), pass.width.max());
+            if tilt.is_some() {
+                moves = Tilt::divided(moves, wide);
+            }
+            let leans = tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
             let welded = torch.weld(&moves);
             now += waited + travel + welded.before;
             let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / torch.speed_at(w[1].1)).sum();
@@ -66,7 +76,7 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
                 begin += seconds;
             }
             let after = welded.crater + welded.after;
-            found.push(Run { layer, pass, pieces, pause: waited, before: welded.before, after, travel });
+            found.push(Run { layer, pass, pieces, leans, pause: waited, before: welded.before, after, travel });
             now += welded.moving + after;
             travel = torch.retract().moving;
         }

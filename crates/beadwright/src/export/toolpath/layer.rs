@@ -5,7 +5,9 @@ use super::{BETWEEN, OVERLAP, OWN, units};
 use crate::export::walk::Run;
 use crate::layer::Layer;
 use crate::model::package::TOOLPATH;
-use glam::DVec3;
+use crate::number::fixed;
+use crate::program::Attitude;
+use glam::{DVec2, DVec3};
 use planar::Polygon;
 use std::collections::BTreeMap;
 use uuid::Uuid;
@@ -69,17 +71,19 @@ fn segment(text: &mut String, run: &Run<'_>, values: &[Values], tags: &[u32], st
     let Some((profile, _)) = styles.number(&Style::of(run)) else { return };
     let microseconds = |seconds: f64| (seconds * 1e6).round() as u64;
     let time = microseconds(run.pieces.iter().map(|piece| piece.seconds).sum());
-    let travel = microseconds(run.travel);
+    let (travel, axes) = (microseconds(run.travel), if styles.leaning { 6 } else { 3 });
     text.push_str(&format!(
-        "<segment type=\"polyline3d\" profileid=\"{profile}\" partid=\"1\" timeprediction=\"{time}\" jumpprediction=\"{travel}\""
+        "<segment type=\"polyline{axes}d\" profileid=\"{profile}\" partid=\"1\" timeprediction=\"{time}\" \
+         jumpprediction=\"{travel}\""
     ));
     text.push_str(if run.pass.closed { " bw:closed=\"1\">\n" } else { ">\n" });
+    let lean = |i: usize| styles.leaning.then(|| run.leans.get(i).copied().unwrap_or_default());
     run.pieces.first().into_iter().for_each(|piece| {
-        point(text, piece.from);
+        point(text, piece.from, lean(0));
         text.push_str("/>\n");
     });
-    for ((piece, values), tag) in run.pieces.iter().zip(values).zip(tags) {
-        point(text, piece.to);
+    for (i, ((piece, values), tag)) in (1..).zip(run.pieces.iter().zip(values).zip(tags)) {
+        point(text, piece.to, lean(i));
         if *tag > 0 {
             text.push_str(&format!(" tag=\"{tag}\""));
         }
@@ -89,6 +93,14 @@ fn segment(text: &mut String, run: &Run<'_>, values: &[Values], tags: &[u32], st
     text.push_str("</segment>\n");
 }
 
-fn point(text: &mut String, at: DVec3) {
-    text.push_str(&format!("<point3d x=\"{}\" y=\"{}\" z=\"{}\"", units(at.x), units(at.y), units(at.z)));
+/// The beginning of a point, with the torch's orientation where it leans.
+fn point(text: &mut String, at: DVec3, lean: Option<DVec2>) {
+    let name = if lean.is_some() { "point6d" } else { "point3d" };
+    text.push_str(&format!("<{name} x=\"{}\" y=\"{}\" z=\"{}\"", units(at.x), units(at.y), units(at.z)));
+    if let Some(lean) = lean {
+        let q = Attitude { lean, table: None }.rotation();
+        for (key, value) in [("i", q.x), ("j", q.y), ("k", q.z), ("w", q.w)] {
+            text.push_str(&format!(" {key}=\"{}\"", fixed(value, 9)));
+        }
+    }
 }

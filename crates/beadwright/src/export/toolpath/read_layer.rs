@@ -158,6 +158,13 @@ impl<'a> Reader<'a> {
             "point" => top.ok_or_else(|| broken("the layer tells no height (ztop) for its flat segments"))?,
             _ => number("z")? * unit,
         };
+        if element.name() == "point6d" {
+            // Beadwright leans the torch by the profile; what cannot be an orientation is refused all the same.
+            let q = [number("i")?, number("j")?, number("k")?, number("w")?];
+            if q.iter().map(|v| v * v).sum::<f64>() < 1e-12 {
+                return Err(broken("a point has an orientation (i, j, k, w) of 0, which is none"));
+            }
+        }
         let at = DVec3::new(number("x")? * unit, number("y")? * unit, z);
         let tag = optional(element, "tag")?.unwrap_or(0.0) as u32;
         let (width, pace) = open.style.values(element)?;

@@ -60,6 +60,8 @@ impl Style {
 pub(super) struct Styles {
     modifiers: [Modifier; 4],
     styles: BTreeMap<Style, Uuid>,
+    /// Whether points carry the torch's orientation.
+    pub(super) leaning: bool,
 }
 
 impl Styles {
@@ -77,7 +79,8 @@ impl Styles {
         };
         let uuid = |style: &Style| Uuid::new_v5(&file, style.name().as_bytes());
         let styles = runs.iter().map(Style::of).map(|style| (style, uuid(&style))).collect();
-        Self { modifiers: std::array::from_fn(modifier), styles }
+        let leaning = runs.iter().any(|run| !run.leans.is_empty());
+        Self { modifiers: std::array::from_fn(modifier), styles, leaning }
     }
 
     /// The number of a profile within every layer, and its UUID.

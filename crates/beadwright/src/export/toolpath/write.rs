@@ -90,10 +90,11 @@ fn model(beads: &Beads<'_>, styles: &Styles, ids: &Ids, around: (DVec3, DVec3)) 
          <model unit=\"millimeter\" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
          xmlns:p=\"{PRODUCTION}\" xmlns:tp=\"{TOOLPATH}\" xmlns:bw=\"{OWN}\" requiredextensions=\"p tp\">\n\
          <metadata name=\"Title\">{part}</metadata>\n<metadata name=\"Application\">Beadwright {}</metadata>\n<resources>\n\
-         <tp:toolpathresource id=\"1\" uuid=\"{}\" unitfactor=\"{}\" toolpathtype=\"3axis\">\n",
+         <tp:toolpathresource id=\"1\" uuid=\"{}\" unitfactor=\"{}\" toolpathtype=\"{}\">\n",
         env!("CARGO_PKG_VERSION"),
         ids.file,
         fixed(UNIT_MM, 4),
+        if styles.leaning { "6axis" } else { "3axis" },
     );
     text.push_str(&styles.xml());
     text.push_str("<tp:toolpathlayers>\n");
