@@ -28,7 +28,7 @@ use std::process::ExitCode;
 
 /// Plans weld deposition: turns a model into a robot program with a report.
 #[derive(Parser)]
-#[command(version, about, max_term_width = 110)]
+#[command(name = "beadwright", version, about, max_term_width = 110)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -28,61 +28,76 @@ pub(super) struct Run<'a> {
 
 /// The passes of layers in the order in which they are welded.
 pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
-    let (mut torch, mut found, mut now) = (Torch::of(&profile.weld_settings()), Vec::new(), 0.0);
-    let mut tilt = Tilt::new(&profile.program);
+    let mut walk = Walk { torch: Torch::of(&profile.weld_settings()), tilt: Tilt::new(&profile.program), now: 0.0 };
+    let mut found = Vec::new();
+    // The way up belongs to the pass that ends, but is travelled before the next one.
+    let mut travel = 0.0;
     for layer in layers.iter().filter(|layer| !layer.passes.is_empty()) {
-        tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
-        let mut pause = torch.begin_layer(layer.index);
-        // The way up belongs to the pass that ends, but is travelled before the next one.
-        let mut travel = pause.map_or(0.0, |pause| pause.moving);
+        walk.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
+        let mut pause = walk.torch.begin_layer(layer.index);
+        travel += pause.map_or(0.0, |pause| pause.moving);
         for (number, pass) in (1..).zip(&layer.passes) {
             let Some(start) = pass.start() else { continue };
-            travel += torch.approach(start).moving;
-            let waited = pause.take().map_or(0.0, |pause| pause.seconds);
-            let (mut moves, wide) = (path(pass, torch.ends()), pass.width.max());
-            if tilt.is_some() {
-                moves = Tilt::divided(moves, wide);
-            }
-            let leans = tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
-            let welded = torch.weld(&moves);
-            now += waited + travel + welded.before;
-            let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / torch.speed_at(w[1].1)).sum();
-            // Speeding up and slowing down is spread over the pass.
-            let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };
-            let (mut begin, mut way) = (now, 0.0);
-            let widths = widths(pass);
-            let mut pieces = Vec::with_capacity(moves.len());
-            for pair in moves.windows(2) {
-                let (from, (to, pace)) = (pair[0].0, pair[1]);
-                let (speed, feed) = (torch.speed_at(pace), torch.feed_at(pace));
-                let seconds = from.distance(to) / speed * slower;
-                let width = widths.iter().find(|(end, _)| way < end - 1e-9).or(widths.last()).map_or(0.0, |w| w.1);
-                way += from.distance(to);
-                let (index, height, kind) = (layer.index + 1, layer.height, pass.kind);
-                pieces.push(Piece {
-                    layer: index,
-                    pass: number,
-                    kind,
-                    from,
-                    to,
-                    width,
-                    height,
-                    speed,
-                    pace,
-                    feed,
-                    start: begin,
-                    seconds,
-                });
-                begin += seconds;
-            }
-            let after = welded.crater + welded.after;
-            found.push(Run { layer, pass, pieces, leans, pause: waited, before: welded.before, after, travel });
-            now += welded.moving + after;
-            travel = torch.retract().moving;
+            travel += walk.torch.approach(start).moving;
+            walk.now += travel + pause.map_or(0.0, |pause| pause.seconds);
+            let run = walk.run(layer, number, pass);
+            found.push(Run { travel, pause: pause.take().map_or(0.0, |pause| pause.seconds), ..run });
+            travel = walk.torch.retract().moving;
         }
-        now += travel;
     }
     found
+}
+
+/// Where the torch is on its walk.
+struct Walk {
+    torch: Torch,
+    /// None where the torch stays upright.
+    tilt: Option<Tilt>,
+    /// Time since the build began, s.
+    now: f64,
+}
+
+impl Walk {
+    /// Welds a pass from its start.
+    fn run<'a>(&mut self, layer: &'a Layer, number: usize, pass: &'a Pass) -> Run<'a> {
+        let (mut moves, wide) = (path(pass, self.torch.ends()), pass.width.max());
+        if self.tilt.is_some() {
+            moves = Tilt::divided(moves, wide);
+        }
+        let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
+        let welded = self.torch.weld(&moves);
+        let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / self.torch.speed_at(w[1].1)).sum();
+        // Speeding up and slowing down is spread over the pass.
+        let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };
+        let (mut start, mut way, widths) = (self.now + welded.before, 0.0, widths(pass));
+        let mut pieces = Vec::with_capacity(moves.len());
+        for pair in moves.windows(2) {
+            let (from, (to, pace)) = (pair[0].0, pair[1]);
+            let (speed, feed) = (self.torch.speed_at(pace), self.torch.feed_at(pace));
+            let seconds = from.distance(to) / speed * slower;
+            let width = widths.iter().find(|(end, _)| way < end - 1e-9).or(widths.last()).map_or(0.0, |w| w.1);
+            let (layer, height, kind) = (layer.index + 1, layer.height, pass.kind);
+            pieces.push(Piece {
+                layer,
+                pass: number,
+                kind,
+                from,
+                to,
+                width,
+                height,
+                speed,
+                pace,
+                feed,
+                start,
+                seconds,
+            });
+            way += from.distance(to);
+            start += seconds;
+        }
+        let after = welded.crater + welded.after;
+        self.now += welded.before + welded.moving + after;
+        Run { layer, pass, pieces, leans, pause: 0.0, before: welded.before, after, travel: 0.0 }
+    }
 }
 
 /// How far along a pass each width reaches, mm, and the width, mm; the overlap of a closed pass begins anew.
