@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// File to write; its ending tells the format: .csv (a table of all pieces of beads), .vtp (ParaView, VTK,
+    /// File to write; its ending tells the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
     /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf or .svg (drawings of layers: NAME-001.dxf and so on).
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,

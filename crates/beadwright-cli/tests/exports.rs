@@ -38,7 +38,7 @@ fn planned() -> TempDir {
 fn a_plan_goes_out_in_every_format() {
     let folder = planned();
     let at = folder.path();
-    for name in ["a.csv", "a.vtp", "a.3mf", "a.stl", "a.glb"] {
+    for name in ["a.csv", "a.parquet", "a.vtp", "a.3mf", "a.stl", "a.glb"] {
         let said = ok(at, &["export", "out/plan.json", "-o", name]);
         assert!(said.contains(name) && fs::metadata(at.join(name)).unwrap().len() > 1000, "{said}");
     }

@@ -181,7 +181,7 @@ fn exported_layers_have_their_outlines_and_lengths() {
             let closed = values(polyline.split("  0\n").next().unwrap(), "70") as u32 & 1 == 1;
             let vertices: Vec<DVec2> =
                 polyline.split("  0\nVERTEX\n").skip(1).map(|v| DVec2::new(values(v, "10"), values(v, "20"))).collect();
-            let close = closed.then(|| vertices[0].distance(*vertices.last().unwrap())).unwrap_or_default();
+            let close = if closed { vertices[0].distance(*vertices.last().unwrap()) } else { 0.0 };
             length += vertices.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>() + close;
         }
         let expected: f64 = layer.passes.iter().map(|pass| pass.length()).sum();

@@ -2,7 +2,7 @@
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `csv` | spreadsheets, pandas |
+//! | `csv`, `parquet` | spreadsheets, pandas; `table` has their columns |
 //! | `vtp` | ParaView, VTK, pyvista |
 //! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
 //! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
@@ -12,9 +12,11 @@
 mod csv;
 mod dxf;
 mod glb;
+mod parquet;
 mod stl;
 mod svg;
 mod swept;
+mod table;
 pub mod toolpath;
 mod vtp;
 mod walk;
@@ -55,6 +57,9 @@ pub enum ExportError {
     /// The archive of a 3MF file cannot be made.
     #[error("the archive cannot be written: {0}")]
     Archive(#[from] zip::result::ZipError),
+    /// A Parquet table cannot be made.
+    #[error("the table cannot be written: {0}")]
+    Table(#[from] ::parquet::errors::ParquetError),
     /// More than the format can hold.
     #[error("the file would have {gigabytes:.1} GB, and this format holds 4 GB; export it as STL")]
     TooLarge {
@@ -67,7 +72,8 @@ pub enum ExportError {
 }
 
 /// All of them.
-pub const FORMATS: [Format; 5] = [csv::FORMAT, vtp::FORMAT, toolpath::FORMAT, stl::FORMAT, glb::FORMAT];
+pub const FORMATS: [Format; 6] =
+    [csv::FORMAT, parquet::FORMAT, vtp::FORMAT, toolpath::FORMAT, stl::FORMAT, glb::FORMAT];
 
 /// The format of files with this ending.
 pub fn format(extension: &str) -> Option<&'static Format> {

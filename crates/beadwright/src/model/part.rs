@@ -46,6 +46,7 @@ impl Default for Placement {
 
 /// The part that is planned.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one part at a time")]
 pub enum Part {
     /// A solid that stands on z = 0.
     Mesh(Import),
