@@ -127,6 +127,12 @@ fn svg_areas_are_those_of_the_shapes() {
     assert_area(&triangle, 1000.0, 1);
     let high = triangle.rings[0].points().iter().copied().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap();
     assert!(high.distance(DVec2::new(0.0, 40.0)) < 1e-4, "{high}");
+    let notes = read(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 50 40\"><rect width=\"9\" height=\"9\"/><text>M8</text>\
+         <image href=\"/etc/hostname\"/></svg>",
+    )
+    .notes;
+    assert!(notes.len() == 2 && notes[0].starts_with("1 × text"), "{notes:?}");
     let open = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 50 40\"><path id=\"rim\" fill=\"none\" stroke=\"red\" \
                 d=\"M0 40 L50 40 L0 0\"/></svg>";
     let error = outline::read(open.as_bytes()).unwrap_err().to_string();
@@ -193,4 +199,30 @@ fn exported_layers_have_their_outlines_and_lengths() {
         let drawn = read(&format!("{}{}", &svg[..from], &svg[to..]));
         assert!((drawn.region(1.0).area() / area - 1.0).abs() < 1e-4, "{part}: {} mm²", drawn.region(1.0).area());
     }
+}
+
+/// A drawing with bytes changed is read or refused, and nothing worse.
+fn survives_changes(text: &str) {
+    let kinds = [&b"0"[..], b"-", b"1e30", b"\n", b"<", b"NaN", b"9999999", b""];
+    for at in 0..text.len() {
+        let mut bytes = text.as_bytes().to_vec();
+        bytes.splice(at..=at, kinds[at % kinds.len()].iter().copied());
+        if let Ok(outlines) = outline::read(&bytes) {
+            // Far out of all bounds the grid of the plane ends.
+            if outlines.size().max_element() < 1e4 {
+                outlines.extruded(1.0, 5.0).ok();
+            }
+        }
+    }
+}
+
+#[test]
+fn broken_drawings_do_no_harm() {
+    let at = DVec2::new(3.0, 4.0);
+    let points = [(at, 0.5), (at + DVec2::X, 0.0), (at + DVec2::Y, -0.2)];
+    survives_changes(&dxf(&[light(&points, true), heavy(&points), circle(at, 2.0), line(at, at)].concat()));
+    survives_changes(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9mm\" viewBox=\"0 0 9 9\"><g transform=\"rotate(9)\">\
+         <path d=\"M1 1 C2 2 3 5 4 1 A3 2 9 0 1 8 8 Q1 5 2 2 z\" fill-rule=\"evenodd\"/><circle r=\"2\"/></g></svg>",
+    );
 }

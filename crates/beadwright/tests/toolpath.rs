@@ -284,3 +284,21 @@ fn broken_toolpaths_are_refused_with_the_place() {
     let error = beadwright::model::import(&whole, &Task::new()).unwrap_err().to_string();
     assert!(error.contains("toolpaths"), "{error}");
 }
+
+/// Files with bytes changed are read or refused, and nothing worse.
+#[test]
+fn broken_files_do_no_harm() {
+    let files = unpacked(&foreign(STYLE, &format!("{LOOP}{HATCH}")));
+    let kinds = ["0", "-", "1e300", "<", "NaN", "99999999999", "", "\"", "/"];
+    for (name, text) in &files {
+        for at in 0..text.len() {
+            let mut changed = text.clone();
+            changed.replace_range(at..=at, kinds[at % kinds.len()]);
+            let mut files = files.clone();
+            files.insert(name.clone(), changed);
+            if let Ok(plan) = toolpath::read(&packed(&files)) {
+                assert!(plan.layers.iter().flat_map(|l| &l.passes).all(|p| p.points.len() > 1));
+            }
+        }
+    }
+}

@@ -194,7 +194,7 @@ impl Placement {
             None => units::guess(outlines.size().extend(0.0) * self.scale, bead_width)?,
         };
         let factor = units.in_mm() * self.scale;
-        let reach = factor * outlines.size().max_element();
+        let reach = factor * outlines.reach();
         if reach.is_nan() || reach > MAX_REACH_MM {
             return Err(ImportError::TooFar { reach_m: reach / 1000.0 }.into());
         }

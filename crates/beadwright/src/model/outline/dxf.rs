@@ -3,7 +3,7 @@
 
 use super::super::{ImportError, Units};
 use super::entity::{self, Entity, broken};
-use super::{Outlines, chain};
+use super::{Outlines, chain, check_points};
 use glam::DVec2;
 use planar::Ring;
 use std::collections::BTreeMap;
@@ -67,6 +67,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
             vertices.extend(entities.next());
         }
         found.add(entity, &vertices)?;
+        check_points(found.points, "DXF")?;
     }
     let rings = chain::rings(found.pieces).map_err(|chain::Gap(a, b)| {
         broken(format!(
@@ -87,6 +88,7 @@ struct Found {
     /// Open pieces.
     pieces: Vec<Vec<DVec2>>,
     passed_over: BTreeMap<String, usize>,
+    points: usize,
 }
 
 impl Found {
@@ -105,7 +107,7 @@ impl Found {
                 let (centre, radius) = (entity.point(10)?, entity.number(40, 0.0)?);
                 let mut points = arc(centre, radius, 0.0, TAU);
                 points.pop();
-                self.rings.push(Ring::new(points));
+                self.ring(points);
             }
             "ARC" => {
                 let (from, to) = (entity.number(50, 0.0)?.to_radians(), entity.number(51, 360.0)?.to_radians());
@@ -138,7 +140,13 @@ impl Found {
         Ok(())
     }
 
+    fn ring(&mut self, points: Vec<DVec2>) {
+        self.points += points.len();
+        self.rings.push(Ring::new(points));
+    }
+
     fn open(&mut self, points: Vec<DVec2>) {
+        self.points += points.len();
         // Lines without length join nothing.
         if points.first() != points.last() || points.len() > 2 {
             self.pieces.push(points);
@@ -155,7 +163,7 @@ impl Found {
         }
         if closed {
             points.pop();
-            self.rings.push(Ring::new(points));
+            self.ring(points);
         } else if vertices.len() > 1 {
             self.open(points);
         }

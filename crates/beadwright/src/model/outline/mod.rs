@@ -15,7 +15,7 @@ mod entity;
 mod svg;
 
 use super::solid::Solid;
-use super::{Import, ImportError, Mesh, Units};
+use super::{Import, ImportError, MAX_REACH_MM, Mesh, Units};
 use glam::DVec2;
 use planar::{Bounds, FillRule, Region, Ring};
 
@@ -42,9 +42,14 @@ pub fn drawing(bytes: &[u8]) -> Option<&'static str> {
 /// Reads a drawing.
 ///
 /// # Errors
-/// [`ImportError::Broken`] with the line or place, and what to draw instead.
+/// [`ImportError::Broken`] with the line or place, and what to draw instead; [`ImportError::TooFar`].
 pub fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     let outlines = if dxf::is_dxf(bytes) { dxf::read(bytes)? } else { svg::read(bytes)? };
+    // As no unit is shorter than a millimetre, nothing farther out can be planned.
+    let reach = outlines.reach();
+    if reach.is_nan() || reach > MAX_REACH_MM {
+        return Err(ImportError::TooFar { reach_m: reach / 1000.0 });
+    }
     if outlines.rings.iter().all(|ring| ring.area() == 0.0) {
         return Err(ImportError::Broken {
             format: outlines.format,
@@ -54,10 +59,29 @@ pub fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     Ok(outlines)
 }
 
+/// No drawing has more points, once its curves are divided.
+const MOST_POINTS: usize = 5_000_000;
+
+/// Refuses drawings with too many points.
+fn check_points(count: usize, format: &'static str) -> Result<(), ImportError> {
+    if count <= MOST_POINTS {
+        return Ok(());
+    }
+    let reason = format!("its outlines have more than {MOST_POINTS} points, with curves divided; draw them simpler");
+    Err(ImportError::Broken { format, reason })
+}
+
 impl Outlines {
     /// Extent along x and y, in the units of the file.
     pub fn size(&self) -> DVec2 {
         Bounds::of(self.rings.iter().flat_map(Ring::points).copied()).map_or(DVec2::ZERO, |bounds| bounds.size())
+    }
+
+    /// The greatest distance of a point from the origin along x or y, in the units of the file.
+    pub fn reach(&self) -> f64 {
+        let points = self.rings.iter().flat_map(Ring::points);
+        // Unlike `f64::max`, this keeps NaN.
+        points.map(|p| p.abs().max_element()).fold(0.0, |a, b| if b <= a { a } else { b })
     }
 
     /// What lies within the outlines and outside of the holes, mm, where a unit of the file has `factor` mm.

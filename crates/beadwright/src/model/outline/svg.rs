@@ -4,9 +4,9 @@
 //! are; otherwise one unit of the picture is one unit of the file, and the user tells which.
 
 use super::super::{ImportError, Units};
-use super::Outlines;
+use super::{Outlines, check_points};
 use glam::DVec2;
-use planar::{FillRule, Region, Ring};
+use planar::{FillRule, MAX_COORDINATE_MM, Region, Ring};
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{Group, Node, Path, Tree};
 
@@ -30,18 +30,29 @@ pub(super) fn is_svg(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
-    let tree = Tree::from_data(bytes, &usvg::Options::default()).map_err(|error| broken(error.to_string()))?;
+    let tree = Tree::from_data(bytes, &options()).map_err(|error| broken(error.to_string()))?;
     let size = DVec2::new(tree.size().width().into(), tree.size().height().into());
     let scale = if in_lengths(bytes) { 1.0 / PX_PER_MM } else { 1.0 };
-    let mut reader = Reader { height: size.y, flatness: FLATNESS * size.max_element(), rings: Vec::new(), others: 0 };
+    let mut reader = Reader { height: size.y, flatness: FLATNESS * size.max_element(), rings: Vec::new(), points: 0 };
     reader.group(tree.root())?;
     let scaled = |ring: Ring| Ring::new(ring.points().iter().map(|p| *p * scale).collect());
-    let notes = (reader.others > 0)
-        .then(|| format!("{} pictures or texts in the drawing passed over.", reader.others))
-        .into_iter()
-        .collect();
     let units = in_lengths(bytes).then_some(Units::Millimetre);
-    Ok(Outlines { rings: reader.rings.into_iter().map(scaled).collect(), format: "SVG", units, notes })
+    Ok(Outlines { rings: reader.rings.into_iter().map(scaled).collect(), format: "SVG", units, notes: notes(bytes) })
+}
+
+/// No picture within the drawing is read, least of all from the disk.
+fn options() -> usvg::Options<'static> {
+    let image_href_resolver =
+        usvg::ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
+    usvg::Options { image_href_resolver, ..usvg::Options::default() }
+}
+
+/// What has no outline, as sentences.
+fn notes(bytes: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(bytes);
+    let count = |tag: &str| text.matches(tag).count();
+    let counted = [("text", count("<text")), ("image", count("<image"))].into_iter().filter(|(_, count)| *count > 0);
+    counted.map(|(name, count)| format!("{count} × {name} in the drawing passed over.")).collect()
 }
 
 /// Whether the width of the picture is a length, not a number of pixels or a share of the window.
@@ -59,8 +70,8 @@ struct Reader {
     /// px
     flatness: f64,
     rings: Vec<Ring>,
-    /// Pictures and texts.
-    others: usize,
+    /// Points so far.
+    points: usize,
 }
 
 impl Reader {
@@ -69,8 +80,7 @@ impl Reader {
             match node {
                 Node::Group(group) => self.group(group)?,
                 Node::Path(path) if path.is_visible() => self.path(path)?,
-                Node::Path(_) => {}
-                Node::Image(_) | Node::Text(_) => self.others += 1,
+                Node::Path(_) | Node::Image(_) | Node::Text(_) => {}
             }
         }
         Ok(())
@@ -79,8 +89,13 @@ impl Reader {
     fn path(&mut self, path: &Path) -> Result<(), ImportError> {
         let placed = path.data().clone().transform(path.abs_transform());
         let placed = placed.ok_or_else(|| broken(format!("the path \"{}\" lies out of all bounds", path.id())))?;
-        let mut lines = Lines { height: self.height, flatness: self.flatness, done: Vec::new(), open: Vec::new() };
-        placed.segments().for_each(|segment| lines.segment(segment));
+        let mut lines =
+            Lines { height: self.height, flatness: self.flatness, done: Vec::new(), open: Vec::new(), points: 0 };
+        for segment in placed.segments() {
+            lines.segment(segment);
+            check_points(self.points + lines.points, "SVG")?;
+        }
+        self.points += lines.points;
         lines.end(false);
         let near = CLOSED / FLATNESS * self.flatness;
         let rule = path.fill().map(|fill| fill.rule());
@@ -97,6 +112,10 @@ impl Reader {
                     last.x,
                     self.height - last.y
                 )));
+            }
+            // Beyond, the grid of the plane ends.
+            if points.iter().any(|p| p.abs().max_element() > MAX_COORDINATE_MM) {
+                return Err(broken(format!("the path \"{}\" lies out of all bounds", path.id())));
             }
             rings.push(Ring::new(points));
         }
@@ -116,6 +135,7 @@ struct Lines {
     /// Points, and whether they were closed.
     done: Vec<(Vec<DVec2>, bool)>,
     open: Vec<DVec2>,
+    points: usize,
 }
 
 impl Lines {
@@ -152,7 +172,8 @@ impl Lines {
     fn cubic(&mut self, a: DVec2, b: DVec2, c: DVec2) {
         let from = self.open.last().copied().unwrap_or(a);
         let bend = (from - 2.0 * a + b).length().max((a - 2.0 * b + c).length());
-        let count = (0.75 * bend / self.flatness).sqrt().ceil().clamp(1.0, 1e4) as usize;
+        let count = (0.75 * bend / self.flatness).sqrt().ceil().clamp(1.0, 1e3) as usize;
+        self.points += count;
         for k in 1..=count {
             let t = k as f64 / count as f64;
             let s = 1.0 - t;
