@@ -1,41 +1,74 @@
 //! `beadwright export`.
 
-use crate::{profile, program, progress};
+use crate::{profile, program};
 use anyhow::Context;
-use beadwright::export::{self, FORMATS};
+use beadwright::export::{self, Beads, FORMATS, LAYER_FORMATS, LayerFormat};
 use beadwright::files::write_file;
+use beadwright::layer::Layer;
+use beadwright::plan_file::PlanFile;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json.
+    /// plan.json, or toolpaths in 3MF.
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// File to write; its ending tells the format: .csv (a table of all pieces of beads) or .vtp (ParaView, VTK, pyvista).
+    /// File to write; its ending tells the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
+    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf or .svg (drawings of layers: NAME-001.dxf and so on).
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
+    /// Draw only this layer, counted from 1, into the file itself; for .dxf and .svg.
+    #[arg(long, value_name = "LAYER")]
+    layer: Option<usize>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let source = program::Source::open(&arguments.plan)?;
+    let plan = source.plan().with_context(|| {
+        format!("{}: plans are exported; give the plan.json of the program", arguments.plan.display())
+    })?;
     let extension = arguments.output.extension().map(|end| end.to_string_lossy().into_owned()).unwrap_or_default();
+    if let Some(format) = export::layer_format(&extension) {
+        return drawings(arguments, plan, format);
+    }
     let format = export::format(&extension).with_context(|| {
-        let known: Vec<String> = FORMATS.iter().map(|f| format!(".{} ({})", f.extension, f.purpose)).collect();
+        let known = FORMATS
+            .iter()
+            .map(|f| (f.extension, f.purpose))
+            .chain(LAYER_FORMATS.iter().map(|f| (f.extension, f.purpose)));
+        let known: Vec<String> = known.map(|(extension, purpose)| format!(".{extension} ({purpose})")).collect();
         format!("{}: the ending tells the format, and it may be {}", arguments.output.display(), known.join(" or "))
     })?;
-    let source = program::Source::open(&arguments.plan)?;
-    anyhow::ensure!(
-        source.plan().is_some(),
-        "{}: plans are exported; give the plan.json of the program",
-        arguments.plan.display()
-    );
+    anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg)");
     let profile = source.profile(&arguments.wanted)?;
-    let (task, bar) = progress::task()?;
-    let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
-    let pieces = export::pieces(&loaded.layers, &profile);
-    bar.finish_and_clear();
-    write_file(&arguments.output, &(format.write)(&pieces))?;
-    writeln!(std::io::stdout(), "{} pieces of beads in {}", pieces.len(), arguments.output.display())?;
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+    let bytes = (format.write)(&beads).with_context(|| format!("{}", arguments.plan.display()))?;
+    write_file(&arguments.output, &bytes)?;
+    let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
+    writeln!(std::io::stdout(), "{passes} passes in {} layers in {}", plan.layers.len(), arguments.output.display())?;
+    Ok(())
+}
+
+/// One layer in the file, or each in one of its own.
+fn drawings(arguments: &Arguments, plan: &PlanFile, format: &LayerFormat) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let write = |path: &Path, layer: &Layer| write_file(path, (format.write)(layer).as_bytes());
+    if let Some(number) = arguments.layer {
+        let layer = number.checked_sub(1).and_then(|index| plan.layers.get(index));
+        let layer =
+            layer.with_context(|| format!("--layer {number}: the plan has the layers 1 to {}", plan.layers.len()))?;
+        write(&arguments.output, layer)?;
+        writeln!(out, "layer {number} in {}", arguments.output.display())?;
+        return Ok(());
+    }
+    let stem = arguments.output.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let path =
+        |layer: &Layer| arguments.output.with_file_name(format!("{stem}-{:03}.{}", layer.index + 1, format.extension));
+    plan.layers.iter().try_for_each(|layer| write(&path(layer), layer))?;
+    let ends: Vec<String> =
+        plan.layers.first().into_iter().chain(plan.layers.last()).map(|l| path(l).display().to_string()).collect();
+    writeln!(out, "{} layers in {}", plan.layers.len(), ends.join(" to "))?;
     Ok(())
 }

@@ -3,16 +3,24 @@
 use crate::{convert, file, model, profile, program, progress};
 use anyhow::Context;
 use beadwright::dialect::reading;
+use beadwright::export::toolpath;
+use beadwright::files::write_file;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::{decoded, import_damaged, is_solid};
+use beadwright::model::{Import, Units, decoded, import_damaged, is_solid, outline, stl};
 use glam::DVec3;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A model (STL, 3MF, OBJ, PLY, AMF, IGES, or STEP with a converter), a plan.json, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// A model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
+    /// Write the mended solid as STL, in the units of the file; with --output.
+    #[arg(long, requires = "output")]
+    repair: bool,
+    /// File for the mended solid.
+    #[arg(long, short, value_name = "FILE", requires = "repair")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
     #[command(flatten)]
@@ -28,7 +36,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(file) = model::read_iges(&arguments.file, bytes)? {
         return Ok(curves(&file, arguments)?);
     }
-    if !is_solid(bytes) && is_program(bytes) {
+    if outline::drawing(bytes).is_some() {
+        return drawing(bytes, arguments);
+    }
+    if toolpath::is_toolpath(bytes) || !is_solid(bytes) && is_program(bytes) {
         return read_program(arguments);
     }
     let (task, bar) = progress::task()?;
@@ -37,6 +48,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     bar.finish_and_clear();
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
+    if let Some(path) = &arguments.output {
+        write_mended(path, &import)?;
+    }
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let value = serde_json::json!({
@@ -62,6 +76,41 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for line in repair.sentences() {
         writeln!(out, "  {line}")?;
     }
+    if let Some(path) = &arguments.output {
+        writeln!(out, "  The mended solid is in {}.", path.display())?;
+    }
+    Ok(())
+}
+
+/// Writes what the mending has left, as STL.
+fn write_mended(path: &Path, import: &Import) -> anyhow::Result<()> {
+    let is_stl = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
+    anyhow::ensure!(is_stl, "{}: the mended solid is written as STL; give a name that ends in .stl", path.display());
+    let mesh = &import.mesh;
+    let facets = mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize]));
+    Ok(write_file(path, &stl::write("mended by beadwright", facets))?)
+}
+
+/// What a drawing holds.
+fn drawing(bytes: &[u8], arguments: &Arguments) -> anyhow::Result<()> {
+    let outlines = outline::read(bytes).with_context(|| format!("{}", arguments.file.display()))?;
+    let (size, region, mut out) = (outlines.size(), outlines.region(1.0), std::io::stdout().lock());
+    let unit = outlines.units.and_then(|unit| Units::ALL.iter().find(|(_, known)| *known == unit));
+    let unit = unit.map_or("units of the file", |(name, _)| *name);
+    if arguments.json {
+        let value = serde_json::json!({
+            "format": outlines.format, "units": outlines.units, "size": size.to_array(), "outlines": outlines.rings.len(),
+            "islands": region.polygons().len(), "area": region.area(), "notes": outlines.notes,
+        });
+        writeln!(out, "{value:#}")?;
+        return Ok(());
+    }
+    writeln!(out, "{}: {}", arguments.file.display(), outlines.format)?;
+    writeln!(out, "  size       {:.3} × {:.3} ({unit})", size.x, size.y)?;
+    writeln!(out, "  outlines   {}, around {} islands", outlines.rings.len(), region.polygons().len())?;
+    writeln!(out, "  area       {:.3}", region.area())?;
+    outlines.notes.iter().try_for_each(|note| writeln!(out, "  {note}"))?;
+    writeln!(out, "  A part grows from it with a height: `beadwright plan` with --height.")?;
     Ok(())
 }
 

@@ -5,6 +5,7 @@
 mod bead;
 mod check;
 mod compare;
+mod completions;
 mod convert;
 mod example;
 mod export;
@@ -28,7 +29,7 @@ use std::process::ExitCode;
 
 /// Plans weld deposition: turns a model into a robot program with a report.
 #[derive(Parser)]
-#[command(version, about, max_term_width = 110)]
+#[command(name = "beadwright", version, about, max_term_width = 110)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -56,7 +57,7 @@ enum Command {
     Heat(heat::Arguments),
     /// Reproduce the papers' experiments: our results beside theirs.
     Reproduce(reproduce::Arguments),
-    /// Write the beads of a plan for other programs: a table (CSV), or lines for ParaView (VTP).
+    /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
     Export(export::Arguments),
     /// Show what a model, a plan or a program contains, and what is wrong with it.
     Inspect(inspect::Arguments),
@@ -65,6 +66,10 @@ enum Command {
     /// List, print or check profiles, or print their JSON schema.
     #[command(subcommand)]
     Profile(profile::Command),
+    /// Print what a shell needs to complete commands, such as `beadwright completions bash`.
+    Completions(completions::Completions),
+    /// Print the manual page, or write the pages of all commands.
+    Man(completions::Man),
     /// Open the desktop program: see the part, the beads and the voids, change a parameter, export.
     Studio(studio::Arguments),
 }
@@ -85,6 +90,8 @@ fn main() -> ExitCode {
         Command::Inspect(arguments) => inspect::run(&arguments),
         Command::Example(arguments) => example::run(&arguments),
         Command::Profile(command) => profile::run(&command),
+        Command::Completions(arguments) => completions::completions::<Arguments>(&arguments),
+        Command::Man(arguments) => completions::man::<Arguments>(&arguments),
         Command::Studio(arguments) => match studio::run(&arguments) {
             Ok(status) => return status,
             Err(error) => Err(error),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub(crate) struct Model {
     /// The model: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
-    /// centre-lines of walls.
+    /// centre-lines of walls, and DXF and SVG with outlines (--height).
     pub(crate) model: PathBuf,
     /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]

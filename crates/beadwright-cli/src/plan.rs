@@ -1,6 +1,7 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::{model, profile, program, progress};
+use anyhow::Context;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
@@ -23,7 +24,8 @@ pub(crate) struct Arguments {
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
-    /// Height of a wall given by its centre-lines (IGES), mm; that of the highest of them if left out.
+    /// Height of a wall given by its centre-lines (IGES), mm; that of the highest of them if left out. Height of a part given
+    /// by its outlines (DXF, SVG), mm.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[arg(long, short, value_name = "NAME", help = strategy_help())]
@@ -36,6 +38,12 @@ pub(crate) struct Arguments {
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Plan only what lies above this height of the placed part, mm: the cut comes to lie on the table.
+    #[arg(long, value_name = "MM", value_parser = parse_height)]
+    from_z: Option<f64>,
+    /// Write the programs of these layers only, counted from 1, such as 10-20; plan.json and the report keep all layers.
+    #[arg(long, value_name = "FIRST-LAST", value_parser = parse_layers, conflicts_with = "from_layer")]
+    layers: Option<(u32, u32)>,
     /// Write the programs from this layer on, counted from 1, to continue a build that was stopped; plan.json and the
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
@@ -91,6 +99,12 @@ fn parse_height(text: &str) -> Result<f64, String> {
     }
 }
 
+fn parse_layers(text: &str) -> Result<(u32, u32), String> {
+    let ends = text.split_once('-').and_then(|(first, last)| Some((first.parse().ok()?, last.parse().ok()?)));
+    ends.filter(|(first, last)| (1..=*last).contains(first))
+        .ok_or_else(|| "the first and the last layer are expected, counted from 1, such as 10-20".to_owned())
+}
+
 pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
     let step: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
     if (1e-3..=100.0).contains(&step) { Ok(step) } else { Err("the grid must lie between 0.001 and 100 mm".to_owned()) }
@@ -114,9 +128,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
     let (task, bar) = progress::task()?;
     let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
+    let model = match arguments.from_z {
+        Some(z) => model.above(z).with_context(|| format!("--from-z {z}"))?,
+        None => model,
+    };
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
-    let start = Start { layer: arguments.from_layer as usize - 1, pass: arguments.from_pass as usize - 1 };
+    let (first, last) = arguments.layers.unwrap_or((arguments.from_layer, u32::MAX));
+    let start = Start { layer: first as usize - 1, pass: arguments.from_pass as usize - 1, last: last as usize - 1 };
     let mut files = Files {
         folder: Folder::new(&arguments.output)?,
         programs: Some(programs),
@@ -135,8 +154,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     anyhow::ensure!(
         start.layer < summary.metrics.layers,
-        "--from-layer {} lies above the part, which has {} layers",
-        arguments.from_layer,
+        "{} {first} lies above the part, which has {} layers",
+        if arguments.layers.is_some() { "--layers" } else { "--from-layer" },
         summary.metrics.layers
     );
     if let Some(missing) = arguments.picture.iter().find(|number| **number == 0 || **number > summary.metrics.layers) {
@@ -202,7 +221,7 @@ impl Sink for Files<'_> {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
-        let Start { layer: index, pass } = self.start;
+        let Start { layer: index, pass, .. } = self.start;
         anyhow::ensure!(
             layer.index != index || pass == 0 || pass < layer.passes.len(),
             "--from-pass {}: the passes of layer {} are numbered 1 to {}",

@@ -7,6 +7,7 @@ use beadwright::compare::Totals;
 use beadwright::deposit::{self, DepositSettings};
 use beadwright::dialect::inform::InformSpeed;
 use beadwright::dialect::reading::{self, ArcCodes, Metal};
+use beadwright::export::toolpath;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
@@ -95,8 +96,13 @@ pub(crate) fn fitted(
 impl Source {
     pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
         let context = || format!("{}", path.display());
-        let text = text::of(&file::read(path)?).with_context(context)?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let bytes = file::read(path)?;
+        if toolpath::is_toolpath(&bytes) {
+            let content = Content::Plan(Box::new(toolpath::read(&bytes).with_context(context)?));
+            return Ok(Self { path: path.to_owned(), name, content });
+        }
+        let text = text::of(&bytes).with_context(context)?;
         let content = if text.trim_start().starts_with('{') {
             Content::Plan(Box::new(plan_file::read(&text).with_context(context)?))
         } else {
@@ -125,8 +131,8 @@ impl Source {
         let Some(profile) = &plan.profile else {
             let name = &plan.header.profile;
             anyhow::bail!(
-                "{}: this plan.json does not carry its profile{}, as those of version 1 do not. Give it with --profile, or \
-                 make the plan again.",
+                "{}: this plan does not carry its profile{}, as neither plan.json of version 1 nor toolpaths of other \
+                 programs do. Give it with --profile, or make the plan again.",
                 self.path.display(),
                 if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
             );

@@ -3,7 +3,7 @@
 use crate::{file, profile, program};
 use anyhow::{Context, bail};
 use beadwright::files::write_file;
-use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, cell};
+use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, Trajectory, cell};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -27,6 +27,9 @@ pub(crate) struct Arguments {
     /// HTML page to write, with joint angles and margins over the program.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Write the joints over the program: .csv (a table, °) or .json (ROS 2's trajectory_msgs/JointTrajectory, rad).
+    #[arg(long, value_name = "FILE", value_parser = parse_trajectory)]
+    trajectory: Option<PathBuf>,
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
@@ -69,6 +72,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let page_text = robot::page::page(&plan.header.part, &cell, &reach, better.as_ref()).html();
         write_file(page, page_text.as_bytes())?;
     }
+    let trajectory = arguments.trajectory.as_ref().zip(Trajectory::of(&cell, &reach));
+    if let Some((path, trajectory)) = &trajectory {
+        let is_table = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
+        let text = if is_table { trajectory.csv() } else { format!("{:#}\n", trajectory.ros()) };
+        write_file(path, text.as_bytes())?;
+    }
     if arguments.json {
         writeln!(out, "{:#}", json(&cell, &reach, table, suggestion))?;
     } else {
@@ -90,6 +99,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         if let Some(page) = &arguments.output {
             writeln!(out, "\nplots in {}", page.display())?;
+        }
+        if let Some((path, trajectory)) = &trajectory {
+            writeln!(out, "\n{} points of the joints in {}", trajectory.points.len(), path.display())?;
         }
     }
     match reach.first_bad() {
@@ -200,6 +212,12 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     }
     let text = file::text(path)?;
     Cell::parse(&text).with_context(|| name.to_owned())
+}
+
+fn parse_trajectory(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let known = path.extension().is_some_and(|end| ["csv", "json"].iter().any(|known| end.eq_ignore_ascii_case(known)));
+    if known { Ok(path) } else { Err("the ending tells the format: .csv or .json".to_owned()) }
 }
 
 fn parse_place(text: &str) -> Result<PartPlace, String> {

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or URScript; if it has
-    /// several files, the main one.
+    /// plan.json, toolpaths in 3MF, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or
+    /// URScript; if it has several files, the main one.
     file: PathBuf,
     /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are
     /// reported.

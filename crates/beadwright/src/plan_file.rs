@@ -287,11 +287,10 @@ impl FileLayer {
         if index != number {
             return wrong("its index is not its place in the list, counted from 0");
         }
-        let outlines = || islands.iter().flat_map(|i| i.holes.iter().chain([&i.outline]).flatten());
-        if !possible(height) || !near(z) || !outlines().all(|p| near(p.x) && near(p.y)) {
-            return wrong("its thickness (at most 2 m) or a coordinate (at most 20 m) is out of all bounds");
-        }
         let islands: Vec<Polygon> = islands.into_iter().map(FileIsland::polygon).collect();
+        if let Err(reason) = check_layer(z, height, &islands) {
+            return wrong(reason);
+        }
         let read = |(i, pass): (usize, FilePass)| {
             pass.pass().map_err(|reason| PlanFileError::Pass { layer: index + 1, pass: i + 1, reason })
         };
@@ -314,23 +313,43 @@ impl FileIsland {
 
 impl FilePass {
     fn pass(self) -> Result<Pass, &'static str> {
-        let count = self.points.len();
-        if count < 2 {
-            return Err("a pass needs two points");
-        }
-        if !self.points.iter().all(|p| near(p.x) && near(p.y) && near(p.z)) {
-            return Err("a coordinate is out of all bounds (20 m)");
-        }
         let along = |along: FileAlong| match along {
-            FileAlong::Same(value) if possible(value) => Ok(Along::Same(value)),
-            FileAlong::Each(values) if values.len() != count => Err("width and pace need one value, or one per point"),
-            FileAlong::Each(values) if values.iter().all(|&v| possible(v)) => Ok(Along::Each(values)),
-            _ => Err("widths and paces must be greater than 0 and at most 2000"),
+            FileAlong::Same(value) => Along::Same(value),
+            FileAlong::Each(values) => Along::Each(values),
         };
-        let (width, pace) = (along(self.width)?, along(self.pace)?);
-        if !(0.0..=LONGEST_WAIT).contains(&self.wait) {
-            return Err("a wait must last 0 to 36000 s");
-        }
-        Ok(Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace, wait: self.wait })
+        let (width, pace) = (along(self.width), along(self.pace));
+        let wait = self.wait;
+        let pass = Pass { kind: self.kind, closed: self.closed, points: self.points, width, pace, wait };
+        check_pass(&pass).map(|()| pass)
+    }
+}
+
+/// What no machine could weld about a pass that was read, as the end of a sentence.
+pub(crate) fn check_pass(pass: &Pass) -> Result<(), &'static str> {
+    let count = pass.points.len();
+    if count < 2 {
+        return Err("a pass needs two points");
+    }
+    if !pass.points.iter().all(|p| near(p.x) && near(p.y) && near(p.z)) {
+        return Err("a coordinate is out of all bounds (20 m)");
+    }
+    if !(0.0..=LONGEST_WAIT).contains(&pass.wait) {
+        return Err("a wait must last 0 to 36000 s");
+    }
+    [&pass.width, &pass.pace].into_iter().try_for_each(|along| match along {
+        Along::Same(value) if possible(*value) => Ok(()),
+        Along::Each(values) if values.len() != count => Err("width and pace need one value, or one per point"),
+        Along::Each(values) if values.iter().all(|&v| possible(v)) => Ok(()),
+        _ => Err("widths and paces must be greater than 0 and at most 2000"),
+    })
+}
+
+/// What is impossible about the height (mm), thickness (mm) and outlines of a layer that was read.
+pub(crate) fn check_layer(z: f64, height: f64, islands: &[Polygon]) -> Result<(), &'static str> {
+    let mut points = islands.iter().flat_map(Polygon::rings).flat_map(Ring::points);
+    if possible(height) && near(z) && points.all(|p| near(p.x) && near(p.y)) {
+        Ok(())
+    } else {
+        Err("its thickness (at most 2 m) or a coordinate (at most 20 m) is out of all bounds")
     }
 }

@@ -26,7 +26,7 @@ use glam::{DVec2, DVec3};
 use planar::arcs::{Fit, Piece};
 use spread::Spread;
 use table::Follower;
-use tilt::Tilt;
+pub(crate) use tilt::Tilt;
 
 /// Coordinates of a program are multiples of this, mm.
 pub const RESOLUTION_MM: f64 = 1e-3;

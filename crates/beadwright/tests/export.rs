@@ -5,8 +5,11 @@ mod common;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use beadwright::export;
+use beadwright::export::{self, Beads};
+use bytes::Bytes;
 use common::{planned, profile_by};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 
 /// The values of a column by its name.
 fn column(csv: &str, name: &str) -> Vec<f64> {
@@ -43,9 +46,10 @@ fn exported_beads_are_those_of_the_plan() {
         let profile = profile_by(name, strategy);
         let plan = planned(part, &profile);
         let metrics = &plan.summary.metrics;
-        let pieces = export::pieces(&plan.layers, &profile);
-        let csv = String::from_utf8((export::format("csv").unwrap().write)(&pieces)).unwrap();
-        let vtp = String::from_utf8((export::format("VTP").unwrap().write)(&pieces)).unwrap();
+        let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+        let pieces = beads.pieces();
+        let csv = String::from_utf8((export::format("csv").unwrap().write)(&beads).unwrap()).unwrap();
+        let vtp = String::from_utf8((export::format("VTP").unwrap().write)(&beads).unwrap()).unwrap();
         assert_eq!(csv.lines().count(), pieces.len() + 1);
         // Length, from both files.
         let points = numbers(&array(&vtp, "Points"));
@@ -79,4 +83,31 @@ fn exported_beads_are_those_of_the_plan() {
         assert!(pieces.iter().all(|p| p.width > 0.0 && p.speed > 0.0 && p.feed > 0.0));
     }
     assert!(export::format("docx").is_none());
+}
+
+/// A Parquet table, as the crate's own reader has it, is the CSV table.
+#[test]
+fn parquet_holds_the_table() {
+    let profile = profile_by("cmt-al2319-kuka", "compound");
+    let plan = planned("cross", &profile);
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+    let written = |extension: &str| (export::format(extension).unwrap().write)(&beads).unwrap();
+    let (csv, parquet) = (String::from_utf8(written("csv")).unwrap(), written("parquet"));
+    assert_eq!(parquet, written("parquet"), "the same plan gives the same bytes");
+    let reader = SerializedFileReader::new(Bytes::from(parquet)).unwrap();
+    let fields = reader.metadata().file_metadata().schema().get_fields().to_vec();
+    let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+    assert_eq!(names.join(","), csv.lines().next().unwrap());
+    let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), csv.lines().count() - 1);
+    for (row, line) in rows.iter().zip(csv.lines().skip(1)) {
+        for ((_, field), text) in row.get_column_iter().zip(line.split(',')) {
+            match field {
+                Field::Double(value) => assert!((value - text.parse::<f64>().unwrap()).abs() < 1e-4),
+                Field::Int(value) => assert_eq!(value.to_string(), text),
+                Field::Str(value) => assert_eq!(value, text),
+                other => unreachable!("{other}"),
+            }
+        }
+    }
 }

@@ -12,7 +12,7 @@ use glam::{DMat3, DVec3};
 fn solid(name: &str) -> Import {
     match Model::read(&example::find(name).unwrap().stl(), &Task::new()).unwrap() {
         Model::Mesh(import) => import,
-        Model::Curves(_) => panic!("{name} is a solid"),
+        Model::Curves(_) | Model::Outlines(_) => panic!("{name} is a solid"),
     }
 }
 

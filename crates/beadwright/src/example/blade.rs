@@ -1,7 +1,7 @@
 //! A turbine blade as a thin wall: an arched mean line that turns with height, with equal thickness on both sides.
 
-use super::solid::Solid;
 use crate::curve::Nurbs;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::PI;

@@ -1,6 +1,6 @@
 //! A cross with four square-ended arms.
 
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 

@@ -1,7 +1,7 @@
 //! A gear with trapezoidal teeth and a bore. The tips are flat and wide enough for a bead along each flank.
 
 use super::outline;
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::TAU;

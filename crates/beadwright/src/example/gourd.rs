@@ -1,8 +1,8 @@
 //! A bottle gourd: two bellies, a waist and a neck, open at both ends. The wall is measured across, as a bead makes it:
 //! where it leans, a layer shows it thicker.
 
-use super::solid::Solid;
 use crate::curve::Nurbs;
+use crate::model::solid::Solid;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -5,7 +5,6 @@
 //! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | [`blade`], `gourd`, `pot`, `tian` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
-//! | `solid` | outlines become closed triangle meshes |
 
 pub mod blade;
 mod cross;
@@ -15,16 +14,14 @@ mod outline;
 mod plate;
 mod pot;
 mod propeller;
-mod solid;
 mod star;
 mod tian;
 mod vase;
 
 use crate::curve::Nurbs;
-use crate::model::Mesh;
 use crate::model::iges::{self, WriteOptions};
-use glam::DVec3;
-use solid::Solid;
+use crate::model::solid::Solid;
+use crate::model::{Mesh, stl};
 
 /// A part that the program itself can generate; it stands on z = 0, centred about the z axis.
 #[derive(Debug, Clone, Copy)]
@@ -110,17 +107,8 @@ impl Example {
     /// The part as a binary STL file, mm.
     pub fn stl(&self) -> Vec<u8> {
         let solid = (self.build)();
-        let mut bytes = format!("beadwright example {}", self.name).into_bytes();
-        bytes.resize(80, 0);
-        bytes.extend((solid.triangles.len() as u32).to_le_bytes());
-        for triangle in &solid.triangles {
-            let [a, b, c] = triangle.map(|i| solid.vertices[i as usize].as_vec3());
-            let [p, q, r] = [a, b, c].map(|v| v.as_dvec3());
-            let normal = (q - p).cross(r - p).normalize_or(DVec3::Z).as_vec3();
-            bytes.extend([normal, a, b, c].iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
-            bytes.extend([0, 0]);
-        }
-        bytes
+        let facets = solid.triangles.iter().map(|t| t.map(|i| solid.vertices[i as usize]));
+        stl::write(&format!("beadwright example {}", self.name), facets)
     }
 
     /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are not thin walls.

@@ -1,7 +1,7 @@
 //! A plate with rounded corners and holes of different size.
 
 use super::outline;
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::FRAC_PI_2;

@@ -2,8 +2,8 @@
 //! it thicker where it leans, most at the corners.
 
 use super::outline;
-use super::solid::Solid;
 use crate::curve::Nurbs;
+use crate::model::solid::Solid;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use std::f64::consts::FRAC_PI_2;

@@ -2,7 +2,7 @@
 //! turns with height as a screw does, half the turn below mid height and half above, where the tips reach farthest.
 
 use super::outline;
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring, polyline};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};

@@ -1,6 +1,6 @@
 //! A five-pointed star, one point along +y.
 
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::{FRAC_PI_2, PI};

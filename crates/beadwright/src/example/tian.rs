@@ -1,7 +1,7 @@
 //! A frame with a cross inside, like the character 田: outer walls and two inner ones that cross.
 
-use super::solid::Solid;
 use crate::curve::Nurbs;
+use crate::model::solid::Solid;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 

@@ -1,6 +1,6 @@
 //! A vase with a curved wall: belly below, neck above. The wall is measured horizontally, as every layer shows it.
 
-use super::solid::Solid;
+use crate::model::solid::Solid;
 use glam::DVec2;
 use std::f64::consts::TAU;
 

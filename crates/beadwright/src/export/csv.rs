@@ -1,27 +1,27 @@
 //! Beads as a table: one line a piece, units in the head.
 
-use super::{Format, Piece};
+use super::table::{COUNTS, KIND, MEASURES};
+use super::{Beads, ExportError, Format};
 use crate::number::push_fixed;
 
 pub(super) const FORMAT: Format =
     Format { extension: "csv", purpose: "a table of all pieces, for spreadsheets and pandas", write };
 
-const HEAD: &str = "layer,pass,kind,x0 (mm),y0 (mm),z0 (mm),x1 (mm),y1 (mm),z1 (mm),width (mm),height (mm),speed (mm/s),\
-                    pace (mm/s),wire feed (ratio),start (s),time (s)\n";
-
-fn write(pieces: &[Piece]) -> Vec<u8> {
-    let mut text = String::with_capacity(HEAD.len() + 120 * pieces.len());
-    text.push_str(HEAD);
-    for p in pieces {
-        text.push_str(&format!("{},{},{}", p.layer, p.pass, p.kind.name()));
-        let [from, to] = [p.from, p.to];
-        let places = [from.x, from.y, from.z, to.x, to.y, to.z];
-        let values = [p.width, p.height, p.speed, p.pace, p.feed, p.start, p.seconds];
-        for (value, decimals) in places.iter().map(|v| (*v, 4)).chain(values.iter().map(|v| (*v, 6))) {
+fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
+    let pieces = beads.pieces();
+    let mut text = String::with_capacity(256 + 120 * pieces.len());
+    let names: Vec<&str> =
+        COUNTS.iter().map(|(name, _)| *name).chain([KIND]).chain(MEASURES.iter().map(|m| m.name)).collect();
+    text.push_str(&names.join(","));
+    text.push('\n');
+    for piece in &pieces {
+        COUNTS.iter().for_each(|(_, count)| text.push_str(&format!("{},", count(piece))));
+        text.push_str(piece.kind.name());
+        for column in &MEASURES {
             text.push(',');
-            push_fixed(&mut text, value, decimals);
+            push_fixed(&mut text, (column.value)(piece), column.decimals);
         }
         text.push('\n');
     }
-    text.into_bytes()
+    Ok(text.into_bytes())
 }

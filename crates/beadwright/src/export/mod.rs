@@ -1,18 +1,42 @@
-//! A plan for other programs: its beads piece by piece, as tables and as scenes.
+//! A plan for other programs: its beads piece by piece, as tables, as scenes and as toolpaths.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `csv` | spreadsheets, pandas |
+//! | `csv`, `parquet` | spreadsheets, pandas; `table` has their columns |
 //! | `vtp` | ParaView, VTK, pyvista |
+//! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
+//! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
+//! | `dxf`, `svg` | CAD and drawing programs, layer by layer |
+//! | `walk` | what all of them write: the passes as they are welded, with times and waits |
 
 mod csv;
+mod dxf;
+mod glb;
+mod parquet;
+mod stl;
+mod svg;
+mod swept;
+mod table;
+pub mod toolpath;
 mod vtp;
+mod walk;
 
 use crate::layer::Layer;
 use crate::pass::PassKind;
+use crate::plan::Header;
 use crate::profile::Profile;
-use crate::weld::{Torch, path};
 use glam::DVec3;
+
+/// What is exported: a plan and the profile it is welded with.
+#[derive(Debug, Clone, Copy)]
+pub struct Beads<'a> {
+    /// Part, profile and strategy.
+    pub header: &'a Header,
+    /// Layers, lowest first.
+    pub layers: &'a [Layer],
+    /// How they are welded.
+    pub profile: &'a Profile,
+}
 
 /// A format for beads.
 pub struct Format {
@@ -20,16 +44,58 @@ pub struct Format {
     pub extension: &'static str,
     /// What it is for.
     pub purpose: &'static str,
-    /// Writes pieces of beads.
-    pub write: fn(&[Piece]) -> Vec<u8>,
+    /// Writes the bytes of a file.
+    pub write: fn(&Beads<'_>) -> Result<Vec<u8>, ExportError>,
+}
+
+/// Why a plan cannot be exported.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// Nothing to write.
+    #[error("the plan has no passes, so there is nothing to export")]
+    Empty,
+    /// The archive of a 3MF file cannot be made.
+    #[error("the archive cannot be written: {0}")]
+    Archive(#[from] zip::result::ZipError),
+    /// A Parquet table cannot be made.
+    #[error("the table cannot be written: {0}")]
+    Table(#[from] ::parquet::errors::ParquetError),
+    /// More than the format can hold.
+    #[error("the file would have {gigabytes:.1} GB, and this format holds 4 GB; export it as STL")]
+    TooLarge {
+        /// Its size, GB.
+        gigabytes: f64,
+    },
+    /// The content of an archive cannot be packed.
+    #[error("the archive cannot be written: {0}")]
+    Packing(#[from] std::io::Error),
 }
 
 /// All of them.
-pub const FORMATS: [Format; 2] = [csv::FORMAT, vtp::FORMAT];
+pub const FORMATS: [Format; 6] =
+    [csv::FORMAT, parquet::FORMAT, vtp::FORMAT, toolpath::FORMAT, stl::FORMAT, glb::FORMAT];
 
 /// The format of files with this ending.
 pub fn format(extension: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
+}
+
+/// A format for single layers.
+pub struct LayerFormat {
+    /// The ending of its files.
+    pub extension: &'static str,
+    /// What it is for.
+    pub purpose: &'static str,
+    /// Writes the text of a file.
+    pub write: fn(&Layer) -> String,
+}
+
+/// All of them.
+pub const LAYER_FORMATS: [LayerFormat; 2] = [dxf::FORMAT, svg::FORMAT];
+
+/// The format of layers in files with this ending.
+pub fn layer_format(extension: &str) -> Option<&'static LayerFormat> {
+    LAYER_FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
 }
 
 /// A straight piece of a bead, as it is welded: with overlap, hot start and lead-out.
@@ -61,61 +127,9 @@ pub struct Piece {
     pub seconds: f64,
 }
 
-/// The pieces of all beads of a plan, in the order in which they are welded.
-pub fn pieces(layers: &[Layer], profile: &Profile) -> Vec<Piece> {
-    let (mut torch, mut found, mut now) = (Torch::of(&profile.weld_settings()), Vec::new(), 0.0);
-    for layer in layers.iter().filter(|layer| !layer.passes.is_empty()) {
-        now += torch.begin_layer(layer.index).map_or(0.0, |pause| pause.moving + pause.seconds);
-        for (number, pass) in (1..).zip(&layer.passes) {
-            let Some(start) = pass.start() else { continue };
-            now += torch.wait(pass.wait).map_or(0.0, |pause| pause.moving + pause.seconds);
-            now += torch.approach(start).moving;
-            let moves = path(pass, torch.ends());
-            let welded = torch.weld(&moves);
-            now += welded.before;
-            let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / torch.speed_at(w[1].1)).sum();
-            // Speeding up and slowing down is spread over the pass.
-            let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };
-            let (mut begin, mut way) = (now, 0.0);
-            let widths = widths(pass);
-            for pair in moves.windows(2) {
-                let (from, (to, pace)) = (pair[0].0, pair[1]);
-                let (speed, feed) = (torch.speed_at(pace), torch.feed_at(pace));
-                let seconds = from.distance(to) / speed * slower;
-                let width = widths.iter().find(|(end, _)| way < end - 1e-9).or(widths.last()).map_or(0.0, |w| w.1);
-                way += from.distance(to);
-                let (layer, height, kind) = (layer.index + 1, layer.height, pass.kind);
-                found.push(Piece {
-                    layer,
-                    pass: number,
-                    kind,
-                    from,
-                    to,
-                    width,
-                    height,
-                    speed,
-                    pace,
-                    feed,
-                    start: begin,
-                    seconds,
-                });
-                begin += seconds;
-            }
-            now += welded.moving + welded.crater + welded.after + torch.retract().moving;
-        }
+impl Beads<'_> {
+    /// The pieces of all beads, in the order in which they are welded.
+    pub fn pieces(&self) -> Vec<Piece> {
+        walk::runs(self.layers, self.profile).into_iter().flat_map(|run| run.pieces).collect()
     }
-    found
-}
-
-/// How far along a pass each width reaches, mm, and the width, mm; the overlap of a closed pass begins anew.
-fn widths(pass: &crate::pass::Pass) -> Vec<(f64, f64)> {
-    let mut way = 0.0;
-    let mut once: Vec<(f64, f64)> = Vec::new();
-    for segment in pass.segments() {
-        way += segment.length();
-        once.push((way, segment.width));
-    }
-    let again: Vec<(f64, f64)> = once.iter().map(|(end, width)| (end + way, *width)).collect();
-    once.extend(again);
-    once
 }

@@ -2,7 +2,7 @@
 //!
 //! In ParaView, the filter Tube with the radius by `width` shows the beads.
 
-use super::{Format, Piece};
+use super::{Beads, ExportError, Format, Piece};
 use crate::pass::PassKind;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -13,7 +13,8 @@ pub(super) const FORMAT: Format =
 /// The numbers that stand for the kinds of passes.
 const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
 
-fn write(pieces: &[Piece]) -> Vec<u8> {
+fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
+    let pieces = beads.pieces();
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<!-- mm, s; kind: 0 contour, 1 infill, 2 skeleton, 3 wall -->\n\
          <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n\
@@ -47,7 +48,7 @@ fn write(pieces: &[Piece]) -> Vec<u8> {
     number("pass", |p| p.pass);
     number("kind", |p| KINDS.iter().position(|kind| *kind == p.kind).unwrap_or_default());
     text.push_str("</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n");
-    text.into_bytes()
+    Ok(text.into_bytes())
 }
 
 /// An array: the number of its bytes, then the bytes, in one base64 text.

@@ -118,13 +118,21 @@ impl Programs {
     }
 }
 
-/// Where programs begin: elsewhere than at the beginning, a build goes on that was stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Where programs begin and end: elsewhere than at the beginning, a build goes on that was stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Start {
     /// Index of the layer, from 0.
     pub layer: usize,
     /// Index of the pass in it, from 0.
     pub pass: usize,
+    /// Index of the last layer, from 0; layers above it are in no program.
+    pub last: usize,
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self { layer: 0, pass: 0, last: usize::MAX }
+    }
 }
 
 /// Makes the text of all files of a plan as its layers come.
@@ -150,7 +158,7 @@ impl PlanFiles {
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
         let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
-        if layer.index >= self.start.layer {
+        if (self.start.layer..=self.start.last).contains(&layer.index) {
             let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
             chunks.extend(self.programs.layer(layer, first));
         } else {

@@ -5,30 +5,39 @@
 //! | `formats` | the formats of solids, and how loose triangles become a mesh |
 //! | [`stl`] | binary and ASCII STL, told apart by content |
 //! | `threemf`, `amf`, `obj`, `ply` | one other format each |
+//! | [`outline`] | drawings in DXF and SVG, whose outlines become solids |
+//! | `package` | a 3MF file as an archive of files |
 //! | `xml` | elements of XML files, one after another |
 //! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
+//! | [`cut`] | what lies above a plane |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
+//! | `solid` | outlines become closed meshes |
 //! | [`units`] | millimetres or inches? |
 //! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
 pub(crate) mod adjacency;
 mod amf;
+pub mod cut;
 mod formats;
 pub mod iges;
 pub(crate) mod merge_vertices;
 mod obj;
+pub mod outline;
+pub(crate) mod package;
 mod part;
 mod ply;
 pub mod repair;
+pub(crate) mod solid;
 pub mod stl;
 mod threemf;
 pub mod units;
 pub mod wall_curves;
-mod xml;
+pub(crate) mod xml;
 
+pub use outline::Outlines;
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use repair::RepairReport;
 pub use units::Units;
@@ -69,6 +78,8 @@ pub struct Import {
     pub units: Option<Units>,
     /// The objects that the file holds, where it names them.
     pub objects: Vec<Object>,
+    /// What was passed over, as sentences.
+    pub notes: Vec<String>,
 }
 
 /// An object of a file.
@@ -99,6 +110,14 @@ pub enum ImportError {
         "this is an IGES file: its curves can be welded as walls, but here a solid is needed. Save the model as STL (binary or ASCII)."
     )]
     Iges,
+    /// Outlines where a solid is needed.
+    #[error(
+        "this is {found}: a part grows from it with a height (`plan --height`), but here a solid is needed. Save the model as STL (binary or ASCII)."
+    )]
+    Outline {
+        /// What it is.
+        found: &'static str,
+    },
     /// No known format.
     #[error(
         "this is not an STL file: {reason}; nor is it 3MF, OBJ, PLY or AMF. Save the model as STL (binary or ASCII) and try again."
@@ -195,6 +214,9 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
         && let Some(found) = other_format(bytes)
     {
         return Err(ImportError::OtherFormat { found });
+    }
+    if let Some(found) = outline::drawing(bytes) {
+        return Err(ImportError::Outline { found });
     }
     let known = formats::ALL.iter().find(|format| (format.is)(bytes));
     // A file of the right size is binary STL, whatever its header looks like.

@@ -1,6 +1,8 @@
 //! A model file becomes a part: a solid or the centre-lines of a wall, in mm, turned, and set onto z = 0.
 
+use super::cut;
 use super::iges::{self, IgesError, IgesFile};
+use super::outline::{self, Outlines};
 use super::units::{self, UnitsUnclear};
 use super::wall_curves::{WallCurves, WallCurvesError};
 use super::{Import, ImportError, MAX_REACH_MM, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
@@ -17,6 +19,8 @@ pub enum Model {
     Mesh(Import),
     /// Curves.
     Curves(IgesFile),
+    /// Outlines, from which a solid grows.
+    Outlines(Outlines),
 }
 
 /// How a model is placed. The default leaves it as it is, and guesses the unit.
@@ -42,6 +46,7 @@ impl Default for Placement {
 
 /// The part that is planned.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one part at a time")]
 pub enum Part {
     /// A solid that stands on z = 0.
     Mesh(Import),
@@ -96,15 +101,26 @@ pub enum PartError {
     #[error(transparent)]
     Units(#[from] UnitsUnclear),
     /// A height was given for a solid.
-    #[error("a height belongs to walls given by curves (IGES), not to a solid")]
+    #[error("a height belongs to walls given by curves (IGES) and to outlines (DXF, SVG), not to a solid")]
     HeightOfSolid,
-    /// All curves lie at one height, and no height was given at which the wall ends.
-    #[error("the curves lie at one height: say how high the wall grows, mm")]
+    /// All curves or outlines lie at one height, and no height was given at which the part ends.
+    #[error("the curves lie at one height: say how high the part grows, mm")]
     NoHeight,
+    /// Nothing is left above the plane at which the part is cut.
+    #[error("the part is {top:.2} mm high, so nothing of it lies above {z} mm")]
+    NothingAbove {
+        /// Height of the part, mm.
+        top: f64,
+        /// Height of the plane, mm.
+        z: f64,
+    },
+    /// Curves are not cut.
+    #[error("a part given by curves is not cut by a plane; give its solid")]
+    CurvesUncut,
 }
 
 impl Model {
-    /// Reads a solid, or curves. The content decides, not the file's name.
+    /// Reads a solid, curves or outlines. The content decides, not the file's name.
     ///
     /// # Errors
     /// [`PartError`].
@@ -126,10 +142,17 @@ impl Model {
         task: &Task,
     ) -> Result<Self, PartError> {
         let bytes = &*decoded(bytes).map_err(ImportError::from)?;
-        Ok(if is_iges(bytes) { Self::Curves(iges::read(bytes)?) } else { Self::Mesh(import(bytes, task)?) })
+        Ok(if is_iges(bytes) {
+            Self::Curves(iges::read(bytes)?)
+        } else if outline::drawing(bytes).is_some() {
+            Self::Outlines(outline::read(bytes)?)
+        } else {
+            Self::Mesh(import(bytes, task)?)
+        })
     }
 
-    /// Places the model as a part. Curves that all lie at one height need the `height` (mm) at which the wall ends.
+    /// Places the model as a part. Outlines, and curves that all lie at one height, need the `height` (mm) at which the part
+    /// ends.
     ///
     /// # Errors
     /// [`PartError`].
@@ -138,6 +161,7 @@ impl Model {
             Self::Mesh(_) if height.is_some() => Err(PartError::HeightOfSolid),
             Self::Mesh(import) => Ok(Part::Mesh(placement.solid(import, bead_width)?)),
             Self::Curves(file) => placement.wall(&file, height),
+            Self::Outlines(outlines) => placement.grown(&outlines, height, bead_width),
         }
     }
 }
@@ -161,6 +185,21 @@ impl Placement {
         }
         mesh.check_reach()?;
         Ok(import)
+    }
+
+    fn grown(&self, outlines: &Outlines, height: Option<f64>, bead_width: f64) -> Result<Part, PartError> {
+        let height = height.ok_or(PartError::NoHeight)?;
+        let units = match self.units.or(outlines.units) {
+            Some(units) => units,
+            None => units::guess(outlines.size().extend(0.0) * self.scale, bead_width)?,
+        };
+        let factor = units.in_mm() * self.scale;
+        let reach = factor * outlines.reach();
+        if reach.is_nan() || reach > MAX_REACH_MM {
+            return Err(ImportError::TooFar { reach_m: reach / 1000.0 }.into());
+        }
+        let import = outlines.extruded(factor, height)?;
+        Ok(Part::Mesh(Self { scale: 1.0, units: None, ..*self }.solid(import, bead_width)?))
     }
 
     fn wall(&self, file: &IgesFile, height: Option<f64>) -> Result<Part, PartError> {
@@ -207,6 +246,20 @@ impl Part {
         }
     }
 
+    /// What lies above the height `z` (mm), set onto z = 0.
+    ///
+    /// # Errors
+    /// [`PartError::NothingAbove`], and [`PartError::CurvesUncut`] for curves.
+    pub fn above(self, z: f64) -> Result<Self, PartError> {
+        let Self::Mesh(import) = self else { return Err(PartError::CurvesUncut) };
+        let top = import.mesh.bounds().1.z;
+        let (mesh, cut) = cut::above(&import.mesh, z).ok_or(PartError::NothingAbove { top, z })?;
+        // What was mended before the cut stays told.
+        let (triangles, vertices, open_edges, shells) = (cut.triangles, cut.vertices, cut.open_edges, cut.shells);
+        let repair = RepairReport { triangles, vertices, open_edges, shells, ..import.repair };
+        Ok(Self::Mesh(Import { mesh, repair, ..import }))
+    }
+
     /// The solid; none for curves.
     pub fn mesh(&self) -> Option<&Mesh> {
         match self {
@@ -226,7 +279,7 @@ impl Part {
     /// What was mended or is not read, as sentences.
     pub fn warnings(&self) -> Vec<String> {
         match self {
-            Self::Mesh(import) => import.repair.sentences(),
+            Self::Mesh(import) => import.repair.sentences().into_iter().chain(import.notes.iter().cloned()).collect(),
             Self::Curves { warnings, .. } => warnings.clone(),
         }
     }

@@ -6,11 +6,30 @@
 use super::formats::{self, Facet, Format};
 use super::{Import, ImportError};
 use crate::task::Task;
+use glam::DVec3;
 
 pub(super) const FORMAT: Format = Format { is: |_| true, read };
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
+
+/// A binary STL file of triangles with their corners counter-clockwise seen from outside; `name` stands in its header, up to
+/// 80 bytes of it. Coordinates are written with 24 bits.
+pub fn write(name: &str, triangles: impl Iterator<Item = [DVec3; 3]>) -> Vec<u8> {
+    let mut bytes = name.as_bytes().to_vec();
+    bytes.resize(HEADER, 0);
+    let mut count = 0_u32;
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| corner.as_vec3());
+        let [p, q, r] = [a, b, c].map(|corner| corner.as_dvec3());
+        let normal = (q - p).cross(r - p).normalize_or(DVec3::Z).as_vec3();
+        bytes.extend([normal, a, b, c].iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
+        bytes.extend([0, 0]);
+        count += 1;
+    }
+    bytes[80..HEADER].copy_from_slice(&count.to_le_bytes());
+    bytes
+}
 
 /// Reads a binary or ASCII STL file.
 ///

@@ -1,37 +1,28 @@
 //! 3MF: the core specification with build transforms, components and several objects, and the production extension's parts
 //! in several files.
 //!
-//! Nothing is unpacked to the disk, and a path only names an entry of the archive. What an archive may unfold to is
-//! bounded: bytes of its model files, triangles with all copies, components in components.
+//! What an archive may unfold to is bounded: bytes of its model files, triangles with all copies, components in
+//! components.
 
 use super::formats::{self, Facet, Format, MOST_TRIANGLES};
-use super::xml::{Element, Elements, Step};
+use super::package::{self, Package, broken, entry_name};
+use super::xml::{Element, Step};
 use super::{Import, ImportError, Object, Units};
 use crate::task::Task;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
-use std::io::{BufReader, Cursor, Read};
-use zip::ZipArchive;
 
-pub(super) const FORMAT: Format = Format { is: |bytes| bytes.starts_with(b"PK\x03\x04"), read };
+pub(super) const FORMAT: Format = Format { is: package::is_package, read };
 
-/// The model files of an archive hold no more, bytes.
-const MOST_BYTES: u64 = 4 << 30;
-/// An archive has no more entries.
-const MOST_ENTRIES: usize = 10_000;
 /// Components lie no deeper in each other.
 const DEEPEST: usize = 32;
-/// Where the model lies if the archive does not say.
-const USUAL: &str = "3D/3dmodel.model";
 /// Extensions that a file may require: they change neither shape nor place.
 const KNOWN: [&str; 4] = [
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
-    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+    package::PRODUCTION,
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
     "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07",
 ];
-
-type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 /// A file of the archive and a number in it.
 type Id = (String, u32);
@@ -60,67 +51,32 @@ struct Resources {
     triangles: usize,
 }
 
-fn broken(reason: impl Into<String>) -> ImportError {
-    ImportError::Broken { format: "3MF", reason: reason.into() }
-}
-
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
-    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| broken(error.to_string()))?;
-    if archive.len() > MOST_ENTRIES {
-        return Err(broken(format!("its archive has {} entries, at most {MOST_ENTRIES} are read", archive.len())));
-    }
-    let main = main_file(&mut archive)?;
-    let (mut resources, mut left) = (Resources { unit: 1.0, ..Resources::default() }, MOST_BYTES);
+    let mut package = Package::open(bytes)?;
+    let main = package.main()?;
+    let mut resources = Resources { unit: 1.0, ..Resources::default() };
     let mut wanted = vec![main.clone()];
     let mut done: Vec<String> = Vec::new();
     while let Some(path) = wanted.pop() {
         if done.contains(&path) {
             continue;
         }
-        let others = read_model(&mut archive, &path, path == main, &mut resources, &mut left, task)?;
+        let others = read_model(&mut package, &path, path == main, &mut resources, task)?;
         wanted.extend(others);
         done.push(path);
     }
     build(&resources, task)
 }
 
-/// The path of the model in the archive, as its relationships tell it.
-fn main_file(archive: &mut Archive<'_>) -> Result<String, ImportError> {
-    let mut found = None;
-    if let Ok(entry) = archive.by_name("_rels/.rels") {
-        let mut elements = Elements::new(BufReader::new(entry.take(1 << 20)), "3MF");
-        while let Some(step) = elements.next()? {
-            let Step::Begin(element) = step else { continue };
-            let is_model = element.attribute("Type").is_some_and(|kind| kind.ends_with("/3dmodel"));
-            if element.name() == "Relationship" && is_model {
-                found = element.attribute("Target");
-            }
-        }
-    }
-    let path = found.map_or(USUAL.to_owned(), |path| entry_name(&path));
-    if archive.by_name(&path).is_err() {
-        return Err(broken(format!("this ZIP archive holds no model ({path} is not in it)")));
-    }
-    Ok(path)
-}
-
-/// A path in a 3MF file as the name of an archive's entry.
-fn entry_name(path: &str) -> String {
-    path.trim_start_matches('/').to_owned()
-}
-
 /// Reads a model file of the archive; returns the other files that it names.
 fn read_model(
-    archive: &mut Archive<'_>,
+    package: &mut Package<'_>,
     path: &str,
     main: bool,
     resources: &mut Resources,
-    left: &mut u64,
     task: &Task,
 ) -> Result<Vec<String>, ImportError> {
-    let entry = archive.by_name(path).map_err(|error| broken(format!("{path}: {error}")))?;
-    let limited = Counted { inner: entry, left };
-    let mut elements = Elements::new(BufReader::with_capacity(1 << 16, limited), "3MF");
+    let mut elements = package.elements(path)?;
     let mut others = Vec::new();
     let mut open: Option<(u32, Resource)> = None;
     let mut steps = 0_u64;
@@ -145,8 +101,8 @@ fn read_model(
         };
         match element.name() {
             "model" => {
-                check_extensions(&element)?;
-                let unit = in_mm(&element.attribute("unit").unwrap_or_default())?;
+                package::check_extensions(&element, &KNOWN)?;
+                let unit = package::unit_in_mm(&element)?;
                 resources.unit = if main { unit } else { resources.unit };
             }
             "object" => {
@@ -197,38 +153,6 @@ fn read_model(
 
 fn too_many() -> ImportError {
     broken(format!("it has more than {MOST_TRIANGLES} triangles, with all copies"))
-}
-
-/// Refuses a file that requires what is not read.
-fn check_extensions(model: &Element) -> Result<(), ImportError> {
-    let spaces: BTreeMap<String, String> = model
-        .attributes()
-        .into_iter()
-        .filter_map(|(key, value)| Some((key.strip_prefix("xmlns:")?.to_owned(), value)))
-        .collect();
-    let required = model.attribute("requiredextensions").unwrap_or_default();
-    for prefix in required.split_whitespace() {
-        let space = spaces.get(prefix).map_or(prefix, String::as_str);
-        if !KNOWN.contains(&space) {
-            return Err(broken(format!(
-                "it requires the extension {space}, which is not read; save it with triangles alone"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Millimetres in a unit of 3MF.
-fn in_mm(unit: &str) -> Result<f64, ImportError> {
-    Ok(match unit {
-        "" | "millimeter" => 1.0,
-        "micron" => 1e-3,
-        "centimeter" => 10.0,
-        "meter" => 1000.0,
-        "inch" => 25.4,
-        "foot" => 304.8,
-        other => return Err(broken(format!("its unit \"{other}\" is not one of 3MF"))),
-    })
 }
 
 /// The transform of a component or item: twelve numbers, the rows of a matrix that is applied to row vectors.
@@ -313,22 +237,5 @@ fn lay(resources: &Resources, id: &Id, at: &DAffine3, facets: &mut Vec<Facet>) -
             }
             Ok(())
         }
-    }
-}
-
-/// Reads on until too much has come out of an archive.
-struct Counted<'a, R> {
-    inner: R,
-    left: &'a mut u64,
-}
-
-impl<R: Read> Read for Counted<'_, R> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        *self.left = self
-            .left
-            .checked_sub(count as u64)
-            .ok_or_else(|| std::io::Error::other(format!("it unfolds to more than {} GB", MOST_BYTES >> 30)))?;
-        Ok(count)
     }
 }

@@ -6,7 +6,7 @@ use quick_xml::{Reader, XmlVersion};
 use std::io::BufRead;
 
 /// An XML file read element by element.
-pub(super) struct Elements<R> {
+pub(crate) struct Elements<R> {
     reader: Reader<R>,
     buffer: Vec<u8>,
     format: &'static str,
@@ -14,7 +14,7 @@ pub(super) struct Elements<R> {
 }
 
 /// What comes next in the file; names without their prefix.
-pub(super) enum Step {
+pub(crate) enum Step {
     /// An element begins; one without content has no end of its own.
     Begin(Element),
     /// An element ends.
@@ -24,18 +24,18 @@ pub(super) enum Step {
 }
 
 /// The beginning of an element.
-pub(super) struct Element(BytesStart<'static>);
+pub(crate) struct Element(BytesStart<'static>);
 
 /// Elements lie no deeper in each other.
 const DEEPEST: usize = 256;
 
 impl<R: BufRead> Elements<R> {
-    pub(super) fn new(text: R, format: &'static str) -> Self {
+    pub(crate) fn new(text: R, format: &'static str) -> Self {
         Self { reader: Reader::from_reader(text), buffer: Vec::new(), format, depth: 0 }
     }
 
     /// The next step; `None` at the end of the file.
-    pub(super) fn next(&mut self) -> Result<Option<Step>, ImportError> {
+    pub(crate) fn next(&mut self) -> Result<Option<Step>, ImportError> {
         loop {
             self.buffer.clear();
             let place = self.reader.buffer_position();
@@ -71,18 +71,18 @@ impl<R: BufRead> Elements<R> {
 
 impl Element {
     /// Its name without prefix.
-    pub(super) fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         self.0.local_name().into_inner()
     }
 
     /// The attribute of a name, whatever its prefix.
-    pub(super) fn attribute(&self, name: &str) -> Option<String> {
+    pub(crate) fn attribute(&self, name: &str) -> Option<String> {
         let own = |key: &str| key.rsplit(':').next() == Some(name);
         self.attributes().into_iter().find(|(key, _)| own(key)).map(|(_, value)| value)
     }
 
     /// The attributes with their whole names, prefix included.
-    pub(super) fn attributes(&self) -> Vec<(String, String)> {
+    pub(crate) fn attributes(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
         for attribute in self.0.attributes().with_checks(false).flatten() {
             let value = attribute.normalized_value(XmlVersion::Explicit1_0).unwrap_or_default().into_owned();
@@ -92,7 +92,7 @@ impl Element {
     }
 
     /// An attribute that must hold a number.
-    pub(super) fn number<T: std::str::FromStr>(&self, name: &str) -> Result<T, String> {
+    pub(crate) fn number<T: std::str::FromStr>(&self, name: &str) -> Result<T, String> {
         let text = self.attribute(name).ok_or_else(|| format!("<{}> lacks {name}", self.name()))?;
         text.trim().parse().map_err(|_| format!("{name}=\"{text}\" in <{}> is not a number", self.name()))
     }

@@ -25,7 +25,7 @@ type Outlines = RTree<Line<[f64; 2]>>;
 
 /// Leans the torch layer by layer.
 #[derive(Debug, Clone)]
-pub(super) struct Tilt {
+pub(crate) struct Tilt {
     follow_wall: f64,
     /// rad
     max_work_angle: f64,
@@ -38,7 +38,7 @@ pub(super) struct Tilt {
 
 impl Tilt {
     /// A torch that leans as the profile has it; `None` where it stays upright.
-    pub(super) fn new(program: &ProgramSettings) -> Option<Self> {
+    pub(crate) fn new(program: &ProgramSettings) -> Option<Self> {
         let (max_work_angle, back) = (program.max_work_angle.to_radians(), program.travel_angle.to_radians().sin());
         let (here, below) = (Outlines::new(), Outlines::new());
         let tilt = Self { follow_wall: program.follow_wall, max_work_angle, back, here, below, height: 1.0 };
@@ -46,7 +46,7 @@ impl Tilt {
     }
 
     /// Goes on to the next layer.
-    pub(super) fn enter(&mut self, layer: &Layer) {
+    pub(crate) fn enter(&mut self, layer: &Layer) {
         let line = |(a, b): (DVec2, DVec2)| Line::new(a.to_array(), b.to_array());
         let rings = layer.islands.iter().flat_map(Polygon::rings);
         let mut edges: Vec<_> = rings.flat_map(|ring| ring.edges()).map(line).collect();
@@ -60,7 +60,7 @@ impl Tilt {
     }
 
     /// Divides long moves beside their ends, so that the torch turns at corners and not all along the sides.
-    pub(super) fn divided(moves: Vec<(DVec3, f64)>, width: f64) -> Vec<(DVec3, f64)> {
+    pub(crate) fn divided(moves: Vec<(DVec3, f64)>, width: f64) -> Vec<(DVec3, f64)> {
         let mut divided: Vec<(DVec3, f64)> = Vec::with_capacity(moves.len());
         for (to, pace) in moves {
             let long = divided.last().map(|last| last.0).filter(|from| from.distance(to) > 6.0 * width);
@@ -74,7 +74,7 @@ impl Tilt {
     }
 
     /// The lean at every point of a path whose beads are so wide (mm).
-    pub(super) fn leans(&self, moves: &[(DVec3, f64)], width: f64) -> Vec<DVec2> {
+    pub(crate) fn leans(&self, moves: &[(DVec3, f64)], width: f64) -> Vec<DVec2> {
         let points: Vec<DVec2> = moves.iter().map(|(to, _)| to.truncate()).collect();
         let leans: Vec<DVec2> =
             (0..points.len()).map(|i| self.wall(points[i], width) - way(&points, i) * self.back).collect();

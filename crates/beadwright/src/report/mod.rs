@@ -119,7 +119,7 @@ fn travels(layer: &Layer) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
 }
 
 /// Text for HTML and XML, in elements and in attributes.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

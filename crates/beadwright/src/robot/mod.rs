@@ -12,7 +12,7 @@
 //! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and with the metal
 //!    laid so far (`body.rs`), where the cell tells how thick they are.
 //!
-//! [`suggest()`] searches for a place of the part with greater margins, [`turn_table`] for the angle of a table under
+//! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`turn_table`] for the angle of a table under
 //! it.
 //!
 //! Not checked: cables, fixtures and anything else beside the table, and the load's dynamics.
@@ -26,6 +26,7 @@ pub mod page;
 pub mod suggest;
 pub mod table;
 pub mod track;
+pub mod trajectory;
 mod turn;
 mod walk;
 
@@ -37,6 +38,7 @@ pub use home::{Home, Way};
 pub use suggest::{Suggestion, suggest};
 pub use table::{TableAngle, turn_table};
 pub use track::{Leg, Stop, Track};
+pub use trajectory::Trajectory;
 pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;

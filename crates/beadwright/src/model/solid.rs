@@ -3,6 +3,8 @@
 use glam::{DVec2, DVec3};
 use planar::triangulate::triangulate;
 use planar::{Polygon, Ring};
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -104,17 +106,22 @@ impl Solid {
     }
 }
 
+/// Points with their numbers, by where they lie.
+type Numbered = RTree<GeomWithData<[f64; 2], usize>>;
+
 /// How far a point may lie beside an edge and still be on it, mm.
 const ON_EDGE_MM: f64 = 1e-9;
 
 /// Triangles over `base`, whose points are `points`. Ear clipping skips points in line with their neighbours; edges are
 /// split at these points, so that the cap has the same edges as the walls.
-fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
+pub(super) fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
+    let numbered = points.iter().enumerate().map(|(i, p)| GeomWithData::new(p.to_array(), i));
+    let near = RTree::bulk_load(numbered.collect());
     let mut open = triangulate(base);
     let mut done = Vec::with_capacity(open.len());
     while let Some([a, b, c]) = open.pop() {
         let edges = [[a, b, c], [b, c, a], [c, a, b]];
-        let split = edges.iter().find_map(|&[i, j, k]| Some(([i, j, k], point_within(points, i, j)?)));
+        let split = edges.iter().find_map(|&[i, j, k]| Some(([i, j, k], point_within(&near, points, i, j)?)));
         match split {
             Some(([i, j, k], middle)) => {
                 open.extend([[i, middle, k], [middle, j, k]].iter().filter(|t| !t[..2].contains(&k)));
@@ -125,12 +132,17 @@ fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
     done
 }
 
-/// A point on the edge from `i` to `j`, strictly between the two.
-fn point_within(points: &[DVec2], i: usize, j: usize) -> Option<usize> {
+/// The first point on the edge from `i` to `j`, strictly between the two.
+fn point_within(near: &Numbered, points: &[DVec2], i: usize, j: usize) -> Option<usize> {
     let along = points[j] - points[i];
     let length = along.length();
-    points.iter().position(|&p| {
-        let (beside, ahead) = (along.perp_dot(p - points[i]), along.dot(p - points[i]));
+    let rim = DVec2::splat(ON_EDGE_MM);
+    let (low, high) = (points[i].min(points[j]) - rim, points[i].max(points[j]) + rim);
+    let around = near.locate_in_envelope(&AABB::from_corners(low.to_array(), high.to_array()));
+    let within = around.map(|point| point.data).filter(|&k| {
+        let to = points[k] - points[i];
+        let (beside, ahead) = (along.perp_dot(to), along.dot(to));
         beside.abs() < ON_EDGE_MM * length && ahead > ON_EDGE_MM * length && ahead < length * (length - ON_EDGE_MM)
-    })
+    });
+    within.min()
 }

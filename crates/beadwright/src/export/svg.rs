@@ -1,0 +1,79 @@
+//! A layer as an SVG drawing to scale, for laser cutters, drawing programs and documents: outlines as hairlines, beads as
+//! strokes as wide as they are. (The pictures of the report have legends and marks; these have none.)
+
+use super::LayerFormat;
+use crate::layer::Layer;
+use crate::number::{fixed, push_fixed};
+use crate::pass::{Pass, PassKind, Segment};
+use glam::DVec2;
+use planar::{Bounds, Polygon, Ring};
+
+pub(super) const FORMAT: LayerFormat =
+    LayerFormat { extension: "svg", purpose: "a layer's outlines and passes to scale, for drawing programs", write };
+
+/// Width of outlines, mm.
+const HAIRLINE: f64 = 0.1;
+
+fn colour(kind: PassKind) -> &'static str {
+    match kind {
+        PassKind::Contour => "#1f6fd6",
+        PassKind::Infill => "#e8862a",
+        PassKind::Skeleton => "#7e57c2",
+        PassKind::Wall => "#0f8b8d",
+    }
+}
+
+fn write(layer: &Layer) -> String {
+    let rings = layer.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
+    let passes = layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate());
+    let bounds = Bounds::of(rings.chain(passes)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });
+    let rim = layer.passes.iter().map(|pass| pass.width.max()).fold(HAIRLINE, f64::max) / 2.0;
+    let (size, left, top) = (bounds.size() + 2.0 * rim, bounds.min.x - rim, -bounds.max.y - rim);
+    let [width, height] = [size.x, size.y].map(|v| fixed(v, 4));
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{} {} {width} {height}\">\n\
+         <title>Layer {}, z {} mm</title>\n<g id=\"passes\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" \
+         stroke-opacity=\"0.6\">\n",
+        fixed(left, 4),
+        fixed(top, 4),
+        layer.index + 1,
+        fixed(layer.z, 4)
+    );
+    layer.passes.iter().for_each(|pass| beads(&mut svg, pass));
+    svg.push_str(&format!("</g>\n<g id=\"outlines\" fill=\"none\" stroke=\"#000000\" stroke-width=\"{HAIRLINE}\">\n"));
+    for island in &layer.islands {
+        svg.push_str("<path d=\"");
+        for ring in island.rings() {
+            line(&mut svg, ring.points().iter().copied());
+            svg.push('Z');
+        }
+        svg.push_str("\"/>\n");
+    }
+    svg.push_str("</g>\n</svg>\n");
+    svg
+}
+
+/// A pass: one stroke for each stretch of one width.
+fn beads(svg: &mut String, pass: &Pass) {
+    let segments: Vec<Segment> = pass.segments().collect();
+    for stretch in segments.chunk_by(|a, b| a.width == b.width) {
+        let (colour, width) = (colour(pass.kind), fixed(stretch[0].width, 4));
+        svg.push_str(&format!(
+            "<path class=\"{}\" stroke=\"{colour}\" stroke-width=\"{width}\" d=\"",
+            pass.kind.name()
+        ));
+        let points = std::iter::once(stretch[0].from).chain(stretch.iter().map(|segment| segment.to));
+        line(svg, points.map(|p| p.truncate()));
+        svg.push_str("\"/>\n");
+    }
+}
+
+/// The data of a path through points; y runs downwards.
+fn line(svg: &mut String, points: impl Iterator<Item = DVec2>) {
+    for (i, p) in points.enumerate() {
+        svg.push(if i == 0 { 'M' } else { 'L' });
+        push_fixed(svg, p.x, 4);
+        svg.push(' ');
+        push_fixed(svg, -p.y, 4);
+    }
+}
