@@ -46,7 +46,7 @@ impl Grid {
     }
 
     /// The columns whose points lie from `low` to `high` (mm).
-    pub(super) fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
+    pub fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
         let column = |x: f64| (x / self.step - self.low.x as f64).clamp(0.0, self.columns as f64);
         up(column(low))..(column(high) as usize + 1).min(self.columns)
     }
