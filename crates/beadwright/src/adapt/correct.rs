@@ -34,6 +34,8 @@ pub struct Next {
     pub promised: Layer,
     /// What is welded.
     pub layer: Layer,
+    /// Least and greatest metal of its passes, as multiples of the planned one.
+    pub metal: (f64, f64),
     /// Pieces of its passes.
     pub pieces: usize,
     /// Those that want more or less metal than the window allows.
@@ -58,13 +60,22 @@ pub fn next(
     };
     let source = planned.get(rung.source)?;
     let thicker = rung.height / source.height;
-    let mut correction = Correction { surface, rules, rung, planned: source.height, by, pieces: 0, clipped: 0 };
+    let mut correction = Correction {
+        surface,
+        rules,
+        rung,
+        planned: source.height,
+        by,
+        pieces: 0,
+        clipped: 0,
+        metal: (f64::INFINITY, 0.0),
+    };
     let layer = Layer { index, z: rung.top, height: rung.height, warnings: Vec::new(), ..source.clone() };
     let promised = source.passes.iter().map(|pass| Pass { pace: pass.pace.map(|pace| pace / thicker), ..pass.clone() });
     let passes = source.passes.iter().map(|pass| correction.pass(pass)).collect();
-    let Correction { pieces, clipped, .. } = correction;
+    let Correction { pieces, clipped, metal, .. } = correction;
     let promised = Layer { passes: promised.collect(), ..layer.clone() };
-    Some(Next { promised, layer: Layer { passes, ..layer }, pieces, clipped })
+    Some(Next { promised, layer: Layer { passes, ..layer }, metal, pieces, clipped })
 }
 
 struct Correction<'a> {
@@ -76,6 +87,7 @@ struct Correction<'a> {
     by: Feedback,
     pieces: usize,
     clipped: usize,
+    metal: (f64, f64),
 }
 
 impl Correction<'_> {
@@ -95,13 +107,15 @@ impl Correction<'_> {
     /// Metal at a place as a multiple of the planned, within the window.
     fn metal(&mut self, at: DVec3, width: f64) -> f64 {
         let wanted = (self.rung.height - self.error(at, width)) / self.planned;
-        let (least, most) = self.rules.window;
         self.pieces += 1;
         if self.by == Feedback::None {
             return 1.0;
         }
-        self.clipped += usize::from(!(least..=most).contains(&wanted));
-        wanted.clamp(least, most)
+        let (least, most) = self.rules.window;
+        let metal = wanted.clamp(least, most);
+        self.clipped += usize::from(metal != wanted);
+        self.metal = (self.metal.0.min(metal), self.metal.1.max(metal));
+        metal
     }
 
     /// Height of the torch's tool point, mm: a layer's thickness above what lies below, at most one more or less than the

@@ -43,6 +43,8 @@ pub struct Built {
     pub clipped: usize,
     /// The last surface.
     pub surface: Surface,
+    /// What its level lies above the end of the plan, mm.
+    pub above_end: f64,
     /// Points of the surface at which the last layer is judged.
     pub core: Vec<usize>,
 }
@@ -77,7 +79,8 @@ pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) 
     let layer_height = (levels.end() - surface.level()) / planned.len() as f64;
     let (layers, core_points) = (Vec::new(), Vec::new());
     let end = Spread::default();
-    let mut built = Built { by, layers, end, layer_height, pieces: 0, clipped: 0, surface, core: core_points };
+    let mut built =
+        Built { by, layers, end, layer_height, pieces: 0, clipped: 0, surface, above_end: 0.0, core: core_points };
     let mut passes = 0;
     let mut measured = built.surface.clone();
     for index in 0..MOST_LAYERS * planned.len() {
@@ -99,6 +102,7 @@ pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) 
             measured.settle(mean);
             built.surface.settle(mean);
         }
+        built.above_end = built.surface.level() - levels.end();
     }
     Ok(Some(built))
 }

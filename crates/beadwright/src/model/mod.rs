@@ -30,6 +30,7 @@ pub mod wall_curves;
 mod xml;
 
 pub use part::{Model, Part, PartError, PartRef, Placement};
+pub use ply::points as ply_points;
 pub use repair::RepairReport;
 pub use units::Units;
 

@@ -1,0 +1,260 @@
+//! Lays a scan on the part: by the plate, and by the outline of the part.
+//!
+//! The height comes from the plate alone: a fit of the top would take away the very error that is looked for. In the plane,
+//! points that stand up belong inside the outline of the layers above half the height, points of the plate outside that of
+//! all layers. Least squares over the distances of those that do not (Gauss and Newton's steps, damped), from several
+//! starts, give shift and turn.
+
+use crate::layer::Layer;
+use glam::{DMat3, DVec2, DVec3};
+use planar::{Region, polyline};
+
+/// How a scan is laid on the part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Align {
+    /// Its coordinates are those of the part.
+    #[default]
+    AsIs,
+    /// The plate tells the height.
+    Plate,
+    /// The plate tells the height, the outline of the part shift and turn.
+    Fit,
+}
+
+/// A scan on the part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Aligned {
+    /// The points, mm, in the coordinates of the part.
+    pub points: Vec<DVec3>,
+    /// How far the middle of the scan was moved, mm.
+    pub shift: DVec3,
+    /// By how much it was turned about the vertical through its middle, radians.
+    pub turn: f64,
+    /// Whether the scan shows the plate.
+    pub plate: bool,
+    /// Root mean square of the distances that the fit leaves, mm; 0 without a fit.
+    pub residual: f64,
+}
+
+/// Why a scan cannot be laid on the part.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AlignError {
+    /// No plate is seen.
+    #[error(
+        "the scan does not show the plate, which must tell its height: its points lie {range:.2} mm apart in z, the build is \
+         {height:.2} mm high. Scan a strip of the plate beside the part as well, or give z as above the plate."
+    )]
+    NoPlate {
+        /// Distance of its lowest from its highest points, mm.
+        range: f64,
+        /// Planned height of the build, mm.
+        height: f64,
+    },
+    /// The shape does not fit.
+    #[error(
+        "the scan does not fit the outline of the part: {residual:.2} mm are left on the mean, at most {bound:.2} mm may be. Is \
+         it of this part?"
+    )]
+    NoFit {
+        /// Root mean square of the distances, mm.
+        residual: f64,
+        /// Most that is accepted, mm: half a bead.
+        bound: f64,
+    },
+}
+
+/// Parts of the points that may lie below the plate and above the top, as noise.
+const NOISE: f64 = 0.02;
+/// Points up to this part of the range above the lowest show the plate.
+const PLATE: f64 = 0.1;
+/// A scan whose points range over less than this part of the height shows no plate.
+const SEES_PLATE: f64 = 0.5;
+/// Points for the search of a start, and for the fit.
+const POINTS: (usize, usize) = (300, 3000);
+/// Turns from which a fit begins, °.
+const TURNS: [f64; 7] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0];
+/// Another start must leave less than this part of what an earlier one leaves.
+const BETTER: f64 = 0.8;
+/// Most steps of a fit, and the step that ends it, mm.
+const STEPS: usize = 100;
+const LAST_STEP: f64 = 1e-4;
+/// Outlines are simplified by this much, mm.
+const SIMPLIFY: f64 = 0.02;
+
+/// Lays `points` (mm) on a build of these layers with beads of `width` (mm).
+///
+/// # Errors
+/// [`AlignError`].
+pub fn align(points: Vec<DVec3>, built: &[Layer], width: f64, how: Align) -> Result<Aligned, AlignError> {
+    let [Some(first), Some(last)] = [built.first(), built.last()] else { return Ok(Aligned::as_is(points)) };
+    let (floor, height) = (first.z - first.height, last.z - first.z + first.height);
+    let ranges = Ranges::of(&points);
+    let plate = ranges.high - ranges.low >= SEES_PLATE * height;
+    let mut aligned = Aligned { plate, ..Aligned::as_is(points) };
+    if how == Align::AsIs {
+        return Ok(aligned);
+    }
+    if plate {
+        aligned.shift.z = floor - ranges.plate;
+        aligned.points.iter_mut().for_each(|p| p.z += floor - ranges.plate);
+    } else if how == Align::Plate {
+        return Err(AlignError::NoPlate { range: ranges.high - ranges.low, height });
+    }
+    if how == Align::Fit {
+        aligned.fit(built, floor, height);
+        let bound = width / 2.0;
+        if aligned.residual > bound {
+            return Err(AlignError::NoFit { residual: aligned.residual, bound });
+        }
+    }
+    Ok(aligned)
+}
+
+impl Aligned {
+    fn as_is(points: Vec<DVec3>) -> Self {
+        Self { points, shift: DVec3::ZERO, turn: 0.0, plate: false, residual: 0.0 }
+    }
+
+    fn fit(&mut self, built: &[Layer], floor: f64, height: f64) {
+        let middle = floor + height / 2.0;
+        // Without a plate the height is not known: all points stand up. Points of the sides belong nowhere.
+        let stands = |p: &&DVec3| !self.plate || p.z > middle;
+        let lies = |p: &&DVec3| self.plate && p.z < floor + PLATE * height;
+        let points =
+            |kind: &dyn Fn(&&DVec3) -> bool| self.points.iter().filter(|p| kind(p)).map(|p| p.truncate()).collect();
+        let sides = [
+            Side { points: points(&stands), outline: Outline::of(shadow(built, middle)), inside: true },
+            Side { points: points(&lies), outline: Outline::of(shadow(built, f64::NEG_INFINITY)), inside: false },
+        ];
+        let (motion, residual) = best(&sides);
+        self.points.iter_mut().for_each(|p| *p = motion.of(p.truncate()).extend(p.z));
+        (self.turn, self.residual) = (motion.turn, residual);
+        self.shift += motion.shift.extend(0.0);
+    }
+}
+
+/// What the layers that end above a height (mm) cover, seen from above.
+fn shadow(built: &[Layer], above: f64) -> Region {
+    let (mut sum, mut before) = (Region::EMPTY, Region::EMPTY);
+    for layer in built.iter().filter(|layer| layer.z >= above) {
+        let next = Region::from_normalised(layer.islands.clone());
+        // The layers of straight walls repeat each other.
+        if next.polygons() != before.polygons() {
+            sum = sum.union(&next);
+            before = next;
+        }
+    }
+    sum
+}
+
+/// Heights of a scan, mm.
+struct Ranges {
+    low: f64,
+    high: f64,
+    plate: f64,
+}
+
+impl Ranges {
+    fn of(points: &[DVec3]) -> Self {
+        let mut heights: Vec<f64> = points.iter().map(|p| p.z).collect();
+        heights.sort_by(f64::total_cmp);
+        let at = |part: f64| heights.get((part * heights.len() as f64) as usize).copied().unwrap_or_default();
+        let (low, high) = (at(NOISE), at(1.0 - NOISE));
+        let below = heights.partition_point(|z| *z <= low + PLATE * (high - low));
+        Self { low, high, plate: heights.get(below / 2).copied().unwrap_or_default() }
+    }
+}
+
+/// Points that belong on one side of an outline.
+struct Side {
+    points: Vec<DVec2>,
+    outline: Outline,
+    inside: bool,
+}
+
+struct Outline {
+    region: Region,
+    edges: Vec<(DVec2, DVec2)>,
+}
+
+impl Outline {
+    fn of(region: Region) -> Self {
+        let region = region.simplified(SIMPLIFY);
+        let edges = region.rings().flat_map(|ring| ring.edges().collect::<Vec<_>>()).collect();
+        Self { region, edges }
+    }
+
+    /// The way from the nearest place of the outline to a point that lies on the wrong side, mm; `None` for the others.
+    fn beyond(&self, p: DVec2, inside: bool) -> Option<DVec2> {
+        if self.region.contains(p) == inside {
+            return None;
+        }
+        let to_edge = |&(a, b): &(DVec2, DVec2)| p - polyline::closest_on_segment(p, a, b);
+        self.edges.iter().map(to_edge).min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+    }
+}
+
+/// A turn about a place, then a shift; mm and radians.
+#[derive(Clone, Copy)]
+struct Motion {
+    about: DVec2,
+    turn: f64,
+    shift: DVec2,
+}
+
+impl Motion {
+    fn of(&self, p: DVec2) -> DVec2 {
+        self.about + DVec2::from_angle(self.turn).rotate(p - self.about) + self.shift
+    }
+}
+
+/// The best of the fits from all starts, and the distance that it leaves, mm.
+fn best(sides: &[Side; 2]) -> (Motion, f64) {
+    let tall = planar::Bounds::of(sides[0].points.iter().copied()).map(|bounds| bounds.center());
+    let part = sides[0].outline.region.bounds().map(|bounds| bounds.center());
+    let about = tall.unwrap_or_default();
+    let shifts = [DVec2::ZERO, part.map_or(DVec2::ZERO, |part| part - about)];
+    let starts =
+        shifts.into_iter().flat_map(|shift| TURNS.map(|turn| Motion { about, turn: turn.to_radians(), shift }));
+    let mut found: Option<(Motion, f64)> = None;
+    for start in starts {
+        let fit = fitted(sides, start, POINTS.0);
+        if found.is_none_or(|(_, residual)| fit.1 < BETTER * residual) {
+            found = Some(fit);
+        }
+    }
+    let start = found.map_or(Motion { about, turn: 0.0, shift: DVec2::ZERO }, |(motion, _)| motion);
+    fitted(sides, start, POINTS.1)
+}
+
+/// The fit from one start, by about `most` points of each side.
+fn fitted(sides: &[Side; 2], mut motion: Motion, most: usize) -> (Motion, f64) {
+    let every = |side: &Side| side.points.len().div_ceil(most).max(1);
+    let mut residual = 0.0;
+    for _ in 0..STEPS {
+        let (mut normal, mut slope, mut square, mut count) = (DMat3::ZERO, DVec3::ZERO, 0.0, 0.0_f64);
+        for side in sides {
+            for p in side.points.iter().step_by(every(side)) {
+                let at = motion.of(*p);
+                count += 1.0;
+                let Some(way) = side.outline.beyond(at, side.inside) else { continue };
+                let out = way.normalize_or_zero();
+                // How the distance changes with the shift and with the turn.
+                let change = out.extend(out.dot((at - motion.about - motion.shift).perp()));
+                normal += DMat3::from_cols(change * change.x, change * change.y, change * change.z);
+                slope += change * way.length();
+                square += way.length_squared();
+            }
+        }
+        residual = (square / count.max(1.0)).sqrt();
+        let diagonal = DVec3::new(normal.x_axis.x, normal.y_axis.y, normal.z_axis.z);
+        let damped = normal + DMat3::from_diagonal(DVec3::splat(1e-9) + 1e-3 * diagonal);
+        let step = -(damped.inverse() * slope);
+        if !step.is_finite() || step.length() < LAST_STEP {
+            break;
+        }
+        motion.shift += step.truncate();
+        motion.turn += step.z;
+    }
+    (motion, residual)
+}
