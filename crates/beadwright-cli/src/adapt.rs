@@ -142,8 +142,8 @@ fn sentences(
     if how != Align::AsIs {
         let height = if aligned.plate { "the plate told z" } else { "no plate was seen, so z stayed" };
         sentences.push(format!(
-            "Aligned: moved by x {:+.2} y {:+.2} z {:+.2} mm, turned by {turn:+.2}°, {:.2} mm left; {height}.",
-            shift.x, shift.y, shift.z, aligned.residual
+            "Aligned: moved by x {:+.2} y {:+.2} z {:+.2} mm, turned by {turn:+.2}°; {height}.",
+            shift.x, shift.y, shift.z
         ));
     }
     let (layers, planned) = (followed.layers.len(), followed.planned);
@@ -224,7 +224,7 @@ impl Adapted<'_> {
             "error": self.seen.error,
             "points": self.seen.points,
             "covered": self.seen.covered,
-            "align": { "shift": aligned.shift, "turn": aligned.turn.to_degrees(), "residual": aligned.residual, "plate": aligned.plate },
+            "align": { "shift": aligned.shift, "turn": aligned.turn.to_degrees(), "astray": aligned.astray, "plate": aligned.plate },
             "layers": layers.len(),
             "planned_layers": planned,
             "metal": [metal.0, metal.1],

@@ -32,8 +32,8 @@ pub struct Aligned {
     pub turn: f64,
     /// Whether the scan shows the plate.
     pub plate: bool,
-    /// Root mean square of the distances that the fit leaves, mm; 0 without a fit.
-    pub residual: f64,
+    /// Part of the points, 0 to 1, that lie more than half a bead on the wrong side of the outline; 0 without a fit.
+    pub astray: f64,
 }
 
 /// Why a scan cannot be laid on the part.
@@ -52,17 +52,21 @@ pub enum AlignError {
     },
     /// The shape does not fit.
     #[error(
-        "the scan does not fit the outline of the part: {residual:.2} mm are left on the mean, at most {bound:.2} mm may be. Is \
-         it of this part?"
+        "the scan does not fit the outline of the part: {percent:.0} % of its points stay more than half a bead on the wrong \
+         side of it, at most {most:.0} % may. Is it of this part?"
     )]
     NoFit {
-        /// Root mean square of the distances, mm.
-        residual: f64,
-        /// Most that is accepted, mm: half a bead.
-        bound: f64,
+        /// Part of the points, %.
+        percent: f64,
+        /// Greatest part that is accepted, %.
+        most: f64,
     },
 }
 
+/// Part of the points that may stay on the wrong side of the outline.
+const ASTRAY: f64 = 0.1;
+/// Points keep this distance from the outline, in bead widths: it centres a scan that has room to move.
+const MARGIN: f64 = 0.125;
 /// Parts of the points that may lie below the plate and above the top, as noise.
 const NOISE: f64 = 0.02;
 /// Points up to this part of the range above the lowest show the plate.
@@ -101,10 +105,9 @@ pub fn align(points: Vec<DVec3>, built: &[Layer], width: f64, how: Align) -> Res
         return Err(AlignError::NoPlate { range: ranges.high - ranges.low, height });
     }
     if how == Align::Fit {
-        aligned.fit(built, floor, height);
-        let bound = width / 2.0;
-        if aligned.residual > bound {
-            return Err(AlignError::NoFit { residual: aligned.residual, bound });
+        aligned.fit(built, floor, height, width);
+        if aligned.astray > ASTRAY {
+            return Err(AlignError::NoFit { percent: 100.0 * aligned.astray, most: 100.0 * ASTRAY });
         }
     }
     Ok(aligned)
@@ -112,10 +115,10 @@ pub fn align(points: Vec<DVec3>, built: &[Layer], width: f64, how: Align) -> Res
 
 impl Aligned {
     fn as_is(points: Vec<DVec3>) -> Self {
-        Self { points, shift: DVec3::ZERO, turn: 0.0, plate: false, residual: 0.0 }
+        Self { points, shift: DVec3::ZERO, turn: 0.0, plate: false, astray: 0.0 }
     }
 
-    fn fit(&mut self, built: &[Layer], floor: f64, height: f64) {
+    fn fit(&mut self, built: &[Layer], floor: f64, height: f64, width: f64) {
         let middle = floor + height / 2.0;
         // Without a plate the height is not known: all points stand up. Points of the sides belong nowhere.
         let stands = |p: &&DVec3| !self.plate || p.z > middle;
@@ -126,9 +129,10 @@ impl Aligned {
             Side { points: points(&stands), outline: Outline::of(shadow(built, middle)), inside: true },
             Side { points: points(&lies), outline: Outline::of(shadow(built, f64::NEG_INFINITY)), inside: false },
         ];
-        let (motion, residual) = best(&sides);
+        let motion = best(&sides, MARGIN * width);
         self.points.iter_mut().for_each(|p| *p = motion.of(p.truncate()).extend(p.z));
-        (self.turn, self.residual) = (motion.turn, residual);
+        self.turn = motion.turn;
+        self.astray = sides.iter().map(|side| side.astray(&motion, width / 2.0)).fold(0.0, f64::max);
         self.shift += motion.shift.extend(0.0);
     }
 }
@@ -172,6 +176,20 @@ struct Side {
     inside: bool,
 }
 
+impl Side {
+    /// About `most` of the points.
+    fn some(&self, most: usize) -> impl Iterator<Item = &DVec2> {
+        self.points.iter().step_by(self.points.len().div_ceil(most).max(1))
+    }
+
+    /// Part of the points that lie more than `far` (mm) on the wrong side, as they are moved.
+    fn astray(&self, motion: &Motion, far: f64) -> f64 {
+        let out = |p: &&DVec2| self.outline.beyond(motion.of(**p), self.inside).is_some_and(|(by, _)| by > far);
+        let (count, out) = (self.some(POINTS.1).count(), self.some(POINTS.1).filter(out).count());
+        out as f64 / count.max(1) as f64
+    }
+}
+
 struct Outline {
     region: Region,
     edges: Vec<(DVec2, DVec2)>,
@@ -184,13 +202,13 @@ impl Outline {
         Self { region, edges }
     }
 
-    /// The way from the nearest place of the outline to a point that lies on the wrong side, mm; `None` for the others.
-    fn beyond(&self, p: DVec2, inside: bool) -> Option<DVec2> {
-        if self.region.contains(p) == inside {
-            return None;
-        }
+    /// How far a point lies on the wrong side, mm, negative on the right one; and the direction in which it goes further
+    /// wrong.
+    fn beyond(&self, p: DVec2, inside: bool) -> Option<(f64, DVec2)> {
         let to_edge = |&(a, b): &(DVec2, DVec2)| p - polyline::closest_on_segment(p, a, b);
-        self.edges.iter().map(to_edge).min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+        let way = self.edges.iter().map(to_edge).min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
+        let wrong = if self.region.contains(p) == inside { -1.0 } else { 1.0 };
+        Some((wrong * way.length(), wrong * way.normalize_or_zero()))
     }
 }
 
@@ -208,45 +226,43 @@ impl Motion {
     }
 }
 
-/// The best of the fits from all starts, and the distance that it leaves, mm.
-fn best(sides: &[Side; 2]) -> (Motion, f64) {
-    let tall = planar::Bounds::of(sides[0].points.iter().copied()).map(|bounds| bounds.center());
+/// The best of the fits from all starts.
+fn best(sides: &[Side; 2], margin: f64) -> Motion {
+    let scan = planar::Bounds::of(sides[0].points.iter().copied()).map(|bounds| bounds.center());
     let part = sides[0].outline.region.bounds().map(|bounds| bounds.center());
-    let about = tall.unwrap_or_default();
+    let about = scan.unwrap_or_default();
     let shifts = [DVec2::ZERO, part.map_or(DVec2::ZERO, |part| part - about)];
-    let starts =
-        shifts.into_iter().flat_map(|shift| TURNS.map(|turn| Motion { about, turn: turn.to_radians(), shift }));
     let mut found: Option<(Motion, f64)> = None;
-    for start in starts {
-        let fit = fitted(sides, start, POINTS.0);
-        if found.is_none_or(|(_, residual)| fit.1 < BETTER * residual) {
-            found = Some(fit);
+    for shift in shifts {
+        for turn in TURNS.map(f64::to_radians) {
+            let fit = fitted(sides, Motion { about, turn, shift }, margin, POINTS.0);
+            if found.is_none_or(|(_, left)| fit.1 < BETTER * left) {
+                found = Some(fit);
+            }
         }
     }
     let start = found.map_or(Motion { about, turn: 0.0, shift: DVec2::ZERO }, |(motion, _)| motion);
-    fitted(sides, start, POINTS.1)
+    fitted(sides, start, margin, POINTS.1).0
 }
 
-/// The fit from one start, by about `most` points of each side.
-fn fitted(sides: &[Side; 2], mut motion: Motion, most: usize) -> (Motion, f64) {
-    let every = |side: &Side| side.points.len().div_ceil(most).max(1);
-    let mut residual = 0.0;
+/// The fit from one start, by about `most` points of each side; and the mean square of the distances that it leaves, mm².
+fn fitted(sides: &[Side; 2], mut motion: Motion, margin: f64, most: usize) -> (Motion, f64) {
+    let mut left = 0.0;
     for _ in 0..STEPS {
         let (mut normal, mut slope, mut square, mut count) = (DMat3::ZERO, DVec3::ZERO, 0.0, 0.0_f64);
-        for side in sides {
-            for p in side.points.iter().step_by(every(side)) {
-                let at = motion.of(*p);
-                count += 1.0;
-                let Some(way) = side.outline.beyond(at, side.inside) else { continue };
-                let out = way.normalize_or_zero();
-                // How the distance changes with the shift and with the turn.
-                let change = out.extend(out.dot((at - motion.about - motion.shift).perp()));
-                normal += DMat3::from_cols(change * change.x, change * change.y, change * change.z);
-                slope += change * way.length();
-                square += way.length_squared();
-            }
+        for (side, p) in sides.iter().flat_map(|side| side.some(most).map(move |p| (side, p))) {
+            let at = motion.of(*p);
+            count += 1.0;
+            let Some((by, out)) = side.outline.beyond(at, side.inside).filter(|(by, _)| *by > -margin) else {
+                continue;
+            };
+            // How the distance changes with the shift and with the turn.
+            let change = out.extend(out.dot((at - motion.about - motion.shift).perp()));
+            normal += DMat3::from_cols(change * change.x, change * change.y, change * change.z);
+            slope += change * (by + margin);
+            square += (by + margin).powi(2);
         }
-        residual = (square / count.max(1.0)).sqrt();
+        left = square / count.max(1.0);
         let diagonal = DVec3::new(normal.x_axis.x, normal.y_axis.y, normal.z_axis.z);
         let damped = normal + DMat3::from_diagonal(DVec3::splat(1e-9) + 1e-3 * diagonal);
         let step = -(damped.inverse() * slope);
@@ -256,5 +272,5 @@ fn fitted(sides: &[Side; 2], mut motion: Motion, most: usize) -> (Motion, f64) {
         motion.shift += step.truncate();
         motion.turn += step.z;
     }
-    (motion, residual)
+    (motion, left)
 }

@@ -16,8 +16,9 @@ use crate::layer::Layer;
 use glam::DVec2;
 use planar::Bounds;
 
-/// Grid points across a bead, unless that were more than [`MOST_POINTS`].
-const POINTS_ACROSS: f64 = 6.0;
+/// Grid points across a bead, unless that were more than [`MOST_POINTS`]. Odd, so that a bead along a row of points covers
+/// as many rows as it is wide, and none lies on its edges.
+const POINTS_ACROSS: f64 = 7.0;
 /// No surface has more points.
 const MOST_POINTS: f64 = 4e6;
 /// Deviation of the Gauss curve by which a layer's pools spread an error, in bead widths.
@@ -172,10 +173,16 @@ impl Surface {
         (0..self.error.len()).filter_map(|i| self.error(i)).sum::<f64>() * self.grid.step * self.grid.step
     }
 
-    /// What a layer's beads add, mm.
+    /// What a layer's beads add, mm: their metal to the last bit, whatever the grid sees of them.
     fn heights(&self, layer: &Layer) -> Vec<f64> {
         let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| strokes(pass, &self.nominal)).collect();
-        bands(&strokes, &self.grid, |band: Band<'_>| band.heights).concat()
+        let mut heights = bands(&strokes, &self.grid, |band: Band<'_>| band.heights).concat();
+        let seen = heights.iter().sum::<f64>() * self.grid.step * self.grid.step;
+        if seen > 0.0 {
+            let missed = strokes.iter().map(Stroke::volume).sum::<f64>() / seen;
+            heights.iter_mut().for_each(|height| *height *= missed);
+        }
+        heights
     }
 
     /// The points that have four neighbours.
