@@ -67,6 +67,8 @@ pub enum AlignError {
 const ASTRAY: f64 = 0.1;
 /// Points keep this distance from the outline, in bead widths: it centres a scan that has room to move.
 const MARGIN: f64 = 0.125;
+/// Once a scan lies nearly right, points within so many margins of the outline are looked at.
+const NEAR: f64 = 16.0;
 /// Parts of the points that may lie below the plate and above the top, as noise.
 const NOISE: f64 = 0.02;
 /// Points up to this part of the range above the lowest show the plate.
@@ -170,6 +172,7 @@ impl Ranges {
 }
 
 /// Points that belong on one side of an outline.
+#[derive(Clone)]
 struct Side {
     points: Vec<DVec2>,
     outline: Outline,
@@ -182,6 +185,12 @@ impl Side {
         self.points.iter().step_by(self.points.len().div_ceil(most).max(1))
     }
 
+    /// The points that lie up to `reach` (mm) from the outline, as they are moved, or on the wrong side.
+    fn near(&self, motion: &Motion, reach: f64) -> Self {
+        let near = |p: &&DVec2| self.outline.beyond(motion.of(**p), self.inside).is_some_and(|(by, _)| by > -reach);
+        Self { points: self.points.iter().filter(near).copied().collect(), ..self.clone() }
+    }
+
     /// Part of the points that lie more than `far` (mm) on the wrong side, as they are moved.
     fn astray(&self, motion: &Motion, far: f64) -> f64 {
         let out = |p: &&DVec2| self.outline.beyond(motion.of(**p), self.inside).is_some_and(|(by, _)| by > far);
@@ -190,6 +199,7 @@ impl Side {
     }
 }
 
+#[derive(Clone)]
 struct Outline {
     region: Region,
     edges: Vec<(DVec2, DVec2)>,
@@ -242,7 +252,9 @@ fn best(sides: &[Side; 2], margin: f64) -> Motion {
         }
     }
     let start = found.map_or(Motion { about, turn: 0.0, shift: DVec2::ZERO }, |(motion, _)| motion);
-    fitted(sides, start, margin, POINTS.1).0
+    // Only points near the outline matter from here on.
+    let near = |side: &Side| side.near(&start, NEAR * margin);
+    fitted(&[near(&sides[0]), near(&sides[1])], start, margin, POINTS.1).0
 }
 
 /// The fit from one start, by about `most` points of each side; and the mean square of the distances that it leaves, mm².

@@ -1,7 +1,8 @@
 //! What a scan says of a build: how far each place is from what the plan promises.
 //!
 //! After layer N the plan promises its top z on the mean, with the shape that the deposit model gives the layer's beads, as
-//! levelled as the surface is. Points inside the outline, less its rim, are compared with that; the middle one of those in a
+//! levelled as the surface is. Points inside the outline, less its rim, are compared with that, but for places where the
+//! model itself foretells a hollow or a hump, as at the ends of beads: it is no measure there. The middle one of those in a
 //! cell of the grid counts, so that spatter does not. Where nothing was measured, the nearest measured cells stand in,
 //! weighted by 1/d².
 
@@ -23,6 +24,9 @@ pub const FARTHEST_LAYERS: f64 = 2.0;
 pub const UNEVEN: f64 = 2.0;
 /// Of the points above half the height, at most this part may lie beside the part by more than a bead width.
 pub const BESIDE: f64 = 0.2;
+
+/// Where the shape of a layer is foretold to be this part of its thickness above or below its top, nothing is compared.
+const DOUBTFUL: f64 = 0.3;
 
 /// Cells that stand in where nothing was measured.
 const STAND_IN: usize = 8;
@@ -127,6 +131,8 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     let mean = shape.spread(&core).mean;
     let predicted: Vec<Option<f64>> =
         (0..surface.grid().points()).map(|i| shape.error(i).map(|height| height - mean)).collect();
+    let sure = |i: &usize| predicted[*i].is_some_and(|height| height.abs() <= DOUBTFUL * layer.height);
+    let core: Vec<usize> = core.into_iter().filter(sure).collect();
     let cells = cells(points, &surface, &core, layer.z, &predicted);
     let inside = cells.iter().map(|cell| cell.points).sum();
     if inside < FEWEST {
