@@ -5,7 +5,7 @@
 mod common;
 
 use beadwright::adapt::scan::read;
-use beadwright::adapt::{Align, AlignError, Followed, Levels, Rules, SeeError, Seen, align, follow, see};
+use beadwright::adapt::{Align, AlignError, Followed, Levels, Rules, SeeError, Seen, align, follow, pieces, see};
 use beadwright::layer::Layer;
 use beadwright::plan;
 use beadwright::profile::Profile;
@@ -146,28 +146,28 @@ fn known_errors_come_back_as_metal() {
         let inner =
             Region::from_normalised(plan.islands.clone()).offset(-edge * profile.bead.width, planar::Join::ROUND);
         let built = layers[number - 1].z + seen.error.mean;
-        let mut compared = 0;
+        let (mut off, mut torch) = (Vec::new(), 0.0_f64);
         for (laid, planned) in next.passes.iter().zip(&plan.passes) {
-            let pace = planned.pace.after(0);
-            for segment in laid.segments() {
-                let at = segment.from.midpoint(segment.to).truncate();
-                if !inner.contains(at) || at.x.abs() > 0.4 * 92.0 {
-                    continue;
-                }
-                let wanted = (next.z - layers[number - 1].z - error(at)) / plan.height;
-                let torch = next.z + error(at) - seen.error.mean;
-                let metal = pace / segment.pace;
-                compared += 1;
-                if part == "cross" {
-                    // Between beads the deposit model knows grooves, which this scan does not show.
-                    assert!((metal - wanted).abs() < 0.1, "{part} at {at}: {metal} {wanted}");
-                } else {
-                    assert!((metal - wanted).abs() < 0.05, "{part} at {at}: {metal} {wanted}");
-                    assert!((segment.from.midpoint(segment.to).z - torch).abs() < 0.08, "{part} at {at}");
+            let planned = pieces(planned, profile.bead.width);
+            for (segment, planned) in laid.segments().zip(planned.segments()) {
+                let middle = segment.from.midpoint(segment.to);
+                let at = middle.truncate();
+                if inner.contains(at) && at.x.abs() < 37.0 {
+                    let wanted = (next.z - layers[number - 1].z - error(at)) / plan.height;
+                    off.push(planned.pace / segment.pace - wanted);
+                    torch = torch.max((middle.z - next.z - error(at) + seen.error.mean).abs());
                 }
             }
         }
-        assert!(compared > 10, "{part}: {compared}");
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        let most = off.iter().map(|off| off.abs()).fold(0.0, f64::max);
+        println!(
+            "{part}: metal off by {mean:.4} on the mean, at most {most:.3} of {} pieces; torch {torch:.3} mm",
+            off.len()
+        );
+        // Between the beads of a wide part the deposit model knows grooves, which this scan does not show.
+        let (each, height) = if part == "cross" { (0.3, 0.6) } else { (0.05, 0.08) };
+        assert!(off.len() > 10 && mean.abs() < 0.03 && most < each && torch < height, "{part}");
         assert!((next.z - next.height - built).abs() < 1e-9, "{part}");
         let last = followed.layers.last().unwrap();
         assert!((last.z - layers.last().unwrap().z).abs() < 0.01 * plan.height, "{part}: {}", last.z);

@@ -79,6 +79,8 @@ const SEES_PLATE: f64 = 0.5;
 const POINTS: (usize, usize) = (300, 3000);
 /// Turns from which a fit begins, °.
 const TURNS: [f64; 7] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0];
+/// Farther turned, a symmetric part would lie as well another way round, radians (45°).
+const MOST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 /// Another start must leave less than this part of what an earlier one leaves.
 const BETTER: f64 = 0.8;
 /// Most steps of a fit, and the step that ends it, mm.
@@ -246,7 +248,7 @@ fn best(sides: &[Side; 2], margin: f64) -> Motion {
     for shift in shifts {
         for turn in TURNS.map(f64::to_radians) {
             let fit = fitted(sides, Motion { about, turn, shift }, margin, POINTS.0);
-            if found.is_none_or(|(_, left)| fit.1 < BETTER * left) {
+            if fit.0.turn.abs() <= MOST_TURN && found.is_none_or(|(_, left)| fit.1 < BETTER * left) {
                 found = Some(fit);
             }
         }
