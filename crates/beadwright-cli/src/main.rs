@@ -2,7 +2,9 @@
 //!
 //! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage, 3 the plan has faults that somebody should look at.
 
+mod adapt;
 mod bead;
+mod build;
 mod check;
 mod compare;
 mod completions;
@@ -51,6 +53,10 @@ enum Command {
     /// Fit the width and height of measured beads, and find the parameters for a wanted one.
     #[command(subcommand)]
     Bead(bead::Command),
+    /// Plan the layers that follow a scan of a build, corrected by place.
+    Adapt(adapt::Arguments),
+    /// Weld a plan in a model of its height, with errors, to see what feedback from scans is worth.
+    Build(build::Arguments),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),
     /// Compute how warm the metal is before each pass of a plan, and what waiting for a limit costs.
@@ -83,6 +89,8 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
+        Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Build(arguments) => build::run(&arguments),
         Command::Reach(arguments) => reach::run(&arguments),
         Command::Heat(arguments) => heat::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),

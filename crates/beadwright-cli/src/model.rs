@@ -61,6 +61,19 @@ pub(crate) fn read_iges(path: &Path, bytes: &[u8]) -> anyhow::Result<Option<Iges
 }
 
 impl Model {
+    /// A model as it lies in its file.
+    pub(crate) fn of(path: &Path) -> Self {
+        Self {
+            model: path.to_owned(),
+            units: None,
+            scale: 1.0,
+            lay_flat: false,
+            turn: DVec3::ZERO,
+            centre: false,
+            accept_damaged: false,
+        }
+    }
+
     /// The solid or the curves, placed. Curves that all lie at one height need a height to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());

@@ -287,15 +287,7 @@ pub(crate) fn part(
     task: &Task,
 ) -> anyhow::Result<Option<Import>> {
     let place = |path: &Path| {
-        let model = model::Model {
-            model: path.to_owned(),
-            units,
-            scale: 1.0,
-            lay_flat: false,
-            turn: glam::DVec3::ZERO,
-            centre: false,
-            accept_damaged: false,
-        };
+        let model = model::Model { units, ..model::Model::of(path) };
         model.placed(profile.bead.width, task)
     };
     path.map(place).transpose()

@@ -1,12 +1,15 @@
 //! Which flags help against an error of the library, which knows of none.
 
+use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
 use beadwright::dialect::reading::ReadError;
 use beadwright::model::{ImportError, PartError};
 
 /// A sentence, where there are flags.
 pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
-    error.chain().find_map(|cause| part(cause).or_else(|| program(cause)).or_else(|| library(cause)))
+    error
+        .chain()
+        .find_map(|cause| part(cause).or_else(|| program(cause)).or_else(|| library(cause)).or_else(|| scan(cause)))
 }
 
 fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
@@ -28,4 +31,14 @@ fn program(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
 fn library(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
     let inputs = matches!(cause.downcast_ref()?, LibraryError::Inputs { .. } | LibraryError::TooFew { .. });
     inputs.then_some("--inputs names those that are fitted.")
+}
+
+fn scan(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    Some(match cause.downcast_ref()? {
+        SeeError::Beside { .. } | SeeError::TooFew { .. } | SeeError::Uneven { .. } => {
+            "--align fit lays the scan on the part."
+        }
+        SeeError::Height { .. } => "--align plate takes the plate in the scan for z = 0.",
+        SeeError::NoLayer { .. } => return None,
+    })
 }

@@ -20,7 +20,9 @@
 //! The library does no I/O (but for [`files`], with the feature of that name) and never panics on input. More programs like
 //! this one are in `examples/`.
 
+pub mod adapt;
 pub mod bead;
+pub mod build;
 pub mod check;
 pub mod compare;
 pub mod deposit;
@@ -59,6 +61,7 @@ pub mod order;
 pub mod pass;
 #[doc(hidden)]
 pub mod plan_file;
+mod random;
 #[doc(hidden)]
 pub mod reproduce;
 #[doc(hidden)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules of the library from the top of the table to its bottom; those in one row do not know each other.
 const ROWS: &[&[&str]] = &[
-    &["limit", "number", "task", "template", "text", "warning"],
+    &["limit", "number", "random", "task", "template", "text", "warning"],
     // Pure geometry; a file of curves is read by the model.
     &["curve"],
     &["model"],
@@ -29,7 +29,8 @@ const ROWS: &[&[&str]] = &[
     &["plan"],
     &["plan_file", "check"],
     &["report"],
-    &["export", "files", "robot", "simulate"],
+    &["adapt", "export", "files", "robot", "simulate"],
+    &["build"],
     &["example"],
     &["compare"],
     &["reproduce"],

@@ -35,7 +35,7 @@ fn plan_of(mesh: &Mesh, profile: &Profile) -> Plan {
 }
 
 /// Parts with walls of one bead; the other strategies have no room in them.
-const THIN_WALLED: [&str; 4] = ["blade", "gourd", "pot", "tian"];
+const THIN_WALLED: [&str; 5] = ["blade", "gourd", "pot", "tian", "wall"];
 
 /// Every example by every strategy, with two profiles; all tests share these plans.
 static CASES: LazyLock<Vec<(String, Plan, Profile)>> = LazyLock::new(|| {

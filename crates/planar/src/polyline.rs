@@ -93,8 +93,13 @@ fn mark_kept(points: &[DVec2], first: usize, last: usize, tolerance_squared: f64
 
 /// Squared distance, mm², from `p` to the segment `a`–`b`.
 pub fn distance_squared_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    p.distance_squared(closest_on_segment(p, a, b))
+}
+
+/// The point of the segment `a`–`b` that is nearest to `p`.
+pub fn closest_on_segment(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     let ab = b - a;
     let length_squared = ab.length_squared();
     let t = if length_squared > 0.0 { ((p - a).dot(ab) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-    p.distance_squared(a + ab * t)
+    a + ab * t
 }

@@ -45,8 +45,15 @@ impl Grid {
         self.columns * self.rows
     }
 
+    /// The point nearest to a place (mm); `None` beyond the grid.
+    pub fn nearest(&self, place: DVec2) -> Option<usize> {
+        let at = (place / self.step).round().as_i64vec2() - self.low;
+        let within = at.cmpge(I64Vec2::ZERO).all() && at.x < self.columns as i64 && at.y < self.rows as i64;
+        within.then(|| at.y as usize * self.columns + at.x as usize)
+    }
+
     /// The columns whose points lie from `low` to `high` (mm).
-    pub(super) fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
+    pub fn columns_between(&self, low: f64, high: f64) -> Range<usize> {
         let column = |x: f64| (x / self.step - self.low.x as f64).clamp(0.0, self.columns as f64);
         up(column(low))..(column(high) as usize + 1).min(self.columns)
     }

@@ -3,7 +3,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
-//! | [`blade`], `gourd`, `pot`, `tian` | one thin-walled part each (Li et al.) |
+//! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
 pub mod blade;
@@ -17,6 +17,7 @@ mod propeller;
 mod star;
 mod tian;
 mod vase;
+mod wall;
 
 use crate::curve::Nurbs;
 use crate::model::iges::{self, WriteOptions};
@@ -95,6 +96,12 @@ pub const ALL: &[Example] = &[
         about: "vase with a 14 mm wall and a closed 12 mm bottom, 104 × 104 × 120 mm",
         build: vase::build,
         curves: None,
+    },
+    Example {
+        name: "wall",
+        about: "straight wall of one bead, 120 × 4.5 × 72 mm",
+        build: wall::build,
+        curves: Some(wall::curves),
     },
 ];
 

@@ -39,6 +39,7 @@ pub(crate) mod xml;
 
 pub use outline::Outlines;
 pub use part::{Model, Part, PartError, PartRef, Placement};
+pub use ply::points as ply_points;
 pub use repair::RepairReport;
 pub use units::Units;
 

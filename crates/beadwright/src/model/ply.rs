@@ -3,6 +3,7 @@
 use super::formats::{self, Format};
 use super::{Import, ImportError};
 use crate::task::Task;
+use glam::{DVec3, Vec3};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{DefaultElement, Property, PropertyAccess, PropertyAccessResult};
 
@@ -62,35 +63,19 @@ impl PropertyAccess for Face {
     }
 }
 
+/// The points of a PLY file, with or without faces, in the units of the file.
+///
+/// # Errors
+/// [`ImportError::Broken`] with what cannot be read.
+pub fn points(bytes: &[u8], task: &Task) -> Result<Vec<DVec3>, ImportError> {
+    let (vertices, _) = elements(bytes, task)?;
+    Ok(vertices.into_iter().map(|Vertex(at)| Vec3::from_array(at).as_dvec3()).collect())
+}
+
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
-    let broken = |reason: String| ImportError::Broken { format: "PLY", reason };
-    let mut reader = Reader::new(bytes);
-    let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| broken(error.to_string()))?;
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
-    for (name, element) in &header.elements {
-        // Each value takes a byte at least, so that a count beyond the file is a lie.
-        if element.count > bytes.len() {
-            return Err(broken(format!("it announces {} of \"{name}\", but has {} bytes", element.count, bytes.len())));
-        }
-        task.check()?;
-        match name.as_ref() {
-            "vertex" => {
-                let read = Parser::<Vertex>::new().read_payload_for_element(&mut reader, element, &header);
-                vertices = read.map_err(|error| broken(error.to_string()))?;
-            }
-            "face" => {
-                let read = Parser::<Face>::new().read_payload_for_element(&mut reader, element, &header);
-                faces = read.map_err(|error| broken(error.to_string()))?;
-            }
-            _ => {
-                Parser::<DefaultElement>::new()
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map_err(|error| broken(error.to_string()))?;
-            }
-        }
-    }
+    let (vertices, faces) = elements(bytes, task)?;
     if faces.is_empty() {
-        return Err(broken("it holds no faces: a cloud of points is no solid".to_owned()));
+        return Err(broken("it holds no faces: a cloud of points is no solid"));
     }
     let vertices: Vec<[f32; 3]> = vertices.into_iter().map(|Vertex(at)| at).collect();
     let mut facets = Vec::with_capacity(2 * faces.len());
@@ -102,4 +87,37 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
     let count = facets.len();
     formats::of_facets(facets.into_iter(), count, "PLY", |i| format!("triangle {}", i + 1), task)
+}
+
+/// All vertices and faces.
+fn elements(bytes: &[u8], task: &Task) -> Result<(Vec<Vertex>, Vec<Face>), ImportError> {
+    let mut reader = Reader::new(bytes);
+    let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(broken)?;
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for (name, element) in &header.elements {
+        // Each value takes a byte at least, so that a count beyond the file is a lie.
+        if element.count > bytes.len() {
+            return Err(broken(format!("it announces {} of \"{name}\", but has {} bytes", element.count, bytes.len())));
+        }
+        task.check()?;
+        match name.as_ref() {
+            "vertex" => {
+                let read = Parser::<Vertex>::new().read_payload_for_element(&mut reader, element, &header);
+                vertices = read.map_err(broken)?;
+            }
+            "face" => {
+                let read = Parser::<Face>::new().read_payload_for_element(&mut reader, element, &header);
+                faces = read.map_err(broken)?;
+            }
+            _ => {
+                let read = Parser::<DefaultElement>::new().read_payload_for_element(&mut reader, element, &header);
+                read.map_err(broken)?;
+            }
+        }
+    }
+    Ok((vertices, faces))
+}
+
+fn broken(reason: impl ToString) -> ImportError {
+    ImportError::Broken { format: "PLY", reason: reason.to_string() }
 }

@@ -4,8 +4,8 @@
 //! 50 ants and 200 rounds; α, β, ρ and Q are ours. Kept for comparison: the local search is better and faster.
 
 use super::nearest;
-use super::random::Random;
 use super::tour::{self, Ends, Stop, Visit};
+use crate::random::Random;
 
 /// The parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,8 +8,8 @@
 
 use super::exact;
 use super::nearest;
-use super::random::Random;
 use super::tour::{self, Ends, Gate, Stop, Visit, gap, neighbours};
+use crate::random::Random;
 use glam::DVec2;
 use planar::Bounds;
 use rstar::RTree;

@@ -19,7 +19,6 @@ mod direction;
 pub mod exact;
 pub mod local_search;
 pub mod nearest;
-mod random;
 pub mod tour;
 
 use crate::fill::{Fill, Path};

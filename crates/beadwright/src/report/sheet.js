@@ -18,11 +18,14 @@ async function paint(canvas, text) {
 function showMaps(card) {
   const data = JSON.parse(card.querySelector("script").textContent);
   const key = make("div", card, { className: "key" });
-  key.append("0");
+  const [low, high] = data.key ?? ["0", "2 × bead height"];
+  key.append(low);
   drawHeatKey(make("canvas", key, { width: 160, height: 12 }));
-  key.append("2 × bead height");
-  make("i", key);
-  key.append("void");
+  key.append(high);
+  if (!data.key) {
+    make("i", key);
+    key.append("void");
+  }
   const grid = make("div", card, { className: "grid" });
   const canvases = data.columns.map(column => {
     const figure = make("figure", grid), canvas = make("canvas", figure);

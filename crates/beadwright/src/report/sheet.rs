@@ -49,6 +49,20 @@ impl Sheet {
 
     /// Height fields side by side under a slider; `labels` name the positions of the slider.
     pub fn maps(&mut self, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
+        self.fields("null", labels, columns)
+    }
+
+    /// Like [`Self::maps`], with other heights than those of beads: `key` names the ends of their scale.
+    pub fn heights(
+        &mut self,
+        key: &[String; 2],
+        labels: &[String],
+        columns: &[(String, Vec<Option<&Picture>>)],
+    ) -> &mut Self {
+        self.fields(&format!("[{},{}]", json(&key[0]), json(&key[1])), labels, columns)
+    }
+
+    fn fields(&mut self, key: &str, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
         let map = |picture: &Option<&Picture>| format!("\"{}\"", picture.map(encode::map).unwrap_or_default());
         let column = |(name, pictures): &(String, Vec<Option<&Picture>>)| {
             let maps: Vec<String> = pictures.iter().map(map).collect();
@@ -57,7 +71,7 @@ impl Sheet {
         let columns: Vec<String> = columns.iter().map(column).collect();
         let labels: Vec<String> = labels.iter().map(|label| json(label)).collect();
         self.push(&format!(
-            "<div class=\"card maps\"><script type=\"application/json\">{{\"labels\":[{}],\"columns\":[{}]}}</script></div>",
+            "<div class=\"card maps\"><script type=\"application/json\">{{\"key\":{key},\"labels\":[{}],\"columns\":[{}]}}</script></div>",
             labels.join(","),
             columns.join(",\n")
         ))

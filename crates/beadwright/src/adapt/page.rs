@@ -1,0 +1,57 @@
+//! The page of a scan: predicted, measured and difference, side by side.
+
+use super::see::Seen;
+use super::surface::{Spread, Surface};
+use crate::deposit::Picture;
+use crate::deposit::picture::{EMPTY, FIRST_HEIGHT};
+use crate::number::fixed;
+use crate::report::sheet::{Row, Sheet};
+
+/// Heights of a grid as a picture: 0 in the middle of the scale, ±`most` (mm) at its ends; nothing where there is none.
+pub fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64>) -> Picture {
+    let grid = surface.grid();
+    let steps = f64::from(u8::MAX - FIRST_HEIGHT);
+    let value = |height: f64| FIRST_HEIGHT + ((height / most + 1.0) / 2.0 * steps).round().clamp(0.0, steps) as u8;
+    Picture {
+        low: grid.place(0, 0) - grid.step / 2.0,
+        pixel: grid.step,
+        width: grid.columns,
+        height: grid.rows,
+        values: (0..grid.points()).map(|i| height(i).map_or(EMPTY, value)).collect(),
+    }
+}
+
+/// The ends of a scale of heights, in words.
+pub fn key(most: f64) -> [String; 2] {
+    ["below", "above"].map(|word| format!("{} mm {word}", fixed(most, 2)))
+}
+
+/// Heights as cells of a table: mean, root mean square, lowest, highest.
+pub fn cells(spread: &Spread) -> Row {
+    [spread.mean, spread.rms, spread.low, spread.high].map(|height| (format!("{height:+.2}"), false)).into()
+}
+
+/// The page of layer `number`, from 1, whose top is planned at `z` (mm), of a part.
+pub fn page(part: &str, number: usize, z: f64, seen: &Seen, sentences: &[String]) -> Sheet {
+    let lead = format!(
+        "Layer {number}, planned top {} mm: what the plan predicts, what was measured, and the difference.",
+        fixed(z, 2)
+    );
+    let mut sheet = Sheet::new(&format!("Height: {part}"), &lead);
+    sentences.iter().for_each(|sentence| {
+        sheet.text(sentence);
+    });
+    let head = ["mean mm", "RMS mm", "lowest mm", "highest mm"];
+    sheet.heading("Measured less predicted").table(&head, &[cells(&seen.error)]);
+    let error = |i: usize| seen.surface.error(i);
+    let measured = |i: usize| Some(seen.predicted[i]? + error(i)?);
+    let most = [seen.error.low, seen.error.high].into_iter().fold(0.1, |most: f64, error| most.max(error.abs()));
+    let pictures = [
+        ("predicted, above the planned top", relief(&seen.surface, most, |i| seen.predicted[i])),
+        ("measured, above the planned top", relief(&seen.surface, most, measured)),
+        ("measured less predicted", relief(&seen.surface, most, error)),
+    ];
+    let columns: Vec<_> = pictures.iter().map(|(name, picture)| ((*name).to_owned(), vec![Some(picture)])).collect();
+    sheet.heading("Pictures").heights(&key(most), &[format!("layer {number}")], &columns);
+    sheet
+}

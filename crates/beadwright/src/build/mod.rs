@@ -1,0 +1,108 @@
+//! A plan welded in the model of height (`adapt::surface`), with errors and with what a scanner corrects after each layer.
+//!
+//! Every bead comes out with more or less metal than commanded ([`Errors`]); the surface takes it; after each layer a scan
+//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). All numbers are seeded.
+
+mod errors;
+pub mod page;
+
+pub use errors::Errors;
+
+use crate::adapt::core::core;
+use crate::adapt::{Feedback, Levels, Rules, Spread, Surface, next};
+use crate::deposit::Nominal;
+use crate::layer::Layer;
+use crate::task::{Cancelled, Stage, Task};
+use serde::Serialize;
+
+/// How a plan is welded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// The bead that is promised.
+    pub nominal: Nominal,
+    /// What goes wrong.
+    pub errors: Errors,
+    /// How far corrections may go.
+    pub rules: Rules,
+}
+
+/// A build that was welded in the model.
+#[derive(Debug, Clone)]
+pub struct Built {
+    /// How its layers were corrected.
+    pub by: Feedback,
+    /// Its layers, the lowest first.
+    pub layers: Vec<BuiltLayer>,
+    /// Height of the last layer above the end of the plan, mm.
+    pub end: Spread,
+    /// Thickness of a planned layer, mm: their mean.
+    pub layer_height: f64,
+    /// Pieces of passes that were laid.
+    pub pieces: usize,
+    /// Those that wanted more or less metal than the window allows.
+    pub clipped: usize,
+    /// The last surface.
+    pub surface: Surface,
+    /// What its level lies above the end of the plan, mm.
+    pub above_end: f64,
+    /// Points of the surface at which the last layer is judged.
+    pub core: Vec<usize>,
+}
+
+/// A layer after it was welded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BuiltLayer {
+    /// Top that it should have, mm.
+    pub z: f64,
+    /// Its height above that, mm, inside the outline less its rim.
+    pub error: Spread,
+}
+
+impl Built {
+    /// Root mean square of the error at the end, in layer heights.
+    pub fn rms(&self) -> f64 {
+        self.end.rms / self.layer_height
+    }
+}
+
+/// Most layers of a build, as a multiple of the planned ones: where metal is lost again and again, it never ends.
+const MOST_LAYERS: usize = 2;
+
+/// Welds a plan. `None` for a plan without layers, or whose tops do not rise.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) -> Result<Option<Built>, Cancelled> {
+    let Some(levels) = Levels::of(planned) else { return Ok(None) };
+    let Settings { nominal, errors, rules } = settings;
+    let surface = Surface::plate(planned, *nominal);
+    let layer_height = (levels.end() - surface.level()) / planned.len() as f64;
+    let (layers, core_points) = (Vec::new(), Vec::new());
+    let end = Spread::default();
+    let mut built =
+        Built { by, layers, end, layer_height, pieces: 0, clipped: 0, surface, above_end: 0.0, core: core_points };
+    let mut passes = 0;
+    let mut measured = built.surface.clone();
+    for index in 0..MOST_LAYERS * planned.len() {
+        task.step(Stage::Plan, (index as f64 / planned.len() as f64).min(1.0))?;
+        let Some(next) = next(planned, &levels, &measured, index, by, rules) else { break };
+        let share = index as f64 / planned.len() as f64;
+        built.surface.lay(&next.promised, &errors.layer(&next.layer, share, passes));
+        passes += next.layer.passes.len();
+        built.pieces += next.pieces;
+        built.clipped += next.clipped;
+        built.core = core(built.surface.grid(), &next.layer.islands, nominal.bead.width);
+        let error = built.surface.spread(&built.core);
+        built.layers.push(BuiltLayer { z: built.surface.level(), error });
+        built.end = error.moved(built.surface.level() - levels.end());
+        measured = built.surface.clone();
+        measured.disturb(errors.scan(index));
+        if by != Feedback::None {
+            let mean = measured.spread(&built.core).mean;
+            measured.settle(mean);
+            built.surface.settle(mean);
+        }
+        built.above_end = built.surface.level() - levels.end();
+    }
+    Ok(Some(built))
+}
