@@ -192,8 +192,12 @@ impl Adapted<'_> {
         if self.followed.layers.is_empty() {
             return Ok(folder.commit()?);
         }
-        let (mut files, chunks) =
-            PlanFiles::begin(&header, self.profile, self.programs(arguments)?, Start { layer: self.number, pass: 0 });
+        let (mut files, chunks) = PlanFiles::begin(
+            &header,
+            self.profile,
+            self.programs(arguments)?,
+            Start { layer: self.number, ..Start::default() },
+        );
         folder.extend(chunks)?;
         let mut metrics = Metrics::new(self.profile);
         for layer in self.layers() {

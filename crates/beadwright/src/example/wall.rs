@@ -1,7 +1,7 @@
 //! A straight wall, one bead thick.
 
-use super::solid::Solid;
 use crate::curve::Nurbs;
+use crate::model::solid::Solid;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 
