@@ -1,10 +1,12 @@
 //! `beadwright bead`: a library of measured beads, and the parameters for a wanted one.
 
+use crate::profile;
 use anyhow::Context;
-use beadwright::bead::Overlap;
 use beadwright::bead::library::demonstration_csv;
 use beadwright::bead::library::{BeadLibrary, Columns, Layering, Limit, Measured, Prediction, Response, Wish};
+use beadwright::bead::{Overlap, wire_area};
 use beadwright::files::write_file;
+use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallLaw};
 use beadwright::report::bead_window;
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -18,6 +20,8 @@ pub(crate) enum Command {
     Predict(Predict),
     /// Find the parameters for a wanted bead within the measured range.
     Solve(Solve),
+    /// Fit how thickness and width of walls depend on heat, from walls welded with different waits, and foretell others.
+    Walls(Walls),
     /// Write invented measurements as CSV, to try out the other commands.
     Example {
         /// File to write.
@@ -45,6 +49,24 @@ pub(crate) struct Fit {
     /// Picture of width/height over the first input, with a curve for each value of the second.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// Print machine-readable JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Walls {
+    /// CSV with one wall per line, one bead thick: the columns dwell_s, length_mm, layers, height_mm, width_mm.
+    data: PathBuf,
+    /// Profile of the process they were welded with: a built-in name or a TOML file with [heat], [material], [substrate].
+    #[arg(long, short, value_name = "NAME|FILE")]
+    profile: String,
+    /// Change a value of the profile, such as process.current=132; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Fit only the walls with these waits, s, and foretell the others.
+    #[arg(long, value_delimiter = ',', value_name = "S,S,…")]
+    fit: Option<Vec<f64>>,
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
@@ -117,6 +139,7 @@ impl LayeringArguments {
 pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Fit(arguments) => fit(arguments),
+        Command::Walls(arguments) => walls(arguments),
         Command::Predict(arguments) => predict(arguments),
         Command::Solve(arguments) => solve(arguments),
         Command::Example { output } => {
@@ -129,6 +152,72 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             Ok(())
         }
     }
+}
+
+fn walls(arguments: &Walls) -> anyhow::Result<()> {
+    let profile = profile::load(&arguments.profile, &arguments.set)?;
+    let (process, weld) = (&profile.process, profile.weld_settings());
+    // Walls hold the metal of the wire, whatever the profile says of its bead.
+    let metal = wire_area(profile.wire.diameter) * process.wire_feed_speed * 1000.0 / 60.0 * process.efficiency;
+    let settings = HeatSettings { bead_area: metal / process.deposition_speed, ..profile.heat_settings()? };
+    let named = ["dwell", "length", "layers"].map(str::to_owned).to_vec();
+    let columns = Columns { inputs: Some(named), width: None, height: None };
+    let place = || arguments.data.display().to_string();
+    let measured = Measured::read(&read(&arguments.data)?, &columns).with_context(place)?;
+    let rows = measured.rows.iter().zip(measured.heights.iter().zip(&measured.widths));
+    let wall = |(row, (height, width)): (&Vec<f64>, (&f64, &f64))| {
+        let [dwell, length, layers] = row[..] else { anyhow::bail!("a wall needs dwell, length and layers") };
+        let possible = (0.0..=36_000.0).contains(&dwell)
+            && (10.0..=10_000.0).contains(&length)
+            && (2.0..=2000.0).contains(&layers)
+            && layers.fract() == 0.0;
+        anyhow::ensure!(
+            possible,
+            "a wall with a dwell of {dwell} s, a length of {length} mm and {layers} layers: expected are 0 to 36000 s, 10 to \
+             10000 mm and 2 to 2000 whole layers"
+        );
+        let wall = Wall { length, layers: layers as usize, dwell };
+        Ok(MeasuredWall { wall, height: *height, width: *width })
+    };
+    let all: Vec<MeasuredWall> = rows.map(wall).collect::<anyhow::Result<_>>().with_context(place)?;
+    let fitted = |wall: &&MeasuredWall| arguments.fit.as_ref().is_none_or(|waits| waits.contains(&wall.wall.dwell));
+    let chosen: Vec<MeasuredWall> = all.iter().filter(fitted).copied().collect();
+    let law = WallLaw::fit(&chosen, &settings, &weld).with_context(place)?;
+    let foretold: Vec<_> = all.iter().map(|wall| law.foretell(&wall.wall, &settings, &weld)).collect();
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value = json!({ "layer": law.layer, "width": law.width, "walls": foretold });
+        return Ok(writeln!(out, "{value:#}")?);
+    }
+    for (name, value) in [("layer", law.layer), ("width", law.width)] {
+        writeln!(
+            out,
+            "{name} = {:.3} mm {:+.3} mm for every 100 °C of the metal below",
+            value.cold,
+            100.0 * value.slope
+        )?;
+    }
+    writeln!(
+        out,
+        "\n  wait s    °C   height mm: foretold   measured   error %   width mm: foretold   measured   error %"
+    )?;
+    for (wall, own) in all.iter().zip(&foretold) {
+        let error = |ours: f64, measured: f64| 100.0 * (ours / measured - 1.0);
+        writeln!(
+            out,
+            "  {:6.0} {:5.0} {:22.1} {:10.1} {:9.1} {:20.2} {:10.2} {:9.1}{}",
+            wall.wall.dwell,
+            own.temperature,
+            own.height,
+            wall.height,
+            error(own.height, wall.height),
+            own.width,
+            wall.width,
+            error(own.width, wall.width),
+            if fitted(&wall) { "   fitted" } else { "" }
+        )?;
+    }
+    Ok(())
 }
 
 fn fit(arguments: &Fit) -> anyhow::Result<()> {

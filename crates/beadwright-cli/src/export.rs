@@ -1,11 +1,13 @@
 //! `beadwright export`.
 
-use crate::{profile, program};
+use crate::{profile, program, progress};
 use anyhow::Context;
 use beadwright::export::{self, Beads, FORMATS, LAYER_FORMATS, LayerFormat};
 use beadwright::files::write_file;
+use beadwright::heat::{self, HeatSettings, History};
 use beadwright::layer::Layer;
 use beadwright::plan_file::PlanFile;
+use beadwright::profile::Profile;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +24,9 @@ pub(crate) struct Arguments {
     /// Draw only this layer, counted from 1, into the file itself; for .dxf and .svg.
     #[arg(long, value_name = "LAYER")]
     layer: Option<usize>,
+    /// Also compute how warm the metal ahead of the torch is, as a column of tables and of .vtp.
+    #[arg(long)]
+    temperatures: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -43,12 +48,22 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg)");
     let profile = source.profile(&arguments.wanted)?;
-    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+    let heat = arguments.temperatures.then(|| heat_of(plan, &profile)).transpose()?.flatten();
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: heat.as_ref() };
     let bytes = (format.write)(&beads).with_context(|| format!("{}", arguments.plan.display()))?;
     write_file(&arguments.output, &bytes)?;
     let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
     writeln!(std::io::stdout(), "{passes} passes in {} layers in {}", plan.layers.len(), arguments.output.display())?;
     Ok(())
+}
+
+/// Temperatures of a plan as it stands.
+fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>> {
+    let settings = HeatSettings { interpass: None, ..profile.heat_settings()? };
+    let (task, bar) = progress::task()?;
+    let history = heat::history(&mut plan.layers.clone(), &settings, &profile.weld_settings(), &task)?;
+    bar.finish_and_clear();
+    Ok(history)
 }
 
 /// One layer in the file, or each in one of its own.

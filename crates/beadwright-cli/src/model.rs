@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::path::{Path, PathBuf};
 
 /// Which model, and how it is placed.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub(crate) struct Model {
     /// The model: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
     /// centre-lines of walls, and DXF and SVG with outlines (--height).

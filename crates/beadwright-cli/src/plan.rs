@@ -6,12 +6,14 @@ use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
 use beadwright::layer::Layer;
+use beadwright::model::together::{Arrangement, Place, together};
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
 use beadwright::profile::Profile;
 use beadwright::report::{self, rows};
+use beadwright::task::Task;
 use beadwright::{dialect, fill};
 use glam::DVec3;
 use std::io::Write;
@@ -21,6 +23,16 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
+    /// Another part for the same build, turned and scaled alike; may be given several times. The parts stand in rows and grow
+    /// together, layer by layer.
+    #[arg(long, value_name = "MODEL")]
+    with: Vec<PathBuf>,
+    /// Distance between the parts of one build, mm.
+    #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = parse_gap, requires = "with")]
+    gap: f64,
+    /// Leave the parts of one build where their files have them, seen from above.
+    #[arg(long, requires = "with", conflicts_with = "gap")]
+    as_placed: bool,
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
     profile: String,
@@ -90,6 +102,11 @@ fn post_help() -> String {
     )
 }
 
+fn parse_gap(text: &str) -> Result<f64, String> {
+    let gap: f64 = text.parse().map_err(|_| "a distance in mm is expected".to_owned())?;
+    if (0.0..=1000.0).contains(&gap) { Ok(gap) } else { Err("the gap must lie between 0 and 1000 mm".to_owned()) }
+}
+
 fn parse_height(text: &str) -> Result<f64, String> {
     let height: f64 = text.parse().map_err(|_| "a height in mm is expected".to_owned())?;
     if (0.1..=20_000.0).contains(&height) {
@@ -110,6 +127,39 @@ pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
     if (1e-3..=100.0).contains(&step) { Ok(step) } else { Err("the grid must lie between 0.001 and 100 mm".to_owned()) }
 }
 
+impl Arguments {
+    /// The name of the build: that of its part, or of the first of several.
+    fn name(&self) -> String {
+        let first = self.model.part();
+        match self.with.len() {
+            0 => first,
+            1 => format!("{first}_and_1_more"),
+            more => format!("{first}_and_{more}_more"),
+        }
+    }
+
+    /// What is built, and where each of several parts stands.
+    fn parts(&self, bead_width: f64, task: &Task) -> anyhow::Result<(Part, Vec<Place>)> {
+        let first = self.model.part_placed(bead_width, self.height, task)?;
+        if self.with.is_empty() {
+            return Ok((first, Vec::new()));
+        }
+        let others = self.with.iter().map(|path| model::Model { model: path.clone(), ..self.model.clone() });
+        let mut parts = Vec::with_capacity(self.with.len() + 1);
+        for (model, placed) in [(self.model.clone(), Some(first))].into_iter().chain(others.map(|model| (model, None)))
+        {
+            let placed = placed.map_or_else(|| model.part_placed(bead_width, self.height, task), Ok)?;
+            let Part::Mesh(import) = placed else {
+                anyhow::bail!("{}: only solids stand together in one build", model.model.display())
+            };
+            parts.push((model.part(), import));
+        }
+        let arrangement = if self.as_placed { Arrangement::AsTheyAre } else { Arrangement::Rows { gap: self.gap } };
+        let (import, places) = together(parts, arrangement)?;
+        Ok((Part::Mesh(import), places))
+    }
+}
+
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(threads) = arguments.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
@@ -118,7 +168,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
     settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
     let mut profile = profile::load(&arguments.profile, &settings)?;
-    let part = arguments.model.part();
+    let part = arguments.name();
     let base = if arguments.post.is_empty() { profile::folder(&arguments.profile) } else { PathBuf::new() };
     if !arguments.post.is_empty() {
         profile.posts.clone_from(&arguments.post);
@@ -127,7 +177,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let programs = profile::programs(&profile.posts, &base, &programs.job(&part))?;
 
     let (task, bar) = progress::task()?;
-    let model = arguments.model.part_placed(profile.bead.width, arguments.height, &task)?;
+    let (model, places) = arguments.parts(profile.bead.width, &task)?;
     let model = match arguments.from_z {
         Some(z) => model.above(z).with_context(|| format!("--from-z {z}"))?,
         None => model,
@@ -173,6 +223,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json {
         writeln!(out, "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
     } else {
+        print_head(&mut out, &part, &profile, &model, &places)?;
         print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &written)?;
     }
     Ok(())
@@ -248,6 +299,27 @@ pub(crate) fn deposit_settings(
     program::fitted(grid, plan::deposit_settings(profile), &bounds, (high.z / profile.layers.height) as usize)
 }
 
+/// Name and size, and where each of several parts stands.
+fn print_head(
+    out: &mut impl Write,
+    part: &str,
+    profile: &Profile,
+    model: &Part,
+    places: &[Place],
+) -> std::io::Result<()> {
+    let (low, high) = model.bounds();
+    let size = high - low;
+    let of = match model {
+        Part::Mesh(import) => format!("{} triangles", import.repair.triangles),
+        Part::Curves { curves, .. } => format!("{} centre-lines", curves.count()),
+    };
+    writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
+    for (name, Bounds { min, max }) in places {
+        writeln!(out, "  {name:<22} x {:.1} to {:.1}, y {:.1} to {:.1} mm", min.x, max.x, min.y, max.y)?;
+    }
+    writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)
+}
+
 fn print_summary(
     out: &mut impl Write,
     arguments: &Arguments,
@@ -257,14 +329,7 @@ fn print_summary(
     figures: Option<&Figures>,
     written: &Written,
 ) -> std::io::Result<()> {
-    let (part, (low, high), m) = (arguments.model.part(), model.bounds(), &summary.metrics);
-    let (size, repair) = (high - low, model.repair());
-    let of = match model {
-        Part::Mesh(_) => format!("{} triangles", repair.triangles),
-        Part::Curves { curves, .. } => format!("{} centre-lines", curves.count()),
-    };
-    writeln!(out, "{part}  {:.1} × {:.1} × {:.1} mm, {of}", size.x, size.y, size.z)?;
-    writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)?;
+    let m = &summary.metrics;
     let events = summary.warnings.summaries().map(|w| w.sentence());
     let forbidden = profile.forbidden().into_iter();
     for line in forbidden.chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned()) {

@@ -88,3 +88,20 @@ fn what_a_profile_lacks_is_told() {
         beadwright(at, &["plan", "cross.stl", "--profile", "fdm-abs-0.4", "--set", "interpass.max_temperature=90"]);
     assert!(!refused.status.success());
 }
+
+#[test]
+fn walls_are_fitted_from_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let table =
+        "dwell_s,length_mm,layers,height_mm,width_mm\n0,120,32,39.8,6.80\n60,120,32,49.0,5.15\n240,120,32,50.7,4.79\n";
+    fs::write(at.join("walls.csv"), table).unwrap();
+    let walls = ["bead", "walls", "walls.csv", "-p", "cmt-steel-abb", "--fit", "0,240", "--set", "process.current=132"];
+    let text = said(&beadwright(at, &walls));
+    assert_eq!(text.matches("fitted").count(), 2, "{text}");
+    let all = json(&said(&beadwright(at, &[&walls[..], &["--json"]].concat())));
+    let height = all["walls"][1]["height"].as_f64().unwrap();
+    assert!((height / 49.0 - 1.0).abs() < 0.03, "{height}");
+    let one = beadwright(at, &["bead", "walls", "walls.csv", "-p", "cmt-steel-abb", "--fit", "60"]);
+    assert!(String::from_utf8_lossy(&one.stderr).contains("two walls"), "one wall tells nothing");
+}

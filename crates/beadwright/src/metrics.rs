@@ -2,6 +2,7 @@
 
 use crate::bead::wire_area;
 use crate::layer::Layer;
+use crate::process::Cost;
 use crate::profile::Profile;
 use crate::weld::{Pause, Torch, path};
 use serde::Serialize;
@@ -29,6 +30,12 @@ pub struct Metrics {
     pub wire_length_m: f64,
     /// Wire, kg.
     pub wire_mass_kg: f64,
+    /// Shielding gas, m³.
+    pub gas_m3: f64,
+    /// Cost by the prices of `[cost]`; `None` where it has none.
+    pub cost: Option<f64>,
+    /// Its currency.
+    pub currency: String,
     /// The shortest time for which the arc is on and moving in a pass, s; `None` without passes.
     pub shortest_arc_s: Option<f64>,
     /// Time for gas, starting and ending the arc, and for craters, s: what every arc start costs.
@@ -54,12 +61,16 @@ pub struct Metrics {
 }
 
 /// What the totals need from the profile.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Rates {
     /// Metal laid, mm³/s.
     metal: f64,
     wire_feed_speed: f64,
     wire_grams_per_mm: f64,
+    /// m³/s.
+    gas: f64,
+    gas_idle: f64,
+    cost: Cost,
 }
 
 impl Metrics {
@@ -70,6 +81,10 @@ impl Metrics {
             metal: profile.bead().area() * process.deposition_speed,
             wire_feed_speed: process.wire_feed_speed * 1000.0 / 60.0,
             wire_grams_per_mm: wire_area(profile.wire.diameter) * profile.wire.density / 1000.0,
+            gas: process.gas_flow / 60_000.0,
+            // It flows before and after every pass.
+            gas_idle: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
+            cost: profile.cost.clone(),
         };
         Self {
             layers: 0,
@@ -82,6 +97,9 @@ impl Metrics {
             total_time_s: 0.0,
             wire_length_m: 0.0,
             wire_mass_kg: 0.0,
+            gas_m3: 0.0,
+            cost: None,
+            currency: profile.cost.currency.clone(),
             shortest_arc_s: None,
             start_stop_time_s: 0.0,
             corner_time_s: 0.0,
@@ -127,7 +145,9 @@ impl Metrics {
             self.corner_time_s += welded.slowed;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
+            self.gas_m3 += (welded.moving + welded.crater + self.rates.gas_idle) * self.rates.gas;
         }
+        self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
     }
 
     fn pause(&mut self, pause: Pause) {

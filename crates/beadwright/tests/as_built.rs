@@ -15,7 +15,7 @@ use std::collections::HashMap;
 type Facet = [DVec3; 3];
 
 fn written(extension: &str, header: &Header, layers: &[Layer], profile: &Profile) -> Vec<u8> {
-    (export::format(extension).unwrap().write)(&Beads { header, layers, profile }).unwrap()
+    (export::format(extension).unwrap().write)(&Beads { header, layers, profile, heat: None }).unwrap()
 }
 
 /// The triangles of a binary STL file.
@@ -52,7 +52,7 @@ fn assert_closed(facets: &[Facet]) {
 
 /// mm³ of beads without their craters.
 fn metal(profile: &Profile, layers: &[Layer], header: &Header) -> f64 {
-    let pieces = Beads { header, layers, profile }.pieces();
+    let pieces = Beads { header, layers, profile, heat: None }.pieces();
     let laid = profile.bead().area() * profile.process.deposition_speed;
     pieces.iter().map(|p| p.from.distance(p.to) / p.pace * laid).sum()
 }

@@ -46,7 +46,7 @@ fn exported_beads_are_those_of_the_plan() {
         let profile = profile_by(name, strategy);
         let plan = planned(part, &profile);
         let metrics = &plan.summary.metrics;
-        let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+        let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: None };
         let pieces = beads.pieces();
         let csv = String::from_utf8((export::format("csv").unwrap().write)(&beads).unwrap()).unwrap();
         let vtp = String::from_utf8((export::format("VTP").unwrap().write)(&beads).unwrap()).unwrap();
@@ -90,7 +90,9 @@ fn exported_beads_are_those_of_the_plan() {
 fn parquet_holds_the_table() {
     let profile = profile_by("cmt-al2319-kuka", "compound");
     let plan = planned("cross", &profile);
-    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile };
+    let settings = profile.heat_settings().unwrap();
+    let heat = heat::history(&mut plan.layers.clone(), &settings, &profile.weld_settings(), &Task::new()).unwrap();
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: heat.as_ref() };
     let written = |extension: &str| (export::format(extension).unwrap().write)(&beads).unwrap();
     let (csv, parquet) = (String::from_utf8(written("csv")).unwrap(), written("parquet"));
     assert_eq!(parquet, written("parquet"), "the same plan gives the same bytes");
@@ -98,6 +100,9 @@ fn parquet_holds_the_table() {
     let fields = reader.metadata().file_metadata().schema().get_fields().to_vec();
     let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
     assert_eq!(names.join(","), csv.lines().next().unwrap());
+    assert_eq!(names.last(), Some(&"temperature (°C)"));
+    let hottest = beads.pieces().iter().map(|piece| piece.temperature).fold(0.0, f64::max);
+    assert!((30.0..3000.0).contains(&hottest), "{hottest} °C");
     let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
     assert_eq!(rows.len(), csv.lines().count() - 1);
     for (row, line) in rows.iter().zip(csv.lines().skip(1)) {

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn written(plan: &Plan, profile: &Profile) -> Vec<u8> {
-    let beads = Beads { header: &plan.header, layers: &plan.layers, profile };
+    let beads = Beads { header: &plan.header, layers: &plan.layers, profile, heat: None };
     (export::format("3mf").unwrap().write)(&beads).unwrap()
 }
 

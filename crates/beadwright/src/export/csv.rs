@@ -1,6 +1,6 @@
 //! Beads as a table: one line a piece, units in the head.
 
-use super::table::{COUNTS, KIND, MEASURES};
+use super::table::{COUNTS, KIND, measures};
 use super::{Beads, ExportError, Format};
 use crate::number::push_fixed;
 
@@ -10,14 +10,15 @@ pub(super) const FORMAT: Format =
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let pieces = beads.pieces();
     let mut text = String::with_capacity(256 + 120 * pieces.len());
+    let measures = measures(beads);
     let names: Vec<&str> =
-        COUNTS.iter().map(|(name, _)| *name).chain([KIND]).chain(MEASURES.iter().map(|m| m.name)).collect();
+        COUNTS.iter().map(|(name, _)| *name).chain([KIND]).chain(measures.iter().map(|m| m.name)).collect();
     text.push_str(&names.join(","));
     text.push('\n');
     for piece in &pieces {
         COUNTS.iter().for_each(|(_, count)| text.push_str(&format!("{},", count(piece))));
         text.push_str(piece.kind.name());
-        for column in &MEASURES {
+        for column in measures {
             text.push(',');
             push_fixed(&mut text, (column.value)(piece), column.decimals);
         }

@@ -21,6 +21,7 @@ pub mod toolpath;
 mod vtp;
 mod walk;
 
+use crate::heat::History;
 use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::plan::Header;
@@ -36,6 +37,8 @@ pub struct Beads<'a> {
     pub layers: &'a [Layer],
     /// How they are welded.
     pub profile: &'a Profile,
+    /// How warm the metal is meanwhile, where that was computed.
+    pub heat: Option<&'a History>,
 }
 
 /// A format for beads.
@@ -125,11 +128,32 @@ pub struct Piece {
     pub start: f64,
     /// How long it takes, s.
     pub seconds: f64,
+    /// Of the metal just ahead of the torch, °C; NaN where it was not computed.
+    pub temperature: f64,
 }
 
 impl Beads<'_> {
     /// The pieces of all beads, in the order in which they are welded.
     pub fn pieces(&self) -> Vec<Piece> {
-        walk::runs(self.layers, self.profile).into_iter().flat_map(|run| run.pieces).collect()
+        let mut pieces: Vec<Piece> =
+            walk::runs(self.layers, self.profile).into_iter().flat_map(|run| run.pieces).collect();
+        for run in pieces.chunk_by_mut(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
+            self.warm(run);
+        }
+        pieces
+    }
+
+    /// Sets the temperatures of the pieces of one pass.
+    fn warm(&self, pieces: &mut [Piece]) {
+        let (Some(heat), Some(first)) = (self.heat, pieces.first()) else { return };
+        let pass = heat.layers.get(first.layer - 1).and_then(|layer| layer.passes.get(first.pass - 1));
+        let Some(pass) = pass else { return };
+        let mut way = 0.0;
+        for piece in pieces {
+            let length = piece.from.distance(piece.to);
+            let index = ((way + length / 2.0) / heat.spacing) as usize;
+            piece.temperature = pass.along.get(index).or(pass.along.last()).copied().unwrap_or(f64::NAN);
+            way += length;
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Beads as an Apache Parquet table: the columns of the CSV table, for pandas, Polars, DuckDB and Arrow.
 
-use super::table::{COUNTS, KIND, MEASURES};
+use super::table::{COUNTS, Column, KIND, measures};
 use super::{Beads, ExportError, Format, Piece};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type};
@@ -17,34 +17,38 @@ pub(super) const FORMAT: Format =
 const GROUP: usize = 1 << 20;
 
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
-    let pieces = beads.pieces();
+    let (pieces, measures) = (beads.pieces(), measures(beads));
     let properties =
         WriterProperties::builder().set_created_by(concat!("Beadwright ", env!("CARGO_PKG_VERSION")).to_owned());
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema()?, Arc::new(properties.build()))?;
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema(measures)?, Arc::new(properties.build()))?;
     for rows in pieces.chunks(GROUP) {
         let mut group = writer.next_row_group()?;
-        columns(&mut group, rows)?;
+        columns(&mut group, rows, measures)?;
         group.close()?;
     }
     Ok(writer.into_inner()?)
 }
 
-fn schema() -> Result<TypePtr, ParquetError> {
+fn schema(measures: &[Column]) -> Result<TypePtr, ParquetError> {
     let field = |name: &str, kind: Physical, meaning: Option<LogicalType>| {
         let field = Type::primitive_type_builder(name, kind).with_repetition(Repetition::REQUIRED);
         field.with_logical_type(meaning).build().map(Arc::new)
     };
     let counts = COUNTS.iter().map(|(name, _)| field(name, Physical::INT32, None));
     let kind = field(KIND, Physical::BYTE_ARRAY, Some(LogicalType::String));
-    let measures = MEASURES.iter().map(|column| field(column.name, Physical::DOUBLE, None));
+    let measures = measures.iter().map(|column| field(column.name, Physical::DOUBLE, None));
     let fields = counts.chain([kind]).chain(measures).collect::<Result<Vec<_>, _>>()?;
     Type::group_type_builder("pieces").with_fields(fields).build().map(Arc::new)
 }
 
 /// Writes the columns of some rows, in the order of the schema.
-fn columns(group: &mut SerializedRowGroupWriter<'_, Vec<u8>>, rows: &[Piece]) -> Result<(), ParquetError> {
+fn columns(
+    group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
+    rows: &[Piece],
+    measures: &[Column],
+) -> Result<(), ParquetError> {
     let mut counts = COUNTS.iter();
-    let mut measures = MEASURES.iter();
+    let mut measures = measures.iter();
     let mut number = 0;
     while let Some(mut column) = group.next_column()? {
         if let Some((_, count)) = counts.next() {

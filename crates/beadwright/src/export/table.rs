@@ -1,6 +1,6 @@
 //! The columns that all tables of pieces have: names with units, and values.
 
-use super::Piece;
+use super::{Beads, Piece};
 
 /// A column of numbers.
 pub(super) struct Column {
@@ -20,8 +20,12 @@ pub(super) const COUNTS: [Count; 2] = [("layer", |p| p.layer), ("pass", |p| p.pa
 /// The name of the column with the kinds of passes.
 pub(super) const KIND: &str = "kind";
 
-/// The columns of measures.
-pub(super) const MEASURES: [Column; 13] = [
+/// The columns of measures; that of temperatures only where they were computed.
+pub(super) fn measures(beads: &Beads<'_>) -> &'static [Column] {
+    if beads.heat.is_some() { &MEASURES } else { &MEASURES[..MEASURES.len() - 1] }
+}
+
+const MEASURES: [Column; 14] = [
     place("x0 (mm)", |p| p.from.x),
     place("y0 (mm)", |p| p.from.y),
     place("z0 (mm)", |p| p.from.z),
@@ -35,6 +39,7 @@ pub(super) const MEASURES: [Column; 13] = [
     measure("wire feed (ratio)", |p| p.feed),
     measure("start (s)", |p| p.start),
     measure("time (s)", |p| p.seconds),
+    measure("temperature (°C)", |p| p.temperature),
 ];
 
 const fn place(name: &'static str, value: fn(&Piece) -> f64) -> Column {

@@ -40,6 +40,9 @@ fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     column("wire feed", |p| p.feed);
     column("start", |p| p.start);
     column("time", |p| p.seconds);
+    if beads.heat.is_some() {
+        column("temperature", |p| p.temperature);
+    }
     let mut number = |name: &str, value: fn(&Piece) -> usize| {
         let kind = format!("type=\"Int32\" Name=\"{name}\"");
         push(&mut text, &kind, pieces.iter().flat_map(|p| (value(p) as i32).to_le_bytes()));

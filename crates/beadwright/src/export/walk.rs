@@ -92,6 +92,7 @@ impl Walk {
                 feed,
                 start,
                 seconds,
+                temperature: f64::NAN,
             });
             way += from.distance(to);
             start += seconds;

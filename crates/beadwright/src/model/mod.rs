@@ -33,6 +33,7 @@ pub mod repair;
 pub(crate) mod solid;
 pub mod stl;
 mod threemf;
+pub mod together;
 pub mod units;
 pub mod wall_curves;
 pub(crate) mod xml;

@@ -1,9 +1,11 @@
 //! The process: wire, arc, speed, gas, moves with the arc off, and how passes begin and end; sections of a profile.
 
 mod by_layer;
+mod cost;
 mod start_stop;
 
 pub use by_layer::LayerProcess;
+pub use cost::Cost;
 pub use start_stop::StartStop;
 
 use crate::limit::{Limit, TINY, limits};

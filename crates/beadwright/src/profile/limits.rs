@@ -38,6 +38,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.weave.iter().flat_map(|weave| weave.limits()).collect(),
         p.one_loop.limits(),
         p.start_stop.limits(),
+        p.cost.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),
         p.heat.iter().flat_map(|heat| heat.limits()).collect(),
         p.material.iter().flat_map(|material| material.limits()).collect(),

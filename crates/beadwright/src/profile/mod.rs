@@ -38,7 +38,7 @@ use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
-use crate::process::{Process, StartStop, Travel, Wire};
+use crate::process::{Cost, Process, StartStop, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
@@ -133,6 +133,9 @@ pub struct Profile {
     pub start_stop: StartStop,
     /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
+    /// Prices; optional.
+    #[serde(default)]
+    pub cost: Cost,
     /// What the arc gives and the surroundings take, for temperatures; optional.
     pub heat: Option<HeatSection>,
     /// Thermal values of the part; optional.

@@ -21,6 +21,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
     if m.dwell_time_s > 0.0 {
         rows.insert(5, ("waits", hours(m.dwell_time_s)));
     }
+    rows.extend(m.cost.map(|cost| ("cost", format!("{cost:.2} {}", m.currency))));
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows
 }
