@@ -6,8 +6,9 @@
 mod families;
 
 use beadwright::dialect::reading::{self, Options};
+use beadwright::export::toolpath;
 use beadwright::fill::STRATEGIES;
-use beadwright::model::{MAX_REACH_MM, Model, Placement, import_damaged};
+use beadwright::model::{MAX_REACH_MM, Model, Placement, import_damaged, outline};
 use beadwright::planar::{DVec2, FillRule, Join, Region, Ring};
 use beadwright::profile::{BUILT_IN, Profile, edit};
 use beadwright::task::Task;
@@ -21,6 +22,21 @@ pub fn stl(data: &[u8]) {
     assert!(mesh.vertices.iter().all(|v| v.is_finite()));
     assert!(mesh.triangles.as_flattened().iter().all(|&v| (v as usize) < mesh.vertices.len()));
     assert_eq!(mesh.triangles.len(), mesh.neighbours.len());
+}
+
+/// A drawing, grown into a solid: if it is, the solid is finite and within reach.
+pub fn drawing(data: &[u8]) {
+    let Ok(outlines) = outline::read(data) else { return };
+    let Ok(import) = outlines.extruded(1.0, 5.0) else { return };
+    let (low, high) = import.mesh.bounds();
+    assert!(low.abs().max(high.abs()).max_element() <= 2.0 * MAX_REACH_MM, "{low} {high}");
+}
+
+/// A 3MF file of toolpaths: if it is read, its passes can be welded.
+pub fn toolpath(data: &[u8]) {
+    let Ok(plan) = toolpath::read(data) else { return };
+    let passes = plan.layers.iter().flat_map(|layer| &layer.passes);
+    passes.for_each(|pass| assert!(pass.points.len() > 1 && pass.segments().all(|s| s.width > 0.0 && s.pace > 0.0)));
 }
 
 /// An IGES file, placed as a wall: if it is, it lies within reach. The cards are put in order first, since hardly any

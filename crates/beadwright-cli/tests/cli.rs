@@ -338,7 +338,7 @@ fn curves_are_inspected_and_welded_as_walls() {
     ok(folder.path(), &["example", "tian", "-o", "tian.igs"]);
     assert!(ok(folder.path(), &["inspect", "tian.igs"]).contains("6 curves, 6 of them stand for themselves"));
     let said = refused(folder.path(), &["plan", "tian.igs"], 1);
-    assert!(said.contains("say how high the wall grows") && said.contains("--height"), "{said}");
+    assert!(said.contains("say how high the part grows") && said.contains("--height"), "{said}");
     let said = ok(folder.path(), &["plan", "tian.igs", "-p", "cmt-steel-abb", "--height", "26", "-o", "out"]);
     assert!(said.contains("6 centre-lines") && said.contains("strategy wall"), "{said}");
     assert!(files(&folder.path().join("out")).contains_key("tian.mod"));
