@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
     #[command(flatten)]
     noise: Noise,
-    /// What the scan after each layer is used for; may be given several times. All three, side by side, if left out.
+    /// What the scan after each layer is used for; may be given several times; all three, side by side, if left out.
     #[arg(long, value_enum, value_name = "KIND")]
     feedback: Vec<Kind>,
     #[command(flatten)]

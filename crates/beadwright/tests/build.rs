@@ -4,7 +4,7 @@
 
 mod common;
 
-use beadwright::adapt::core::core;
+use beadwright::adapt::area::core;
 use beadwright::adapt::{Feedback, Rules, Surface, pieces};
 use beadwright::build::{Built, Errors, Settings, build};
 use beadwright::deposit::Nominal;

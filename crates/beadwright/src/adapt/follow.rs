@@ -1,6 +1,6 @@
 //! All layers that follow a scan, as nothing else is measured until the end.
 
-use super::core::core;
+use super::area::core;
 use super::correct::{Feedback, Rules, next};
 use super::levels::Levels;
 use super::see::Seen;

@@ -6,14 +6,14 @@
 //! | [`align`] | lays a scan on the part |
 //! | [`see`](mod@see) | compares it with what the plan promises, and refuses what cannot be |
 //! | [`surface`] | how far a build is from what is promised, and what a layer changes of it |
-//! | [`core`](mod@core) | where heights are compared |
+//! | [`area`] | where heights are compared |
 //! | [`levels`] | how many layers follow, and where they lie |
 //! | [`correct`] | the next layer: metal and torch height by place |
 //! | [`follow`](mod@follow) | all layers that follow |
 //! | [`page`] | predicted, measured and difference as a page |
 
 pub mod align;
-pub mod core;
+pub mod area;
 pub mod correct;
 pub mod follow;
 pub mod levels;

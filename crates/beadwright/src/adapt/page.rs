@@ -7,17 +7,25 @@ use crate::deposit::picture::{EMPTY, FIRST_HEIGHT};
 use crate::number::fixed;
 use crate::report::sheet::{Row, Sheet};
 
+/// Pictures have at most about so many pixels along a side.
+const PIXELS: usize = 400;
+
 /// Heights of a grid as a picture: 0 in the middle of the scale, ±`most` (mm) at its ends; nothing where there is none.
+/// Of a large grid only some points are shown.
 pub fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64>) -> Picture {
     let grid = surface.grid();
     let steps = f64::from(u8::MAX - FIRST_HEIGHT);
     let value = |height: f64| FIRST_HEIGHT + ((height / most + 1.0) / 2.0 * steps).round().clamp(0.0, steps) as u8;
+    let every = grid.columns.max(grid.rows).div_ceil(PIXELS).max(1);
+    let rows = (0..grid.rows).step_by(every);
+    let point = |row: usize, column: usize| height(row * grid.columns + column).map_or(EMPTY, value);
+    let values = rows.flat_map(|row| (0..grid.columns).step_by(every).map(move |column| (row, column)));
     Picture {
         low: grid.place(0, 0) - grid.step / 2.0,
-        pixel: grid.step,
-        width: grid.columns,
-        height: grid.rows,
-        values: (0..grid.points()).map(|i| height(i).map_or(EMPTY, value)).collect(),
+        pixel: every as f64 * grid.step,
+        width: grid.columns.div_ceil(every),
+        height: grid.rows.div_ceil(every),
+        values: values.map(|(row, column)| point(row, column)).collect(),
     }
 }
 

@@ -6,7 +6,7 @@
 //! cell of the grid counts, so that spatter does not. Where nothing was measured, the nearest measured cells stand in,
 //! weighted by 1/d².
 
-use super::core::{core, near};
+use super::area::{core, near};
 use super::surface::{Spread, Surface};
 use crate::deposit::Nominal;
 use crate::layer::Layer;
@@ -125,14 +125,7 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     let layer = number.checked_sub(1).and_then(|index| planned.get(index)).ok_or(none)?;
     let mut surface = Surface::plate(planned, nominal);
     beside(&planned[..number], points, &surface, nominal)?;
-    let mut shape = surface.clone();
-    shape.lay(&Layer::default(), layer);
-    let core = core(surface.grid(), &layer.islands, nominal.bead.width);
-    let mean = shape.spread(&core).mean;
-    let predicted: Vec<Option<f64>> =
-        (0..surface.grid().points()).map(|i| shape.error(i).map(|height| height - mean)).collect();
-    let sure = |i: &usize| predicted[*i].is_some_and(|height| height.abs() <= DOUBTFUL * layer.height);
-    let core: Vec<usize> = core.into_iter().filter(sure).collect();
+    let (predicted, core) = predicted(&surface, layer, nominal.bead.width);
     let cells = cells(points, &surface, &core, layer.z, &predicted);
     let inside = cells.iter().map(|cell| cell.points).sum();
     if inside < FEWEST {
@@ -144,6 +137,20 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     surface.measure(number, layer, &errors);
     let error = surface.spread(&core);
     Ok(Seen { surface, core, predicted, error, points: inside, covered })
+}
+
+/// The height that is foretold of each point with metal, above the layer's top, mm; and the points at which it is a measure.
+fn predicted(surface: &Surface, layer: &Layer, width: f64) -> (Vec<Option<f64>>, Vec<usize>) {
+    let mut shape = surface.clone();
+    shape.lay(&Layer::default(), layer);
+    let mut core = core(surface.grid(), &layer.islands, width);
+    let mut heights: Vec<f64> = core.iter().filter_map(|&i| shape.error(i)).collect();
+    heights.sort_by(f64::total_cmp);
+    let middle = heights.get(heights.len() / 2).copied().unwrap_or_default();
+    core.retain(|&i| shape.error(i).is_some_and(|height| (height - middle).abs() <= DOUBTFUL * layer.height));
+    let mean = shape.spread(&core).mean;
+    let above = |i: usize| shape.error(i).map(|height| height - mean);
+    ((0..surface.grid().points()).map(above).collect(), core)
 }
 
 /// Refuses a scan that shows much beside the part.

@@ -81,7 +81,7 @@ impl Spread {
 }
 
 impl Surface {
-    /// The plate below the first of these layers, which stands on `floor` (mm); the grid covers them all.
+    /// The plate below the first of these layers; the grid covers them all.
     pub fn plate(layers: &[Layer], nominal: Nominal) -> Self {
         let passes = || layers.iter().flat_map(|layer| &layer.passes);
         let outlines =
@@ -123,7 +123,7 @@ impl Surface {
         self.level += promised.height;
     }
 
-    /// Takes the heights for what was measured after `layer`, whose number is counted from 1: above its promised top, mm.
+    /// Takes what was measured after `layer`, whose number is counted from 1: heights above its promised top, mm.
     pub(super) fn measure(&mut self, number: usize, layer: &Layer, errors: &[Option<f64>]) {
         (self.layers, self.level) = (number, layer.z);
         for (i, error) in errors.iter().enumerate() {

@@ -8,12 +8,12 @@ pub mod page;
 
 pub use errors::Errors;
 
-use crate::adapt::core::core;
+use crate::adapt::area::core;
+use crate::adapt::page::relief;
 use crate::adapt::{Feedback, Levels, Rules, Spread, Surface, next};
-use crate::deposit::Nominal;
+use crate::deposit::{Nominal, Picture};
 use crate::layer::Layer;
 use crate::task::{Cancelled, Stage, Task};
-use serde::Serialize;
 
 /// How a plan is welded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,21 +41,17 @@ pub struct Built {
     pub pieces: usize,
     /// Those that wanted more or less metal than the window allows.
     pub clipped: usize,
-    /// The last surface.
-    pub surface: Surface,
-    /// What its level lies above the end of the plan, mm.
-    pub above_end: f64,
-    /// Points of the surface at which the last layer is judged.
-    pub core: Vec<usize>,
 }
 
 /// A layer after it was welded.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BuiltLayer {
     /// Top that it should have, mm.
     pub z: f64,
     /// Its height above that, mm, inside the outline less its rim.
     pub error: Spread,
+    /// The same from above, ± a layer height, of some layers.
+    pub picture: Option<Picture>,
 }
 
 impl Built {
@@ -67,6 +63,8 @@ impl Built {
 
 /// Most layers of a build, as a multiple of the planned ones: where metal is lost again and again, it never ends.
 const MOST_LAYERS: usize = 2;
+/// About so many layers have a picture.
+const PICTURES: usize = 50;
 
 /// Welds a plan. `None` for a plan without layers, or whose tops do not rise.
 ///
@@ -75,34 +73,33 @@ const MOST_LAYERS: usize = 2;
 pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) -> Result<Option<Built>, Cancelled> {
     let Some(levels) = Levels::of(planned) else { return Ok(None) };
     let Settings { nominal, errors, rules } = settings;
-    let surface = Surface::plate(planned, *nominal);
+    let mut surface = Surface::plate(planned, *nominal);
+    let mut measured = surface.clone();
     let layer_height = (levels.end() - surface.level()) / planned.len() as f64;
-    let (layers, core_points) = (Vec::new(), Vec::new());
-    let end = Spread::default();
-    let mut built =
-        Built { by, layers, end, layer_height, pieces: 0, clipped: 0, surface, above_end: 0.0, core: core_points };
+    let (layers, end) = (Vec::new(), Spread::default());
+    let mut built = Built { by, layers, end, layer_height, pieces: 0, clipped: 0 };
     let mut passes = 0;
-    let mut measured = built.surface.clone();
     for index in 0..MOST_LAYERS * planned.len() {
-        task.step(Stage::Plan, (index as f64 / planned.len() as f64).min(1.0))?;
-        let Some(next) = next(planned, &levels, &measured, index, by, rules) else { break };
         let share = index as f64 / planned.len() as f64;
-        built.surface.lay(&next.promised, &errors.layer(&next.layer, share, passes));
+        task.step(Stage::Plan, share.min(1.0))?;
+        let Some(next) = next(planned, &levels, &measured, index, by, rules) else { break };
+        surface.lay(&next.promised, &errors.layer(&next.layer, share, passes));
+        let core = core(surface.grid(), &next.layer.islands, nominal.bead.width);
+        let (z, error) = (surface.level(), surface.spread(&core));
+        let shown = index % planned.len().div_ceil(PICTURES) == 0;
+        let picture = shown.then(|| relief(&surface, layer_height, |i| surface.error(i)));
+        built.layers.push(BuiltLayer { z, error, picture });
+        built.end = error.moved(z - levels.end());
         passes += next.layer.passes.len();
         built.pieces += next.pieces;
         built.clipped += next.clipped;
-        built.core = core(built.surface.grid(), &next.layer.islands, nominal.bead.width);
-        let error = built.surface.spread(&built.core);
-        built.layers.push(BuiltLayer { z: built.surface.level(), error });
-        built.end = error.moved(built.surface.level() - levels.end());
-        measured = built.surface.clone();
+        measured = surface.clone();
         measured.disturb(errors.scan(index));
         if by != Feedback::None {
-            let mean = measured.spread(&built.core).mean;
+            let mean = measured.spread(&core).mean;
             measured.settle(mean);
-            built.surface.settle(mean);
+            surface.settle(mean);
         }
-        built.above_end = built.surface.level() - levels.end();
     }
     Ok(Some(built))
 }

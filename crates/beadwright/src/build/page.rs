@@ -1,9 +1,9 @@
-//! The page of a build: the error of the height layer by layer, and what the wall looks like in the end, for each kind of
-//! feedback.
+//! The page of a build: the error of the height layer by layer, as curves and from above, for each kind of feedback.
 
 use super::{Built, Settings};
-use crate::adapt::page::{cells, key, relief};
-use crate::adapt::{Feedback, Surface};
+use crate::adapt::Feedback;
+use crate::adapt::page::{cells, key};
+use crate::deposit::Picture;
 use crate::number::fixed;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
@@ -71,18 +71,19 @@ fn plot(title: &str, builds: &[Built], value: impl Fn(&Built, usize) -> f64) -> 
     }
 }
 
-/// The last surface of each build, against the end of the plan.
+/// The tops after layers, against what they should be.
 fn pictures(sheet: &mut Sheet, builds: &[Built]) {
-    let most = builds
+    let count = builds.iter().map(|built| built.layers.len()).max().unwrap_or_default();
+    let shown: Vec<usize> = (0..count).filter(|&i| builds.iter().any(|built| picture(built, i).is_some())).collect();
+    let labels: Vec<String> = shown.iter().map(|i| format!("layer {}", i + 1)).collect();
+    let columns: Vec<(String, Vec<Option<&Picture>>)> = builds
         .iter()
-        .flat_map(|built| [built.end.low, built.end.high])
-        .fold(0.1, |most: f64, error| most.max(error.abs()));
-    let picture = |built: &Built| {
-        let inside: &Surface = &built.surface;
-        let off = built.above_end;
-        relief(inside, most, |i| inside.error(i).map(|error| error + off))
-    };
-    let pictures: Vec<_> = builds.iter().map(|built| (name(built.by).to_owned(), picture(built))).collect();
-    let columns: Vec<_> = pictures.iter().map(|(name, picture)| (name.clone(), vec![Some(picture)])).collect();
-    sheet.heading("The last layer, above the end of the plan").heights(&key(most), &["top".to_owned()], &columns);
+        .map(|built| (name(built.by).to_owned(), shown.iter().map(|&i| picture(built, i)).collect()))
+        .collect();
+    let most = builds.first().map_or(1.0, |built| built.layer_height);
+    sheet.heading("The top after a layer, above what it should be").heights(&key(most), &labels, &columns);
+}
+
+fn picture(built: &Built, layer: usize) -> Option<&Picture> {
+    built.layers.get(layer)?.picture.as_ref()
 }

@@ -4,8 +4,7 @@ use crate::deposit::RIM;
 use crate::deposit::field::Grid;
 use planar::{Join, Polygon, Region};
 
-/// The points inside the outlines less a rim of a quarter of a bead `width` (mm); all points inside where nothing else is
-/// left.
+/// The points inside the outlines less a rim of a quarter of a bead `width` (mm); without one, where nothing else is left.
 pub fn core(grid: &Grid, islands: &[Polygon], width: f64) -> Vec<usize> {
     let whole = Region::from_normalised(islands.to_vec());
     let core = inside(grid, &whole.offset(-RIM * width, Join::ROUND));
