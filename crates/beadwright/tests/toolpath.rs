@@ -60,6 +60,7 @@ fn assert_same(read: &[Layer], planned: &[Layer], what: &str) {
         for (p, q) in a.passes.iter().zip(&b.passes) {
             let place = format!("{what}, layer {}", b.index + 1);
             assert_eq!((p.kind, p.closed, p.points.len()), (q.kind, q.closed, q.points.len()), "{place}");
+            assert!((p.wait - q.wait).abs() < 1e-6, "{place}: waits {} s for {}", p.wait, q.wait);
             assert!(p.points.iter().zip(&q.points).all(|(p, q)| p.distance(*q) < 1e-3), "{place}");
             for (s, t) in p.segments().zip(q.segments()) {
                 assert!((s.width - t.width).abs() < 1e-3, "{place}: {} mm wide for {}", s.width, t.width);
@@ -88,7 +89,8 @@ fn plans_come_back_from_3mf() {
         ("star", 45.0, profile_by("fdm-abs-0.4", "compound")),
         ("blade", 10.0, profile("cmt-steel-robots")),
     ] {
-        let plan = turned(part, angle, &profile);
+        let mut plan = turned(part, angle, &profile);
+        plan.layers[1].passes[0].wait = 12.5;
         let bytes = written(&plan, &profile);
         assert_eq!(bytes, written(&plan, &profile), "the same plan gives the same bytes");
         assert!(toolpath::is_toolpath(&bytes));

@@ -76,6 +76,9 @@ fn segment(text: &mut String, run: &Run<'_>, values: &[Values], tags: &[u32], st
         "<segment type=\"polyline{axes}d\" profileid=\"{profile}\" partid=\"1\" timeprediction=\"{time}\" \
          jumpprediction=\"{travel}\""
     ));
+    if run.pass.wait > 0.0 {
+        text.push_str(&format!(" bw:wait=\"{}\"", microseconds(run.pass.wait)));
+    }
     text.push_str(if run.pass.closed { " bw:closed=\"1\">\n" } else { ">\n" });
     let lean = |i: usize| styles.leaning.then(|| run.leans.get(i).copied().unwrap_or_default());
     run.pieces.first().into_iter().for_each(|piece| {

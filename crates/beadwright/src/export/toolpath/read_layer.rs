@@ -1,6 +1,7 @@
 //! A layer of a package becomes a layer of a plan.
 
 use super::read::{Resource, Style, optional};
+use super::style::MICROSECONDS;
 use super::{BETWEEN, OVERLAP};
 use crate::layer::Layer;
 use crate::model::ImportError;
@@ -27,6 +28,8 @@ struct Open<'a> {
     style: &'a Style,
     shape: String,
     closed: bool,
+    /// Wait before it, s, as Beadwright has written it.
+    wait: f64,
     vertices: Vec<Vertex>,
 }
 
@@ -146,7 +149,8 @@ impl<'a> Reader<'a> {
         }
         self.height = self.height.or(style.height);
         let closed = shape == "loop" || element.attribute("closed").is_some_and(|closed| closed == "1");
-        self.open = Some(Open { style, shape, closed, vertices: Vec::new() });
+        let wait = optional(element, "wait")?.map_or(0.0, |wait: f64| wait / MICROSECONDS);
+        self.open = Some(Open { style, shape, closed, wait, vertices: Vec::new() });
         Ok(())
     }
 
@@ -219,7 +223,7 @@ impl Style {
 impl Open<'_> {
     /// The pass of a chain of lines; in files of ours, what only welding has added is taken away again.
     fn pass(self, ours: bool) -> Pass {
-        let Self { style, closed, shape, mut vertices } = self;
+        let Self { style, closed, shape, wait, mut vertices } = self;
         if ours {
             vertices.retain(|vertex| ![OVERLAP, BETWEEN].contains(&vertex.tag));
         }
@@ -233,7 +237,7 @@ impl Open<'_> {
         let along = |value: fn(&(f64, f64)) -> f64| same_or_each(values.iter().map(value).collect());
         let (width, pace) = (along(|v| v.0), along(|v| v.1));
         let kind = style.kind.unwrap_or(if closed { PassKind::Contour } else { PassKind::Infill });
-        Pass { kind, closed, points: vertices.iter().map(|v| v.at).collect(), width, pace, wait: 0.0 }
+        Pass { kind, closed, points: vertices.iter().map(|v| v.at).collect(), width, pace, wait }
     }
 }
 

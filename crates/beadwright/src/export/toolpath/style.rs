@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use uuid::Uuid;
 
 /// Microseconds in a second: the unit of waits and times.
-const MICROSECONDS: f64 = 1e6;
+pub(super) const MICROSECONDS: f64 = 1e6;
 
 /// A value that changes along passes.
 struct Modifier {
