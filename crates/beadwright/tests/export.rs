@@ -6,6 +6,8 @@ mod common;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use beadwright::export::{self, Beads};
+use beadwright::heat;
+use beadwright::task::Task;
 use bytes::Bytes;
 use common::{planned, profile_by};
 use parquet::file::reader::{FileReader, SerializedFileReader};
