@@ -107,7 +107,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let rules = arguments.limits.rules(&profile);
     let followed = adapt::follow(&plan.layers, number, &seen, profile.bead.width, &rules);
     bar.finish_and_clear();
-    let scanned = format!("{format} of {read} points, {without_height} more without a height");
+    let missing = if without_height > 0 { format!(", {without_height} more without a height") } else { String::new() };
+    let scanned = format!("{format} of {read} points{missing}");
     let sentences = sentences(&scanned, how, &aligned, &seen, &followed, &rules);
     let adapted = Adapted { plan, number, seen: &seen, followed: &followed, profile: &profile, sentences: &sentences };
     let written = adapted.write(arguments)?;
@@ -116,7 +117,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(writeln!(out, "{:#}", adapted.json(&aligned))?);
     }
     sentences.iter().try_for_each(|sentence| writeln!(out, "{sentence}"))?;
-    writeln!(out, "\n{} files in {}: {}", written.files.len(), arguments.output.display(), written.files.join(", "))?;
+    writeln!(
+        out,
+        "\n{} files in {}: {}",
+        written.files.len(),
+        arguments.output.display(),
+        crate::plan::shorten(&written.files)
+    )?;
     Ok(())
 }
 

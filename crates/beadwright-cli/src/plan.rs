@@ -348,7 +348,7 @@ fn print_summary(
 }
 
 /// All names, or the first and the last of many.
-fn shorten(files: &[String]) -> String {
+pub(crate) fn shorten(files: &[String]) -> String {
     const SHOWN: usize = 8;
     match files {
         [first @ .., last] if files.len() > SHOWN => format!("{}, …, {last}", first[..SHOWN - 2].join(", ")),

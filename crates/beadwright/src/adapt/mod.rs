@@ -3,7 +3,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | [`scan`] | reads scans: PLY, tables of points, height maps |
-//! | [`align`] | lays a scan on the part |
+//! | [`align`](mod@align) | lays a scan on the part |
 //! | [`see`](mod@see) | compares it with what the plan promises, and refuses what cannot be |
 //! | [`surface`] | how far a build is from what is promised, and what a layer changes of it |
 //! | [`area`] | where heights are compared |
