@@ -18,10 +18,10 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     wanted: profile::Wanted,
     /// File to write; its ending tells the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
-    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf or .svg (drawings of layers: NAME-001.dxf and so on).
+    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf, .svg or .png (drawings of layers: NAME-001.dxf and so on).
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
-    /// Draw only this layer, counted from 1, into the file itself; for .dxf and .svg.
+    /// Draw only this layer, counted from 1, into the file itself; for .dxf, .svg and .png.
     #[arg(long, value_name = "LAYER")]
     layer: Option<usize>,
     /// Also compute how warm the metal ahead of the torch is, as a column of tables and of .vtp.
@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let known: Vec<String> = known.map(|(extension, purpose)| format!(".{extension} ({purpose})")).collect();
         format!("{}: the ending tells the format, and it may be {}", arguments.output.display(), known.join(" or "))
     })?;
-    anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg)");
+    anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg, .png)");
     let profile = source.profile(&arguments.wanted)?;
     let heat = arguments.temperatures.then(|| heat_of(plan, &profile)).transpose()?.flatten();
     let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: heat.as_ref() };
@@ -69,7 +69,7 @@ fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>
 /// One layer in the file, or each in one of its own.
 fn drawings(arguments: &Arguments, plan: &PlanFile, format: &LayerFormat) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    let write = |path: &Path, layer: &Layer| write_file(path, (format.write)(layer).as_bytes());
+    let write = |path: &Path, layer: &Layer| -> anyhow::Result<()> { Ok(write_file(path, &(format.write)(layer)?)?) };
     if let Some(number) = arguments.layer {
         let layer = number.checked_sub(1).and_then(|index| plan.layers.get(index));
         let layer =

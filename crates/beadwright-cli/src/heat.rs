@@ -2,7 +2,7 @@
 
 use crate::{profile, program, progress};
 use beadwright::files::write_file;
-use beadwright::heat::{self, History, Interpass};
+use beadwright::heat::{self, History, Interpass, MOST_VOXELS};
 use beadwright::report::temperature;
 use std::io::Write;
 use std::path::PathBuf;
@@ -58,12 +58,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.json {
         return Ok(writeln!(out, "{:#}", serde_json::json!(history))?);
     }
-    print(&mut out, &loaded.name, &history, limits)?;
+    print(&mut out, &loaded.name, &history, limits, settings.voxel())?;
     Ok(writeln!(out, "\npictures in {}", arguments.output.display())?)
 }
 
-fn print(out: &mut impl Write, name: &str, history: &History, limits: Option<Interpass>) -> std::io::Result<()> {
-    writeln!(out, "{name}: {} layers, {} voxels", history.layers.len(), history.voxels)?;
+fn print(
+    out: &mut impl Write,
+    name: &str,
+    history: &History,
+    limits: Option<Interpass>,
+    wanted: f64,
+) -> std::io::Result<()> {
+    writeln!(out, "{name}: {} layers, {} voxels of {:.1} mm", history.layers.len(), history.voxels, history.voxel)?;
+    if history.voxel > wanted * 1.001 {
+        writeln!(out, "warning: voxels of {wanted:.1} mm would be more than {MOST_VOXELS}; larger ones know less.")?;
+    }
     let Some((layer, pass, hottest)) = history.hottest_start() else { return Ok(()) };
     if let Some(limits) = limits.filter(|limits| hottest > limits.max_temperature + 1.0) {
         let limit = limits.max_temperature;

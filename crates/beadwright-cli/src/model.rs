@@ -3,7 +3,7 @@
 use crate::{convert, file};
 use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
-use beadwright::model::{self, Import, Part, Placement, Units};
+use beadwright::model::{self, Import, Mesh, Part, Placement, Units};
 use beadwright::task::Task;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,9 @@ pub(crate) struct Model {
     /// Turn the part so that the largest flat face on which it can stand lies below.
     #[arg(long)]
     pub(crate) lay_flat: bool,
+    /// Turn the part onto that of its flat faces which leaves the least overhang, or the lowest part of those.
+    #[arg(long, conflicts_with = "lay_flat")]
+    pub(crate) orient: bool,
     /// Move the middle of the part to x = y = 0.
     #[arg(long)]
     pub(crate) centre: bool,
@@ -68,6 +71,7 @@ impl Model {
             units: None,
             scale: 1.0,
             lay_flat: false,
+            orient: false,
             turn: DVec3::ZERO,
             centre: false,
             accept_damaged: false,
@@ -81,17 +85,26 @@ impl Model {
         let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
         let model = read(&bytes, task).with_context(context)?;
         let placement = self.placement();
-        let part = if self.lay_flat { model.clone() } else { model };
-        let part = part.place(&placement, height, bead_width).with_context(context)?;
-        match part.mesh().filter(|_| self.lay_flat) {
+        let part = model.place(&placement, height, bead_width).with_context(context)?;
+        match part.mesh().filter(|_| self.turns()) {
             None => Ok(part),
             Some(mesh) => {
-                let turn = placement.laid_flat(mesh);
+                let turn = self.turn_for(&placement, mesh);
                 let flat = read(&bytes, task)
                     .and_then(|model| model.place(&Placement { turn, ..placement }, height, bead_width));
                 flat.with_context(context)
             }
         }
+    }
+
+    /// Whether the part is turned by how it lies.
+    fn turns(&self) -> bool {
+        self.lay_flat || self.orient
+    }
+
+    /// How a part that is placed so is to be turned.
+    fn turn_for(&self, placement: &Placement, mesh: &Mesh) -> DVec3 {
+        if self.orient { placement.least_overhang(mesh) } else { placement.laid_flat(mesh) }
     }
 
     fn placement(&self) -> Placement {
@@ -110,8 +123,9 @@ impl Model {
         let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
         let import = import(&bytes, task).with_context(context)?;
         let placement = self.placement();
-        let part = if self.lay_flat {
-            let turn = placement.laid_flat(&placement.solid(import.clone(), bead_width).with_context(context)?.mesh);
+        let part = if self.turns() {
+            let placed = placement.solid(import.clone(), bead_width).with_context(context)?.mesh;
+            let turn = self.turn_for(&placement, &placed);
             Placement { turn, ..placement }.solid(import, bead_width)
         } else {
             placement.solid(import, bead_width)

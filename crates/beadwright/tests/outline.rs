@@ -163,7 +163,7 @@ fn exported_layers_have_their_outlines_and_lengths() {
         let plan = planned(part, &profile);
         let layer = &plan.layers[1];
         let area: f64 = layer.islands.iter().map(|island| island.area()).sum();
-        let dxf = (export::layer_format("dxf").unwrap().write)(layer);
+        let dxf = String::from_utf8((export::layer_format("dxf").unwrap().write)(layer).unwrap()).unwrap();
         let only = |wanted: &str| -> String {
             let mut entities = dxf.split("  0\n").collect::<Vec<_>>();
             entities.retain(|e| !e.contains("\n  8\n") || e.contains(&format!("  8\n{wanted}\n")));
@@ -193,11 +193,20 @@ fn exported_layers_have_their_outlines_and_lengths() {
         let expected: f64 = layer.passes.iter().map(|pass| pass.length()).sum();
         assert_eq!(passes, layer.passes.len());
         assert!((length / expected - 1.0).abs() < 1e-5, "{part}: {length} mm for {expected}");
-        let svg = (export::layer_format("SVG").unwrap().write)(layer);
+        let svg = String::from_utf8((export::layer_format("SVG").unwrap().write)(layer).unwrap()).unwrap();
         let from = svg.find("<g id=\"passes\"").unwrap();
         let to = svg.find("<g id=\"outlines\"").unwrap();
         let drawn = read(&format!("{}{}", &svg[..from], &svg[to..]));
         assert!((drawn.region(1.0).area() / area - 1.0).abs() < 1e-4, "{part}: {} mm²", drawn.region(1.0).area());
+        // The picture shows the beads: what is not white covers the part, as its scale has it.
+        let picture = (export::layer_format("png").unwrap().write)(layer).unwrap();
+        let picture = resvg::tiny_skia::Pixmap::decode_png(&picture).unwrap();
+        assert_eq!(picture.width().max(picture.height()), 1600);
+        let millimetres = svg.split("width=\"").nth(1).and_then(|rest| rest.split("mm").next()).unwrap();
+        let pixel = millimetres.parse::<f64>().unwrap() / f64::from(picture.width());
+        let covered = picture.pixels().iter().filter(|p| p.red() < 255 || p.green() < 255 || p.blue() < 255).count();
+        let covered = covered as f64 * pixel * pixel;
+        assert!((covered / area - 1.0).abs() < 0.08, "{part}: {covered} mm² of {area}");
     }
 }
 

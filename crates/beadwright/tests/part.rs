@@ -125,3 +125,21 @@ fn an_edit_keeps_the_comments() {
     assert_eq!(Profile::parse(&removed).unwrap(), Profile::parse(text).unwrap());
     assert!(edit::with_value(text, "name.x", "1").is_err());
 }
+
+#[test]
+fn the_least_overhang_is_found_from_any_side() {
+    use beadwright::model::stand::overhang;
+    // A vase stands on its foot or on its mouth, a pot only on its foot; both hang over where they lean out.
+    for name in ["vase", "pot", "plate", "propeller"] {
+        let upright = Placement::default().solid(solid(name), 7.54).unwrap().mesh;
+        let least = overhang(&upright, -DVec3::Z);
+        for turn in [DVec3::new(90.0, 0.0, 0.0), DVec3::new(0.0, 180.0, 0.0), DVec3::new(30.0, 50.0, 20.0)] {
+            let placed = Placement { turn, ..Placement::default() };
+            let mesh = placed.solid(solid(name), 7.54).unwrap().mesh;
+            let again = Placement { turn: placed.least_overhang(&mesh), ..Placement::default() };
+            let mesh = again.solid(solid(name), 7.54).unwrap().mesh;
+            let found = overhang(&mesh, -DVec3::Z);
+            assert!(found <= least + 0.02 * upright.volume().powf(2.0 / 3.0) + 1.0, "{name}: {found} mm² for {least}");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 //! Each kind of pass is a layer of the drawing. A pass at one height is a flat polyline that carries its widths; another
 //! one is a polyline in space.
 
-use super::LayerFormat;
+use super::{ExportError, LayerFormat};
 use crate::layer::Layer;
 use crate::number::push_fixed;
 use crate::pass::Pass;
@@ -22,7 +22,11 @@ const VERTEX_IN_SPACE: u32 = 32;
 /// Passes whose points differ in height by less are flat, mm.
 const FLAT_MM: f64 = 1e-4;
 
-fn write(layer: &Layer) -> String {
+fn write(layer: &Layer) -> Result<Vec<u8>, ExportError> {
+    Ok(drawing(layer).into_bytes())
+}
+
+fn drawing(layer: &Layer) -> String {
     let mut drawing = Drawing(String::new());
     drawing.text(999, &format!("layer {}, mm", layer.index + 1));
     drawing.text(0, "SECTION");

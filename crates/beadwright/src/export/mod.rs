@@ -6,13 +6,14 @@
 //! | `vtp` | ParaView, VTK, pyvista |
 //! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
 //! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
-//! | `dxf`, `svg` | CAD and drawing programs, layer by layer |
+//! | `dxf`, `svg`, `png` | CAD and drawing programs, documents, layer by layer |
 //! | `walk` | what all of them write: the passes as they are welded, with times and waits |
 
 mod csv;
 mod dxf;
 mod glb;
 mod parquet;
+mod png;
 mod stl;
 mod svg;
 mod swept;
@@ -69,6 +70,9 @@ pub enum ExportError {
         /// Its size, GB.
         gigabytes: f64,
     },
+    /// A picture cannot be drawn.
+    #[error("the picture cannot be drawn: {0}")]
+    Picture(String),
     /// The content of an archive cannot be packed.
     #[error("the archive cannot be written: {0}")]
     Packing(#[from] std::io::Error),
@@ -89,12 +93,12 @@ pub struct LayerFormat {
     pub extension: &'static str,
     /// What it is for.
     pub purpose: &'static str,
-    /// Writes the text of a file.
-    pub write: fn(&Layer) -> String,
+    /// Writes the bytes of a file.
+    pub write: fn(&Layer) -> Result<Vec<u8>, ExportError>,
 }
 
 /// All of them.
-pub const LAYER_FORMATS: [LayerFormat; 2] = [dxf::FORMAT, svg::FORMAT];
+pub const LAYER_FORMATS: [LayerFormat; 3] = [dxf::FORMAT, svg::FORMAT, png::FORMAT];
 
 /// The format of layers in files with this ending.
 pub fn layer_format(extension: &str) -> Option<&'static LayerFormat> {

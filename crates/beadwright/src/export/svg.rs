@@ -1,7 +1,7 @@
 //! A layer as an SVG drawing to scale, for laser cutters, drawing programs and documents: outlines as hairlines, beads as
 //! strokes as wide as they are. (The pictures of the report have legends and marks; these have none.)
 
-use super::LayerFormat;
+use super::{ExportError, LayerFormat};
 use crate::layer::Layer;
 use crate::number::{fixed, push_fixed};
 use crate::pass::{Pass, PassKind, Segment};
@@ -23,7 +23,12 @@ fn colour(kind: PassKind) -> &'static str {
     }
 }
 
-fn write(layer: &Layer) -> String {
+fn write(layer: &Layer) -> Result<Vec<u8>, ExportError> {
+    Ok(drawing(layer).into_bytes())
+}
+
+/// The text of the drawing.
+pub(super) fn drawing(layer: &Layer) -> String {
     let rings = layer.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
     let passes = layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate());
     let bounds = Bounds::of(rings.chain(passes)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE });

@@ -32,6 +32,9 @@ const PATIENCE: [f64; 2] = [4.0, 20.0];
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
 
+/// No part is divided into more voxels: they take about 100 bytes each.
+pub const MOST_VOXELS: usize = 8_000_000;
+
 /// The longest wait for a pass, s: what has not cooled in it never will.
 pub const LONGEST_WAIT: f64 = 36_000.0;
 
@@ -99,24 +102,16 @@ pub struct Build {
 }
 
 impl Build {
-    /// A plate for a part within `bounds` (mm) whose layers have these tops and thicknesses (mm).
+    /// A plate for a part within `bounds` (mm) whose layers have these tops and thicknesses (mm). Voxels become larger than
+    /// the settings say where there would be more than [`MOST_VOXELS`].
     pub fn new(settings: &HeatSettings, weld: &WeldSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> Self {
-        let (voxel, plate) = (settings.voxel(), &settings.substrate);
-        let beyond = settings.bead_width / 2.0;
-        let edges = |axis: usize| graded(bounds.min[axis] - beyond, bounds.max[axis] + beyond, plate.margin, voxel);
-        let plate_levels = (plate.thickness / voxel).ceil().max(2.0) as usize;
-        let bottom = layers.first().map_or(0.0, |(z, height)| z - height);
-        let depth = |k: usize| bottom - plate.thickness * (1.0 - k as f64 / plate_levels as f64);
-        let mut heights: Vec<f64> = (0..=plate_levels).map(depth).collect();
-        let (mut levels, mut from) = (Vec::with_capacity(layers.len()), bottom);
-        for (i, &(z, _)) in layers.iter().enumerate() {
-            levels.push(heights.len() - 1);
-            if z - from >= LEVEL * voxel || i + 1 == layers.len() {
-                heights.push(z.max(from + 1e-3));
-                from = z;
-            }
+        let mut settings = settings.clone();
+        let (mut grid, mut levels, mut plate_levels) = voxels(&settings, bounds, layers);
+        while grid.len() > MOST_VOXELS {
+            settings.heat.voxel = Some(1.1 * settings.voxel());
+            (grid, levels, plate_levels) = voxels(&settings, bounds, layers);
         }
-        let grid = Grid::new([edges(0), edges(1), heights]);
+        let plate = &settings.substrate;
         let ([part, substrate], [k_part, k_plate]) = (settings.capacities(), settings.conductivities());
         let stuff = |k: usize| match k < plate_levels {
             true => Stuff { capacity: substrate, conductivity: k_plate },
@@ -129,7 +124,6 @@ impl Build {
         let mut body = Body::new(grid, stuff, air);
         body.fill(plate_levels, plate.preheat.unwrap_or(heat.ambient));
         let mut build = Self {
-            settings: settings.clone(),
             nominal: weld.process.clone(),
             process: weld.process.at_layer(0),
             torch: Torch::of(weld),
@@ -138,6 +132,7 @@ impl Build {
             touched: Vec::new(),
             body,
             levels,
+            settings,
             now: 0.0,
             pending: 0.0,
         };
@@ -164,6 +159,11 @@ impl Build {
     /// Length of the pieces in which metal is laid, mm.
     pub fn spacing(&self) -> f64 {
         CHUNK * self.settings.voxel()
+    }
+
+    /// Size of the voxels seen from above, mm.
+    pub fn voxel(&self) -> f64 {
+        self.settings.voxel()
     }
 
     /// Time since the beginning, s.
@@ -404,6 +404,26 @@ impl Build {
         self.body.step(seconds + std::mem::take(&mut self.pending));
         ahead
     }
+}
+
+/// Where the voxels lie: the grid, the level of every layer, and the number of levels of the plate.
+fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (Grid, Vec<usize>, usize) {
+    let (voxel, plate) = (settings.voxel(), &settings.substrate);
+    let beyond = settings.bead_width / 2.0;
+    let edges = |axis: usize| graded(bounds.min[axis] - beyond, bounds.max[axis] + beyond, plate.margin, voxel);
+    let plate_levels = (plate.thickness / voxel).ceil().max(2.0) as usize;
+    let bottom = layers.first().map_or(0.0, |(z, height)| z - height);
+    let depth = |k: usize| bottom - plate.thickness * (1.0 - k as f64 / plate_levels as f64);
+    let mut heights: Vec<f64> = (0..=plate_levels).map(depth).collect();
+    let (mut levels, mut from) = (Vec::with_capacity(layers.len()), bottom);
+    for (i, &(z, _)) in layers.iter().enumerate() {
+        levels.push(heights.len() - 1);
+        if z - from >= LEVEL * voxel || i + 1 == layers.len() {
+            heights.push(z.max(from + 1e-3));
+            from = z;
+        }
+    }
+    (Grid::new([edges(0), edges(1), heights]), levels, plate_levels)
 }
 
 /// Metal and heat that come into the body together.

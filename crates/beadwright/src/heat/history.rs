@@ -24,6 +24,8 @@ pub struct History {
     pub held: f64,
     /// Number of voxels.
     pub voxels: usize,
+    /// Their size seen from above, mm.
+    pub voxel: f64,
 }
 
 impl History {
@@ -70,5 +72,6 @@ pub fn history(
         lost: body.lost(),
         held: body.energy(),
         voxels: body.grid().len(),
+        voxel: build.voxel(),
     }))
 }

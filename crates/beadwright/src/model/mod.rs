@@ -31,6 +31,7 @@ mod part;
 mod ply;
 pub mod repair;
 pub(crate) mod solid;
+pub mod stand;
 pub mod stl;
 mod threemf;
 pub mod together;

@@ -3,6 +3,7 @@
 use super::cut;
 use super::iges::{self, IgesError, IgesFile};
 use super::outline::{self, Outlines};
+use super::stand;
 use super::units::{self, UnitsUnclear};
 use super::wall_curves::{WallCurves, WallCurvesError};
 use super::{Import, ImportError, MAX_REACH_MM, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
@@ -10,7 +11,6 @@ use crate::task::Task;
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use planar::Bounds;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 /// A model as it was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -223,7 +223,17 @@ impl Placement {
     /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is
     /// the part as placed now. Without such a face the turn stays as it is.
     pub fn laid_flat(&self, mesh: &Mesh) -> DVec3 {
-        let Some(normal) = base_normal(mesh) else { return self.turn };
+        stand::faces(mesh).next().map_or(self.turn, |face| self.turned_onto(face))
+    }
+
+    /// The turn that gives the least overhang, and of those with as little the lowest part, among the flat faces on which it
+    /// can stand. `mesh` is the part as placed now. Without such a face the turn stays as it is.
+    pub fn least_overhang(&self, mesh: &Mesh) -> DVec3 {
+        stand::least_overhang(mesh).map_or(self.turn, |face| self.turned_onto(face))
+    }
+
+    /// The turn after which a face that now points along `normal` lies below.
+    fn turned_onto(&self, normal: DVec3) -> DVec3 {
         let [x, y, z] = self.turn.map(f64::to_radians).to_array();
         let now = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z)) * now;
@@ -295,40 +305,4 @@ fn check_reach(file: &IgesFile, scale: f64) -> Result<(), ImportError> {
 
 fn curve_bounds(curves: &WallCurves, height: f64) -> Bounds {
     curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
-}
-
-/// Normals whose difference is shorter than this belong to one face.
-const SAME_NORMAL: f64 = 1e-3;
-
-/// The part stands on a face if no point is farther below it than this, in extents of the part.
-const STANDING: f64 = 1e-3;
-
-/// Number of faces examined, largest first.
-const CANDIDATES: usize = 64;
-
-/// Outward normal of the largest flat face with the whole part on one side.
-fn base_normal(mesh: &Mesh) -> Option<DVec3> {
-    let extent = mesh.size().max_element();
-    let mut faces: HashMap<[i64; 4], (f64, DVec3, f64)> = HashMap::new();
-    for &[a, b, c] in &mesh.triangles {
-        let [a, b, c] = [a, b, c].map(|i| mesh.vertices[i as usize]);
-        let doubled = (b - a).cross(c - a);
-        let Some(normal) = doubled.try_normalize() else { continue };
-        let height = normal.dot(a);
-        let key =
-            [normal.x / SAME_NORMAL, normal.y / SAME_NORMAL, normal.z / SAME_NORMAL, height / (STANDING * extent)];
-        let face = faces.entry(key.map(|v| v.round() as i64)).or_insert((0.0, normal, height));
-        face.0 += doubled.length() / 2.0;
-    }
-    let mut faces: Vec<_> = faces.into_values().collect();
-    // A fixed order of equal faces: hash maps have none.
-    let order = |face: &(f64, DVec3, f64)| (face.1.z, face.1.y, face.1.x, face.2);
-    faces.sort_by(|a, b| {
-        let tie = || order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal);
-        b.0.total_cmp(&a.0).then_with(tie)
-    });
-    let stands = |&&(_, normal, height): &&(f64, DVec3, f64)| {
-        mesh.vertices.iter().all(|v| normal.dot(*v) <= height + STANDING * extent)
-    };
-    faces.iter().take(CANDIDATES).find(stands).map(|face| face.1)
 }
