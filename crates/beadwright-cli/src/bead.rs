@@ -156,7 +156,9 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
 
 fn walls(arguments: &Walls) -> anyhow::Result<()> {
     let profile = profile::load(&arguments.profile, &arguments.set)?;
-    let (process, weld) = (&profile.process, profile.weld_settings());
+    let (process, mut weld) = (&profile.process, profile.weld_settings());
+    // The table says how long was waited.
+    (weld.ends.min_layer_time, weld.ends.interpass_time) = (0.0, 0.0);
     // Walls hold the metal of the wire, whatever the profile says of its bead.
     let metal = wire_area(profile.wire.diameter) * process.wire_feed_speed * 1000.0 / 60.0 * process.efficiency;
     let settings = HeatSettings { bead_area: metal / process.deposition_speed, ..profile.heat_settings()? };
@@ -164,6 +166,15 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     let columns = Columns { inputs: Some(named), width: None, height: None };
     let place = || arguments.data.display().to_string();
     let measured = Measured::read(&read(&arguments.data)?, &columns).with_context(place)?;
+    for (input, unit) in measured.inputs.iter().zip(["s", "mm", ""]) {
+        anyhow::ensure!(
+            input.unit == unit,
+            "{}: the column {} is in \"{}\"; expected are dwell_s, length_mm and layers",
+            place(),
+            input.name,
+            input.unit
+        );
+    }
     let rows = measured.rows.iter().zip(measured.heights.iter().zip(&measured.widths));
     let wall = |(row, (height, width)): (&Vec<f64>, (&f64, &f64))| {
         let [dwell, length, layers] = row[..] else { anyhow::bail!("a wall needs dwell, length and layers") };
@@ -181,6 +192,10 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     };
     let all: Vec<MeasuredWall> = rows.map(wall).collect::<anyhow::Result<_>>().with_context(place)?;
     let fitted = |wall: &&MeasuredWall| arguments.fit.as_ref().is_none_or(|waits| waits.contains(&wall.wall.dwell));
+    let strange = arguments.fit.iter().flatten().find(|wait| all.iter().all(|wall| wall.wall.dwell != **wait));
+    if let Some(wait) = strange {
+        anyhow::bail!("--fit {wait}: no wall has that wait");
+    }
     let chosen: Vec<MeasuredWall> = all.iter().filter(fitted).copied().collect();
     let law = WallLaw::fit(&chosen, &settings, &weld).with_context(place)?;
     let foretold: Vec<_> = all.iter().map(|wall| law.foretell(&wall.wall, &settings, &weld)).collect();

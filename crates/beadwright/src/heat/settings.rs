@@ -62,7 +62,7 @@ pub struct HeatSection {
 pub struct Interpass {
     /// No pass begins on metal that is hotter, °C: the torch waits until it has cooled.
     pub max_temperature: f64,
-    /// Passes that begin on colder metal are told, °C; default none is too cold.
+    /// Passes that begin on colder metal are reported, °C; default none is too cold.
     pub min_temperature: Option<f64>,
     /// Whether passes of other islands come first, and passes begin at their cooler end, where that saves waiting; default
     /// true.
@@ -88,7 +88,7 @@ impl Substrate {
         limits! {
             "substrate.thickness": self.thickness, 0.5, 500.0, "mm", "parts are built on plates";
             "substrate.margin": self.margin, 0.0, 2000.0, "mm", "the plate must fit on a table";
-            "substrate.contact": self.contact, 0.0, 1e5, "W/(m²·K)", "even boiling water takes no more";
+            "substrate.contact": self.contact, 0.0, 1e5, "W/(m²·K)", "no cooling takes more";
             "substrate.preheat": self.preheat.unwrap_or(20.0), -50.0, 1000.0, "°C", "plates are not heated further";
             "substrate.conductivity": self.conductivity.unwrap_or(40.0), 0.05, 500.0, "W/(m·K)", "copper has 400";
             "substrate.specific_heat": self.specific_heat.unwrap_or(500.0), 50.0, 5000.0, "J/(kg·K)", "metals have 130 to 1000";
@@ -104,7 +104,7 @@ impl HeatSection {
             "heat.ambient": self.ambient, -50.0, 100.0, "°C", "people work there";
             "heat.convection": self.convection, 0.0, 1000.0, "W/(m²·K)", "only liquids take more";
             "heat.emissivity": self.emissivity, 0.0, 1.0, "(fraction of a black body)", "no body radiates more than a black one";
-            "heat.voxel": self.voxel.unwrap_or(5.0), 0.2, 100.0, "mm", "smaller ones need days, larger ones know no part";
+            "heat.voxel": self.voxel.unwrap_or(5.0), 0.2, 100.0, "mm", "smaller ones take days, larger ones are coarser than most parts";
         }
     }
 }
@@ -113,7 +113,7 @@ impl Interpass {
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
             "interpass.max_temperature": self.max_temperature, 30.0, 1500.0, "°C", "below 30 °C a part never gets in a warm shop";
-            "interpass.min_temperature": self.min_temperature.unwrap_or(20.0), -50.0, 1000.0, "°C", "the part would melt";
+            "interpass.min_temperature": self.min_temperature.unwrap_or(20.0), -50.0, 1000.0, "°C", "no steel is preheated further";
         }
     }
 }

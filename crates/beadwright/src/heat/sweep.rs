@@ -17,13 +17,14 @@ const WORTH_SHARING: usize = 8_000;
 /// efficiency already.
 const HOTTEST: f64 = 1800.0;
 
-/// Levels from the highest one down to the two depths, below which steps are longer and longer still.
-const DEPTHS: [usize; 2] = [5, 15];
+/// Levels below the highest one that spread their heat sideways in every step.
+const NEAR: usize = 5;
 
 /// Lines along x that are solved side by side.
 const LANES: usize = 8;
 
-/// What lies deep below the torch: it changes slowly, so it takes its time in longer steps.
+/// What lies deep below the torch: its heat spreads sideways slowly, so that takes longer steps. Upward and downward nothing
+/// may wait: a level that heat crosses in a longer step holds it back.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Deep {
     /// It holds the levels below this one.
@@ -36,38 +37,29 @@ pub(super) struct Deep {
 
 /// One step of `seconds`; gives the heat lost, J.
 pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
-    let [upper, lower] = body.deep.map(|deep| deep.level);
-    let mut lost = sweep(body, seconds, upper..body.levels, body.levels);
-    body.deep.iter_mut().for_each(|deep| deep.owed += seconds);
-    let late = body.deep.map(|deep| deep.owed >= deep.patience);
-    if late[0] || late[1] {
-        lost += settle(body, 0, lower..upper);
-    }
-    if late[1] {
-        lost += settle(body, 1, 0..lower);
+    let levels = body.deep.level..body.levels;
+    body.deep.owed += seconds;
+    let late = body.deep.owed >= body.deep.patience;
+    let mut lost = 0.0;
+    let sideways = |body: &mut Body| {
+        let mut lost = level(body, seconds, levels.clone());
+        if late {
+            lost += level(body, body.deep.owed, 0..levels.start);
+            // Only now, when nobody is behind, may the deep part grow.
+            let grown = if body.deep.patience > 0.0 { body.levels.saturating_sub(NEAR) } else { 0 };
+            body.deep = Deep { level: grown, owed: 0.0, ..body.deep };
+        }
+        lost
+    };
+    if body.reverse {
+        lost += vertical(body, seconds);
+        lost += sideways(body);
+    } else {
+        lost += sideways(body);
+        lost += vertical(body, seconds);
     }
     body.reverse = !body.reverse;
     lost
-}
-
-/// Lets a deep part take the time that it is behind. Only now may its upper end move.
-fn settle(body: &mut Body, part: usize, levels: Range<usize>) -> f64 {
-    let owed = std::mem::take(&mut body.deep[part].owed);
-    let lost = if levels.is_empty() { 0.0 } else { sweep(body, owed, levels.clone(), levels.end + 1) };
-    // Nobody is behind when the lower part is done.
-    let until = body.levels.saturating_sub(DEPTHS[part]);
-    body.deep[part].level = if body.deep[part].patience > 0.0 { until.max(levels.end) } else { 0 };
-    lost
-}
-
-/// The sweeps along x and y within some levels, and along z from the lowest of them to the one before `end`.
-fn sweep(body: &mut Body, seconds: f64, flat: Range<usize>, end: usize) -> f64 {
-    let tall = flat.start..end;
-    if body.reverse {
-        vertical(body, seconds, tall, flat.end) + level(body, seconds, flat, [1, 0])
-    } else {
-        level(body, seconds, flat.clone(), [0, 1]) + vertical(body, seconds, tall, flat.end)
-    }
 }
 
 /// A row of voxels along x, as one sweep sees it.
@@ -76,6 +68,7 @@ struct Row<'a> {
     capacity: &'a [f64],
     /// Conductance to the next voxel along the axis of the sweep.
     across: &'a [f64],
+    /// Bare area, mm²; empty where nothing is bare.
     bare: &'a [f64],
     /// Area on the table, mm²; empty above.
     table: &'a [f64],
@@ -87,9 +80,12 @@ impl Row<'_> {
     /// What the bare faces of every voxel lose, W/K.
     fn leaks(&self, air: &Air, leaks: &mut [f64]) {
         let cold = air.ambient + KELVIN;
+        leaks[self.bare.len()..].fill(0.0);
         for ((leak, bare), theta) in leaks.iter_mut().zip(self.bare).zip(&*self.theta) {
-            let hot = (cold + theta).min(HOTTEST);
-            let film = air.convection + air.emissivity * STEFAN_BOLTZMANN * (hot * hot + cold * cold) * (hot + cold);
+            // What radiates at most HOTTEST, over the whole rise.
+            let (hot, share) = ((cold + theta).min(HOTTEST), ((HOTTEST - cold) / theta.max(1e-9)).min(1.0));
+            let radiated = air.emissivity * STEFAN_BOLTZMANN * (hot * hot + cold * cold) * (hot + cold);
+            let film = air.convection + radiated * share;
             *leak = bare * self.scale * film;
         }
         leaks.iter_mut().zip(self.table).for_each(|(leak, area)| *leak += area * air.contact);
@@ -106,10 +102,11 @@ fn stored(capacity: f64, seconds: f64) -> f64 {
     if capacity > 0.0 { capacity / seconds } else { 1.0 }
 }
 
-/// The sweeps along x and y, in the order of `axes`, level by level.
-fn level(body: &mut Body, seconds: f64, levels: Range<usize>, axes: [usize; 2]) -> f64 {
+/// The sweeps along x and y, level by level.
+fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
+    let axes = if body.reverse { [1, 0] } else { [0, 1] };
     let ([nx, ..], plane) = (body.grid.counts(), body.grid.strides()[2]);
-    let Body { air, theta, capacity, across, bare, sides, .. } = body;
+    let Body { air, theta, capacity, across, bare, sides, exposed, .. } = body;
     let first = levels.start;
     let sweep = |(k, theta): (usize, &mut [f64])| {
         let (k, mut lost) = (first + k, 0.0);
@@ -120,6 +117,7 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>, axes: [usize; 2]) 
                 let part = from..from + nx;
                 let [capacity, across, bare] =
                     [&capacity[..], &across[axis], &bare[axis]].map(|all| &all[part.clone()]);
+                let bare = if exposed[axis][k] > 0 { bare } else { &[] };
                 Row { theta, capacity, across, bare, table: &[], scale: sides[k] }
             });
             let mut rows: Vec<Row<'_>> = rows.collect();
@@ -139,24 +137,21 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>, axes: [usize; 2]) 
     }
 }
 
-/// The sweep along z, in strips. What lies bare of levels from `known` on has been counted before.
-fn vertical(body: &mut Body, seconds: f64, levels: Range<usize>, known: usize) -> f64 {
+/// The sweep along z, in strips.
+fn vertical(body: &mut Body, seconds: f64) -> f64 {
     let plane = body.grid.strides()[2];
-    let Body { air, theta, capacity, across, bare, table, nothing, .. } = body;
+    let Body { air, theta, capacity, across, bare, table, levels, exposed, .. } = body;
     let width = plane.div_ceil(STRIPS);
-    let shared = plane * levels.len() > WORTH_SHARING;
-    let mut strips: Vec<Vec<Row<'_>>> = (0..plane.div_ceil(width)).map(|_| Vec::with_capacity(levels.len())).collect();
-    let planes = theta[plane * levels.start..plane * levels.end].chunks_mut(plane);
-    for (k, theta) in levels.zip(planes) {
+    let shared = plane * *levels > WORTH_SHARING;
+    let mut strips: Vec<Vec<Row<'_>>> = (0..plane.div_ceil(width)).map(|_| Vec::with_capacity(*levels)).collect();
+    for (k, theta) in theta[..plane * *levels].chunks_mut(plane).enumerate() {
         for (s, theta) in theta.chunks_mut(width).enumerate() {
             let within = s * width..s * width + theta.len();
             let part = k * plane + within.start..k * plane + within.end;
-            let [across, bare] = match k < known {
-                true => [&across[2][part.clone()], &bare[2][part.clone()]],
-                false => [&nothing[within.clone()], &nothing[within.clone()]],
-            };
+            let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
+            let bare = if exposed[2][k] > 0 { bare } else { &[] };
             let table = if k == 0 { &table[within] } else { &[] };
-            strips[s].push(Row { theta, capacity: &capacity[part], across, bare, table, scale: 1.0 });
+            strips[s].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
         }
     }
     if shared {

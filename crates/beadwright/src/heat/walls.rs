@@ -103,15 +103,14 @@ impl WallLaw {
     /// # Errors
     /// [`WallFitError`].
     pub fn fit(walls: &[MeasuredWall], settings: &HeatSettings, weld: &WeldSettings) -> Result<Self, WallFitError> {
-        let points = |value: fn(&MeasuredWall) -> f64| -> Vec<DVec2> {
-            let point = |w: &MeasuredWall| {
-                let layer = w.height / w.wall.layers.max(1) as f64;
-                dvec2(temperature(&w.wall, layer, w.width, settings, weld), value(w))
-            };
-            walls.iter().map(point).collect()
+        let layer = |w: &MeasuredWall| w.height / w.wall.layers.max(1) as f64;
+        let warm = |w: &MeasuredWall| temperature(&w.wall, layer(w), w.width, settings, weld);
+        let temperatures: Vec<f64> = walls.iter().map(warm).collect();
+        let fit = |value: &dyn Fn(&MeasuredWall) -> f64| {
+            let points = temperatures.iter().zip(walls).map(|(t, wall)| dvec2(*t, value(wall)));
+            ByHeat::fit(&points.collect::<Vec<_>>())
         };
-        let layer = ByHeat::fit(&points(|w| w.height / w.wall.layers.max(1) as f64))?;
-        Ok(Self { layer, width: ByHeat::fit(&points(|w| w.width))? })
+        Ok(Self { layer: fit(&layer)?, width: fit(&|w| w.width)? })
     }
 
     /// Foretells a wall. Its layers depend on its temperature and the other way round, so both are found in turns.
@@ -123,7 +122,7 @@ impl WallLaw {
             let [layer, width] = [self.layer, self.width].map(|law| law.at(mean).max(0.1));
             mean = temperature(wall, layer, width, settings, weld);
         }
-        let [layer, width] = [self.layer, self.width].map(|law| law.at(mean));
+        let [layer, width] = [self.layer, self.width].map(|law| law.at(mean).max(0.1));
         ForetoldWall { temperature: mean, height: layer * wall.layers as f64, width }
     }
 }

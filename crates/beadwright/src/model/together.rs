@@ -20,7 +20,9 @@ pub enum Arrangement {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TogetherError {
     /// Two parts take the same place.
-    #[error("{0} and {1} stand in each other's way. Leave their placing to Beadwright, or move one of them.")]
+    #[error(
+        "the extents of {0} and {1} overlap, seen from above. Leave their placing to Beadwright, or move one of them."
+    )]
     Overlap(String, String),
     /// None was given.
     #[error("there is no part to build")]

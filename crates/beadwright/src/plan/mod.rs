@@ -551,7 +551,7 @@ impl<S: Sink> Emitter<'_, S> {
         // The next layer is ordered from where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
-            let kind = if heat.start > limits.max_temperature + 1.0 {
+            let kind = if heat.start > limits.max_temperature + 3.0 {
                 WarningKind::NeverCools
             } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
                 WarningKind::TooCold

@@ -73,6 +73,15 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         let reason = format!("no part cools so far: its surroundings have {} °C (heat.ambient).", heat.ambient);
         return Some(Broken { key, value, reason });
     }
+    if let Some(limits) = &p.interpass {
+        let preheat = p.substrate.as_ref().and_then(|plate| plate.preheat);
+        let colder = preheat.filter(|preheat| *preheat > limits.max_temperature).map(|_| "substrate.preheat");
+        let least = limits.min_temperature.filter(|least| *least >= limits.max_temperature);
+        if let Some(other) = colder.or(least.map(|_| "interpass.min_temperature")) {
+            let (key, value) = ("interpass.max_temperature".to_owned(), limits.max_temperature.to_string());
+            return Some(Broken { key, value, reason: format!("{other} is not below it.") });
+        }
+    }
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));
     }

@@ -71,7 +71,12 @@ pub(super) fn parse(
                 reason: format!("more than {MOST_ANCESTORS} profiles inherit from each other, perhaps in a circle."),
             });
         }
-        ancestors.push(base(&name)?);
+        let text = base(&name)?;
+        if let Err(error) = DeTable::parse(&text) {
+            let reason = format!("the profile \"{name}\", from which it inherits: {}", explain(error.message()));
+            return Err(ProfileError::Text { line: 1, reason });
+        }
+        ancestors.push(text);
     }
     let profile = deserialize(text, &ancestors).map_err(|e| {
         let line = e.span().map_or(1, |span| line_of(text, span.start));
@@ -160,7 +165,7 @@ pub(super) fn unknown_name(name: &str) -> ProfileError {
 
 /// The line, counted from 1, that contains a byte of a text.
 pub(crate) fn line_of(text: &str, byte: usize) -> usize {
-    text[..byte.min(text.len())].matches('\n').count() + 1
+    text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
 }
 
 /// The line that contains a key such as `bead.width`.
