@@ -146,7 +146,7 @@ impl Chain {
     /// Volume that the axes of the wrist span: 0 where it is singular; its sign tells the two solutions apart.
     fn wrist_volume(&self, q5: f64) -> f64 {
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
-        four.dot(five.cross(turned(five, q5, six)))
+        five.dot(four.cross(turned(five, q5, six)))
     }
 }
 

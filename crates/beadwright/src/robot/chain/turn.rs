@@ -43,7 +43,7 @@ impl Wave {
 
     /// The two angles that reach the height; none where it cannot be reached.
     pub(super) fn angles(&self) -> Vec<f64> {
-        if self.excess() <= ROUNDING * self.amplitude {
+        if self.height.abs() <= self.amplitude * (1.0 + ROUNDING) {
             let beside = (self.height / self.amplitude.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0).acos();
             vec![self.crest + beside, self.crest - beside]
         } else {
