@@ -103,7 +103,7 @@ pub(super) trait Model: std::fmt::Debug + Send + Sync {
     /// The branch in which the arm stands.
     fn branch(&self, joints: &Joints) -> Branch;
     /// How far the wrist and the elbow are from their singular angles, °.
-    fn from_singular(&self, joints: &Joints) -> [f64; 2];
+    fn singular_margins(&self, joints: &Joints) -> [f64; 2];
     /// How far the wrist lies beyond what the arm can reach, or short of it, mm; 0 where it can get there.
     fn beyond(&self, base_from_flange: &Frame) -> f64;
     /// Greatest distance of the wrist from axis 2, mm.
@@ -153,7 +153,7 @@ impl Arm {
         for ((margin, joint), [low, high]) in limits.iter_mut().zip(joints).zip(self.limits) {
             *margin = (joint - low).min(high - joint);
         }
-        let [wrist, elbow] = self.model.from_singular(joints);
+        let [wrist, elbow] = self.model.singular_margins(joints);
         Margins { limits, wrist, elbow }
     }
 

@@ -29,7 +29,7 @@ pub enum Shape {
     /// Parallel base and spherical wrist, by lengths.
     Opw(OpwTable),
     /// Any of the chains that have closed forms.
-    Chain(Chain),
+    Chain(Arc<Chain>),
 }
 
 /// A six-axis arm with parallel base and spherical wrist. Lengths in mm, angles in °.
@@ -121,7 +121,7 @@ impl ArmKeys {
         let shape = match self.dh {
             Some(rows) => {
                 self.alone(&["dh"])?;
-                Shape::Chain(chain(&rows)?)
+                Shape::Chain(Arc::new(chain(&rows)?))
             }
             None => Shape::Opw(self.lengths()?),
         };
@@ -186,7 +186,7 @@ impl ArmTable {
     pub(super) fn arm(&self) -> Arm {
         match &self.shape {
             Shape::Opw(table) => Arm::new(Arc::new(table.model()), self.limits, self.speeds),
-            Shape::Chain(chain) => Arm::new(Arc::new(chain.clone()), self.limits, self.speeds),
+            Shape::Chain(chain) => Arm::new(chain.clone(), self.limits, self.speeds),
         }
     }
 

@@ -130,7 +130,7 @@ impl Model for Opw {
         Branch::of([forward < 0.0, (q3 + self.bend()).sin() < 0.0, q5.sin() < 0.0])
     }
 
-    fn from_singular(&self, joints: &Joints) -> [f64; 2] {
+    fn singular_margins(&self, joints: &Joints) -> [f64; 2] {
         let [_, _, q3, _, q5, _] = self.model(joints);
         [q5, q3 + self.bend()].map(|angle| from_zero(angle.sin()))
     }

@@ -6,6 +6,7 @@ use super::arm_table::{ArmTable, Shape};
 use super::chain::{Chain, ChainError};
 use glam::{DQuat, DVec3, EulerRot};
 use roxmltree::{Document, Node, ParsingOptions};
+use std::sync::Arc;
 
 const MM_PER_M: f64 = 1e3;
 /// A joint that turns without end gets these limits, °.
@@ -154,7 +155,7 @@ fn arm(way: &[Joint<'_>]) -> Result<ArmTable, UrdfError> {
     })?;
     let chain = Chain::new(&turning.map(|(frame, axis, _)| (frame, axis)), &before)?;
     let speeds = turning.map(|(_, _, (_, speed))| speed);
-    Ok(ArmTable { shape: Shape::Chain(chain), limits: turning.map(|(_, _, (limits, _))| limits), speeds })
+    Ok(ArmTable { shape: Shape::Chain(Arc::new(chain)), limits: turning.map(|(_, _, (limits, _))| limits), speeds })
 }
 
 fn origin(joint: &Joint<'_>) -> Result<Frame, UrdfError> {

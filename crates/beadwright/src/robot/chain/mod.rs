@@ -176,7 +176,7 @@ impl Model for Chain {
         Branch::of([forward < 0.0, self.side.dot(upper.cross(fore)) < 0.0, self.wrist_volume(q5) < 0.0])
     }
 
-    fn from_singular(&self, joints: &Joints) -> [f64; 2] {
+    fn singular_margins(&self, joints: &Joints) -> [f64; 2] {
         let [_, _, q3, _, q5, _] = joints.map(f64::to_radians);
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
         let greatest = four.cross(five).length() * five.cross(six).length();

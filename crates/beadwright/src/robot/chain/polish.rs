@@ -34,8 +34,10 @@ pub(super) fn polished(chain: &Chain, mut joints: [f64; 6], wanted: &Frame) -> O
 
 /// What is missing to the wanted frame: a way and a turn, mm.
 fn error(now: &Frame, wanted: &Frame) -> [f64; 6] {
-    let turn = (wanted.rotation * now.rotation.conjugate()).to_scaled_axis() * LEVER_MM;
-    join(wanted.position - now.position, turn)
+    let turn = wanted.rotation * now.rotation.conjugate();
+    // Of the two quaternions of a turn the one that turns less.
+    let least = if turn.w < 0.0 { -turn } else { turn };
+    join(wanted.position - now.position, least.to_scaled_axis() * LEVER_MM)
 }
 
 /// How the flange moves with each joint, mm per rad.
