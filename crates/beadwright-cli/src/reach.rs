@@ -16,6 +16,9 @@ pub(crate) struct Arguments {
     /// The cell: a built-in name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["list", "show"])]
     cell: Option<String>,
+    /// Take the arm from this URDF file instead of the cell's; torch and part stay where the cell has them.
+    #[arg(long, value_name = "FILE")]
+    urdf: Option<PathBuf>,
     /// Place of the part's origin, instead of the one in the cell: x,y,z in mm and the turn about the vertical in °.
     #[arg(long, value_name = "X,Y,Z[,TURN]", value_parser = parse_place, allow_hyphen_values = true)]
     at: Option<PartPlace>,
@@ -52,7 +55,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(write!(out, "{}", Cell::built_in_text(name)?)?);
     }
     let (Some(path), Some(name)) = (&arguments.plan, &arguments.cell) else { bail!("a plan and --cell are needed") };
-    let cell = load_cell(name)?;
+    let mut cell = load_cell(name)?;
+    if let Some(path) = &arguments.urdf {
+        cell = cell.with_urdf(&file::text(path)?).with_context(|| path.display().to_string())?;
+    }
     let source = program::Source::open(path)?;
     let Some(plan) = source.plan() else { bail!("{}: give the plan.json of the program", path.display()) };
     let profile = source.profile(&arguments.wanted)?;
@@ -211,7 +217,8 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
         return Ok(Cell::built_in(name)?);
     }
     let text = file::text(path)?;
-    Cell::parse(&text).with_context(|| name.to_owned())
+    let beside = |urdf: &str| file::text(&path.with_file_name(urdf)).map_err(|e| format!("{e:#}"));
+    Cell::parse_with(&text, beside).with_context(|| name.to_owned())
 }
 
 fn parse_trajectory(text: &str) -> Result<PathBuf, String> {

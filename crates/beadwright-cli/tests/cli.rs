@@ -368,6 +368,20 @@ fn reach_tells_margins_and_refuses_what_is_too_far() {
     fs::write(folder.path().join("mine.toml"), cell.replace("c2 = 600.0", "c2 = -1.0")).unwrap();
     let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "mine.toml"], 1);
     assert!(error.contains("line 12") && error.contains("arm.c2"), "{error}");
+    assert!(ok(folder.path(), &["reach", "--list"]).contains("ur10e"));
+    fs::write(folder.path().join("arm.urdf"), "<robot name=\"none\"/>").unwrap();
+    let error = refused(folder.path(), &[&reach[..], &["--urdf", "arm.urdf"]].concat(), 1);
+    assert!(error.contains("arm.urdf") && error.contains("no joints"), "{error}");
+    // A cell names the file beside it, wherever the command is called.
+    fs::create_dir(folder.path().join("cells")).unwrap();
+    let start = cell.find("[arm]").unwrap();
+    let end = cell.find("[torch]").unwrap();
+    let named = format!("{}[arm]\nurdf = \"arm.urdf\"\n\n{}", &cell[..start], &cell[end..]);
+    fs::write(folder.path().join("cells/mine.toml"), &named).unwrap();
+    let mine = ["reach", "out/plan.json", "--cell", "cells/mine.toml"];
+    assert!(refused(folder.path(), &mine, 1).contains("cells/arm.urdf"));
+    fs::copy(folder.path().join("arm.urdf"), folder.path().join("cells/arm.urdf")).unwrap();
+    assert!(refused(folder.path(), &mine, 1).contains("no joints"));
 }
 
 /// Runs only where LinuxCNC's stand-alone interpreter is installed (Debian: linuxcnc-uspace), and says so.

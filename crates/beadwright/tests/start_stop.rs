@@ -342,7 +342,8 @@ fn back(files: &Files, main: &str) -> ReadProgram {
     let arc = ArcCodes { on: vec!["$OUT[2] = TRUE".to_owned()], off: vec!["$OUT[2] = FALSE".to_owned()] };
     let options = Options { arc, ..Options::default() };
     let mut find = |name: &str| {
-        [name.to_owned(), format!("{name}.src"), format!("{name}.mod")].iter().find_map(|n| files.get(n)).cloned()
+        let endings = ["", ".src", ".mod", ".ls", ".jbi"].map(|ending| format!("{name}{ending}"));
+        endings.iter().find_map(|n| files.get(n)).cloned()
     };
     read(&files[main], &mut find, &options).unwrap()
 }

@@ -27,7 +27,7 @@ const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
 /// Longest steps of what lies deep below the torch, over the same time.
-const PATIENCE: f64 = 4.0;
+const PATIENCE: f64 = 2.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
@@ -285,7 +285,9 @@ impl Build {
             if over <= 0.0 || seconds >= LONGEST_WAIT {
                 break;
             }
-            wait = Some((seconds * 1.02 + 1.0).ceil());
+            // Metal that cools freely loses about this much in that time, or more.
+            let more = over * seconds / (limit - self.settings.heat.ambient).max(1.0);
+            wait = Some(seconds + more.floor().max(1.0));
         }
         (self.body, self.now) = (today, now);
         wait

@@ -1,71 +1,45 @@
 //! Cells: an arm with its torch and the place of the part, as a TOML file people can edit.
 
-use super::arm::{Arm, Frame, Lengths};
+use super::arm::{Arm, Frame};
+use super::arm_table::{ArmKeys, ArmTable};
 use super::body::Body;
 use super::home::Home;
+use super::urdf::{self, UrdfError};
 use crate::profile::{explain, line_of, line_of_key, nearest};
 use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 
 /// The built-in cells as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 2] = [
+pub const BUILT_IN: [(&str, &str); 4] = [
     ("kuka-kr20-r1810", include_str!("../../cells/kuka-kr20-r1810.toml")),
     ("abb-irb1410", include_str!("../../cells/abb-irb1410.toml")),
+    ("ur5e", include_str!("../../cells/ur5e.toml")),
+    ("ur10e", include_str!("../../cells/ur10e.toml")),
 ];
 
-/// An arm, its torch and the place of the part.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// An arm, its torch and the place of the part; with the arm's keys while it is being read.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Cell {
+pub struct Cell<A = ArmTable> {
     /// Name.
     pub name: String,
     /// One line for people.
     pub description: String,
     /// The robot.
-    pub arm: ArmTable,
+    pub arm: A,
     /// Tool frame on the flange.
     pub torch: Torch,
     /// Frame of the part in the robot's; on a turn table, while that stands at 0°.
     pub part: PartPlace,
     /// Turn table that carries the part; optional.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub table: Option<Table>,
     /// Where programs begin and end; optional, without it the ways from and to home are not looked at.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub home: Option<Home>,
     /// How thick the arm is, and how large the table; optional, without it no collision is looked for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub body: Option<Body>,
-}
-
-/// A six-axis arm with parallel base and spherical wrist. Lengths in mm, angles in °.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ArmTable {
-    /// From axis 1 forward to axis 2, mm.
-    pub a1: f64,
-    /// From axis 3 to axis 4, mm; negative where axis 4 lies above.
-    pub a2: f64,
-    /// Sideways offset of the arm, mm.
-    pub b: f64,
-    /// From the foot up to axis 2, mm.
-    pub c1: f64,
-    /// Length of the upper arm, mm.
-    pub c2: f64,
-    /// Length of the forearm to the wrist, mm.
-    pub c3: f64,
-    /// From the wrist to the flange, mm.
-    pub c4: f64,
-    /// What each joint shows when the arm stands straight up, with its sign: model angle = sign × shown − offset, °.
-    pub offsets: [f64; 6],
-    /// 1 where the maker's positive direction is that of the model, −1 where not.
-    pub signs: [i8; 6],
-    /// Whether joint 3 is driven through a parallelogram, so that it shows the forearm's angle to the floor.
-    pub parallelogram: bool,
-    /// Least and greatest angle of each joint, °.
-    pub limits: [[f64; 2]; 6],
-    /// Greatest speed of each joint, °/s.
-    pub speeds: [f64; 6],
 }
 
 /// The torch: its tool frame on the flange, z along the wire.
@@ -131,6 +105,17 @@ pub enum CellError {
         /// The range and the unit.
         reason: String,
     },
+    /// The URDF file of the arm cannot be read.
+    #[error("the file {file} of arm.urdf: {reason}")]
+    File {
+        /// Its name in the cell.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+    /// The URDF file of the arm cannot be used.
+    #[error("the arm of the URDF file: {0}")]
+    Urdf(#[from] UrdfError),
 }
 
 impl Cell {
@@ -158,26 +143,43 @@ impl Cell {
         })
     }
 
-    /// Reads a cell.
+    /// Reads a cell whose arm is not in another file.
     ///
     /// # Errors
     /// [`CellError`] with the line.
     pub fn parse(text: &str) -> Result<Self, CellError> {
-        let cell: Self = toml::from_str(text).map_err(|e| {
+        Self::parse_with(text, |_| Err("only cells that are files can name another file.".to_owned()))
+    }
+
+    /// Reads a cell; `read` gives the text of the URDF file that it names, or a reason why not.
+    ///
+    /// # Errors
+    /// [`CellError`] with the line.
+    pub fn parse_with(text: &str, read: impl FnOnce(&str) -> Result<String, String>) -> Result<Self, CellError> {
+        let cell: Cell<ArmKeys> = toml::from_str(text).map_err(|e| {
             let line = e.span().map_or(1, |span| line_of(text, span.start));
             CellError::Text { line, reason: explain(e.message()) }
         })?;
+        let arm = cell.arm.clone().table(read).map_err(|wrong| wrong.at(text))?;
+        let Cell { name, description, torch, part, table, home, body, .. } = cell;
+        let cell = Self { name, description, arm, torch, part, table, home, body };
         match cell.first_broken() {
             None => Ok(cell),
             Some((key, value, reason)) => Err(CellError::Value { line: line_of_key(text, key), key, value, reason }),
         }
     }
 
+    /// The same cell with the arm of a URDF file.
+    ///
+    /// # Errors
+    /// [`CellError::Urdf`] where the file is not understood, or its arm is of a kind that cannot be walked.
+    pub fn with_urdf(self, text: &str) -> Result<Self, CellError> {
+        Ok(Self { arm: urdf::read(text, &urdf::Ends::default())?, ..self })
+    }
+
     /// The arm, ready to be moved.
     pub fn arm(&self) -> Arm {
-        let t = &self.arm;
-        let lengths = Lengths { a1: t.a1, a2: t.a2, b: t.b, c1: t.c1, c2: t.c2, c3: t.c3, c4: t.c4 };
-        Arm::new(lengths, t.offsets, t.signs, t.parallelogram, t.limits, t.speeds)
+        self.arm.arm()
     }
 
     /// The torch's frame on the flange.
@@ -187,20 +189,8 @@ impl Cell {
     }
 
     fn first_broken(&self) -> Option<(&'static str, String, String)> {
-        let a = &self.arm;
-        let mut ranges = vec![
-            ("arm.a1", a.a1, -5e3, 5e3, "mm"),
-            ("arm.a2", a.a2, -5e3, 5e3, "mm"),
-            ("arm.b", a.b, -5e3, 5e3, "mm"),
-            ("arm.c1", a.c1, 0.0, 5e3, "mm"),
-            ("arm.c2", a.c2, 1.0, 5e3, "mm"),
-            ("arm.c3", a.c3, 1.0, 5e3, "mm"),
-            ("arm.c4", a.c4, 0.0, 5e3, "mm"),
-            ("part.rotation", self.part.rotation, -360.0, 360.0, "°"),
-        ];
-        ranges.extend(a.offsets.map(|v| ("arm.offsets", v, -360.0, 360.0, "°")));
-        ranges.extend(a.limits.as_flattened().iter().map(|&v| ("arm.limits", v, -7200.0, 7200.0, "°")));
-        ranges.extend(a.speeds.map(|v| ("arm.speeds", v, 1e-3, 1e5, "°/s")));
+        let mut ranges = self.arm.ranges();
+        ranges.push(("part.rotation", self.part.rotation, -360.0, 360.0, "°"));
         ranges.extend(self.torch.position.map(|v| ("torch.position", v, -5e3, 5e3, "mm")));
         ranges.extend(self.torch.rotation.map(|v| ("torch.rotation", v, -360.0, 360.0, "°")));
         ranges.extend(self.part.position.map(|v| ("part.position", v, -1e5, 1e5, "mm")));
@@ -229,9 +219,6 @@ impl Cell {
         {
             return Some((key, format!("{value}"), format!("it must lie between {low} and {high} {unit}.")));
         }
-        if let Some(sign) = a.signs.iter().find(|s| s.abs() != 1) {
-            return Some(("arm.signs", sign.to_string(), "each sign is 1 or -1.".to_owned()));
-        }
         if let Some(table) = self.table.as_ref().filter(|t| t.direction.abs() != 1) {
             return Some(("table.direction", table.direction.to_string(), "it is 1 or -1.".to_owned()));
         }
@@ -239,10 +226,7 @@ impl Cell {
             let reason = "the least angle comes first, then the greatest.".to_owned();
             return Some(("table.limits", format!("{:?}", table.limits), reason));
         }
-        let swapped = a.limits.iter().find(|[low, high]| low >= high);
-        swapped.map(|pair| {
-            ("arm.limits", format!("{pair:?}"), "the least angle comes first, then the greatest.".to_owned())
-        })
+        self.arm.first_broken()
     }
 }
 

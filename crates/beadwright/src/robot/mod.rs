@@ -1,6 +1,6 @@
 //! Can the robot weld this plan? Joint paths, margins, and a better place for the part.
 //!
-//! A [`Cell`] is an [`Arm`] with its torch and the place of the part. [`Track`] turns a plan into the path of the
+//! A [`Cell`] is an [`Arm`] (six lengths, a [`Chain`], or a chain from a [URDF](urdf) file) with its torch and the place of the part. [`Track`] turns a plan into the path of the
 //! torch, travels included; [`reach`] walks it with the torch straight down:
 //!
 //! 1. at stations along the path, the margins of all torch angles are computed (`turn.rs`): the torch may stand at any
@@ -18,27 +18,34 @@
 //! Not checked: cables, fixtures and anything else beside the table, and the load's dynamics.
 
 pub mod arm;
+pub mod arm_table;
 pub mod body;
 pub mod cell;
+pub mod chain;
 pub mod finding;
 pub mod home;
+mod opw;
 pub mod page;
 pub mod suggest;
 pub mod table;
 pub mod track;
 pub mod trajectory;
 mod turn;
+pub mod urdf;
 mod walk;
 
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
+pub use arm_table::{ArmTable, OpwTable, Shape};
 pub use body::{Body, Solid};
 pub use cell::{Cell, CellError, PartPlace, Table};
+pub use chain::{Chain, ChainError};
 pub use finding::{ReachFinding, Trouble};
 pub use home::{Home, Way};
 pub use suggest::{Suggestion, suggest};
 pub use table::{TableAngle, turn_table};
 pub use track::{Leg, Stop, Track};
 pub use trajectory::Trajectory;
+pub use urdf::UrdfError;
 pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;
