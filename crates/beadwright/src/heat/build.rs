@@ -259,6 +259,11 @@ impl Build {
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
     }
 
+    /// Where the torch stands, mm.
+    pub(super) fn torch_at(&self) -> Option<DVec3> {
+        self.torch.at()
+    }
+
     /// How long the torch takes to the start of a pass, s.
     pub(super) fn way(&self, start: DVec3) -> f64 {
         self.torch.clone().approach(start).moving

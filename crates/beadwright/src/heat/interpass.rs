@@ -10,6 +10,9 @@ use std::collections::VecDeque;
 /// Places on a closed pass at which it may begin instead.
 const STARTS: usize = 16;
 
+/// A pass that begins so close to the end of the last one goes on with its bead, mm.
+const GOES_ON_MM: f64 = 0.5;
+
 /// A start must be cooler than the planned one by this to be taken instead, K.
 const WORTH_MOVING: f64 = 2.0;
 
@@ -36,31 +39,57 @@ impl Build {
         LayerHeat { end: self.seconds(), ..heat }
     }
 
-    /// The queue whose first pass comes next: that of the present island while its metal is cool enough, then the first one
-    /// in the planned order that is, then the one that waits least. Its pass begins where it is coolest if it must wait.
+    /// The queue whose first pass comes next: that of the present island while its metal is cool enough, or where a pass goes
+    /// on from the end of the last one; then the first one in the planned order that is cool, then the one that waits least.
+    /// Its pass begins where it is coolest if it must wait.
     fn next(&self, layer: usize, queues: &mut [VecDeque<Pass>], current: usize, limits: &Interpass) -> usize {
         let hot = |at: DVec3| self.surface(layer, at.truncate()) - limits.max_temperature;
-        let starts = |queue: &VecDeque<Pass>| queue.front().and_then(Pass::start);
-        let open: Vec<(usize, DVec3)> = (0..queues.len()).filter_map(|q| Some((q, starts(&queues[q])?))).collect();
+        let open: Vec<(usize, DVec3)> =
+            queues.iter().enumerate().filter_map(|(q, queue)| Some((q, queue.front()?.start()?))).collect();
         let Some(&(first, _)) = open.first() else { return current };
         let cool = |&&(_, start): &&(usize, DVec3)| hot(start) <= 0.0;
-        let here = open.iter().filter(|(q, _)| *q == current).find(cool);
+        let goes_on = |&(_, start): &(usize, DVec3)| {
+            self.torch_at().is_some_and(|at| at.truncate().distance(start.truncate()) < GOES_ON_MM)
+        };
+        let here = open.iter().filter(|(q, _)| *q == current).find(|head| cool(head) || goes_on(head));
         if let Some(&(queue, _)) = here.or_else(|| open.iter().find(cool)) {
             return queue;
         }
         if !limits.reorder {
             return first;
         }
-        for &(q, _) in &open {
-            let pass = &mut queues[q][0];
-            begin_cooler(pass, hot);
+        let heads = open.iter().filter_map(|(q, _)| Some((*q, cooler(queues[*q].front()?, hot))));
+        let Some((queue, (_, begin))) = heads.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { return first };
+        match (begin, queues[queue].front_mut()) {
+            (Begin::At(index), Some(pass)) => pass.begin_at(index),
+            (Begin::Reversed, Some(pass)) => pass.reverse(),
+            _ => {}
         }
-        let coolest = open.iter().min_by(|a, b| {
-            let of = |q: usize| starts(&queues[q]).map_or(f64::INFINITY, hot);
-            of(a.0).total_cmp(&of(b.0))
-        });
-        coolest.map_or(first, |(queue, _)| *queue)
+        queue
     }
+}
+
+/// Where a pass begins.
+#[derive(Clone, Copy)]
+enum Begin {
+    AsPlanned,
+    /// At the point of a closed pass with this index.
+    At(usize),
+    /// At the other end of an open one.
+    Reversed,
+}
+
+/// Where a pass begins coolest, and the temperature there: anywhere on a closed one, at either end of an open one.
+fn cooler(pass: &Pass, hot: impl Fn(DVec3) -> f64) -> (f64, Begin) {
+    let planned = pass.start().map_or(f64::INFINITY, &hot);
+    let other = if pass.closed {
+        let count = pass.points.len();
+        let places = (0..STARTS.min(count)).map(|s| s * count / STARTS.min(count));
+        places.map(|index| (hot(pass.points[index]), Begin::At(index))).min_by(|a, b| a.0.total_cmp(&b.0))
+    } else {
+        pass.end().map(|end| (hot(end), Begin::Reversed))
+    };
+    other.filter(|(there, _)| *there < planned - WORTH_MOVING).unwrap_or((planned, Begin::AsPlanned))
 }
 
 /// The passes of each island in their order, islands in the order in which they were to begin.
@@ -75,19 +104,4 @@ fn by_island(layer: &mut Layer) -> Vec<VecDeque<Pass>> {
         }
     }
     queues.into_iter().map(|(_, queue)| queue).collect()
-}
-
-/// Turns a pass so that it begins where it is coolest: anywhere on a closed one, at either end of an open one.
-fn begin_cooler(pass: &mut Pass, hot: impl Fn(DVec3) -> f64) {
-    let Some(planned) = pass.start().map(&hot) else { return };
-    if pass.closed {
-        let count = pass.points.len();
-        let places = (0..STARTS.min(count)).map(|s| s * count / STARTS.min(count));
-        let best = places.min_by(|a, b| hot(pass.points[*a]).total_cmp(&hot(pass.points[*b])));
-        if let Some(index) = best.filter(|index| hot(pass.points[*index]) < planned - WORTH_MOVING) {
-            pass.begin_at(index);
-        }
-    } else if pass.end().is_some_and(|end| hot(end) < planned - WORTH_MOVING) {
-        pass.reverse();
-    }
 }

@@ -26,7 +26,7 @@ use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, Path, Strategy, coverage};
-use crate::heat::Build;
+use crate::heat::{Build, LONGEST_WAIT};
 use crate::layer::{Layer, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
@@ -551,7 +551,7 @@ impl<S: Sink> Emitter<'_, S> {
         // The next layer is ordered from where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
-            let kind = if heat.start > limits.max_temperature + 3.0 {
+            let kind = if pass.wait >= LONGEST_WAIT {
                 WarningKind::NeverCools
             } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
                 WarningKind::TooCold
