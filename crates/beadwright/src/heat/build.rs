@@ -259,43 +259,38 @@ impl Build {
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
     }
 
-    /// Where the torch stands, mm.
-    pub(super) fn torch_at(&self) -> Option<DVec3> {
-        self.torch.at()
-    }
-
-    /// How long the torch takes to the start of a pass, s.
-    pub(super) fn way(&self, start: DVec3) -> f64 {
-        self.torch.clone().approach(start).moving
-    }
-
-    /// How many whole seconds to wait until the metal under a place is no hotter than `limit` °C after another `way`
-    /// seconds; `None` where it never cools so far.
-    pub(super) fn wait_for(&mut self, layer: usize, at: DVec2, limit: f64, way: f64) -> Option<f64> {
+    /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
+    /// gets there; `None` where it never cools so far.
+    pub(super) fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> Option<f64> {
         self.catch_up();
+        let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
         // What is as cool as this does not get too hot on the way.
-        if self.surface(layer, at) <= limit.midpoint(self.settings.heat.ambient) {
+        if self.surface(layer, at) <= limit.midpoint(ambient) {
             return Some(0.0);
         }
         let (today, now) = (self.body.clone(), self.now);
-        self.spend(way);
-        self.catch_up();
-        let mut wait = self.cool(layer, at, limit);
-        // The real wait takes other steps than the search, and may end a little hotter.
-        while let Some(seconds) = wait.filter(|seconds| *seconds > 0.0) {
-            self.body.clone_from(&today);
-            self.spend(way + seconds);
-            self.catch_up();
-            let over = self.surface(layer, at) - limit;
-            if over <= 0.0 || seconds >= LONGEST_WAIT {
-                break;
-            }
-            // Metal that cools freely loses about this much in that time, or more.
-            let more = over * seconds / (limit - self.settings.heat.ambient).max(1.0);
-            wait = Some(seconds + more.floor().max(1.0));
-        }
-        (self.body, self.now) = (today, now);
+        // How much too hot the metal is after a wait, K.
+        let after = |build: &mut Self, wait: f64| {
+            (build.now, build.pending) = (now, 0.0);
+            build.body.clone_from(&today);
+            build.spend(build.until(wait, start));
+            build.catch_up();
+            build.surface(layer, at) - limit
+        };
+        let wait = if after(self, 0.0) <= 0.0 {
+            Some(0.0)
+        } else {
+            self.cool(layer, at, limit).map(|guess| shortest(guess, limit - ambient, |wait| after(self, wait)))
+        };
+        (self.body, self.now, self.pending) = (today, now, 0.0);
         wait
+    }
+
+    /// Seconds from now until the torch stands at a start, a wait before it included.
+    fn until(&self, wait: f64, start: DVec3) -> f64 {
+        let mut torch = self.torch.clone();
+        let pause = torch.wait(wait).map_or(0.0, |pause| pause.moving + pause.seconds);
+        pause + torch.approach(start).moving
     }
 
     /// Lets the metal under a place cool to `limit` °C; the time that this takes, in whole seconds.
@@ -434,6 +429,28 @@ impl Build {
         self.body.step(seconds + std::mem::take(&mut self.pending));
         ahead
     }
+}
+
+/// The shortest wait in whole seconds after which the metal is no hotter than it may be. `after(wait)` says by how much it is
+/// (K), `rise` (K) how far the limit lies above the surroundings; the search begins at `guess`.
+fn shortest(mut guess: f64, rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
+    let (mut short, mut long) = (0.0, f64::INFINITY);
+    while guess < LONGEST_WAIT {
+        let over = after(guess);
+        if over > 0.0 {
+            short = guess;
+        } else {
+            long = guess;
+        }
+        if long - short <= 1.0 {
+            return long;
+        }
+        // What cools freely loses about this much a second, or more.
+        let next = guess + (over * guess / rise.max(1.0)).round();
+        let next = if over > 0.0 { next.max(guess + 1.0) } else { next.min(guess - 1.0) };
+        guess = if short < next && next < long { next } else { short.midpoint(long.min(LONGEST_WAIT)).floor() };
+    }
+    LONGEST_WAIT
 }
 
 /// Where the voxels lie: the grid, the level of every layer, and the number of levels of the plate.

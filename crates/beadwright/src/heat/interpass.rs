@@ -23,15 +23,15 @@ impl Build {
         let Some(limits) = self.limits() else { return self.layer(layer) };
         let mut heat = self.begin(layer);
         let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
-        let mut current = 0;
+        let (mut current, mut end) = (0, None);
         while queues.iter().any(|queue| !queue.is_empty()) {
             self.catch_up();
-            current = self.next(layer.index, &mut queues, current, &limits);
+            current = self.next(layer.index, &mut queues, current, end, &limits);
             let Some(mut pass) = queues[current].pop_front() else { break };
             let Some(start) = pass.start() else { continue };
-            let (limit, way) = (limits.max_temperature, self.way(start));
-            let wait = self.wait_for(layer.index, start.truncate(), limit, way);
+            let wait = self.wait_for(layer.index, start, limits.max_temperature);
             pass.wait += wait.unwrap_or(super::LONGEST_WAIT);
+            end = pass.end();
             heat.passes.extend(self.pass(layer.index, &pass));
             layer.passes.push(pass);
         }
@@ -40,17 +40,22 @@ impl Build {
     }
 
     /// The queue whose first pass comes next: that of the present island while its metal is cool enough, or where a pass goes
-    /// on from the end of the last one; then the first one in the planned order that is cool, then the one that waits least.
+    /// on from the `end` of the last one; then the first one in the planned order that is cool, then the one that waits least.
     /// Its pass begins where it is coolest if it must wait.
-    fn next(&self, layer: usize, queues: &mut [VecDeque<Pass>], current: usize, limits: &Interpass) -> usize {
+    fn next(
+        &self,
+        layer: usize,
+        queues: &mut [VecDeque<Pass>],
+        current: usize,
+        end: Option<DVec3>,
+        limits: &Interpass,
+    ) -> usize {
         let hot = |at: DVec3| self.surface(layer, at.truncate()) - limits.max_temperature;
         let open: Vec<(usize, DVec3)> =
             queues.iter().enumerate().filter_map(|(q, queue)| Some((q, queue.front()?.start()?))).collect();
         let Some(&(first, _)) = open.first() else { return current };
         let cool = |&&(_, start): &&(usize, DVec3)| hot(start) <= 0.0;
-        let goes_on = |&(_, start): &(usize, DVec3)| {
-            self.torch_at().is_some_and(|at| at.truncate().distance(start.truncate()) < GOES_ON_MM)
-        };
+        let goes_on = |&(_, start): &(usize, DVec3)| end.is_some_and(|end| end.distance(start) < GOES_ON_MM);
         let here = open.iter().filter(|(q, _)| *q == current).find(|head| cool(head) || goes_on(head));
         if let Some(&(queue, _)) = here.or_else(|| open.iter().find(cool)) {
             return queue;
