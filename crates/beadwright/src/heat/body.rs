@@ -7,6 +7,7 @@
 
 use super::grid::Grid;
 use super::sweep::{self, Deep};
+use std::ops::Range;
 
 /// Stefan-Boltzmann constant, W/(mm²·K⁴).
 pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374e-14;
@@ -75,6 +76,10 @@ pub struct Body {
     pub(super) deep: Deep,
     /// Number of voxels of each level that are bare across each axis.
     pub(super) exposed: [Vec<usize>; 3],
+    /// Where each level has metal, along x and y: nothing beyond it is swept.
+    pub(super) extents: Vec<[Range<usize>; 2]>,
+    /// Number of levels up to the highest metal, of every tile of columns.
+    pub(super) tops: Vec<usize>,
 }
 
 impl Body {
@@ -100,6 +105,8 @@ impl Body {
             reverse: false,
             deep: Deep::default(),
             exposed: [0; 3].map(|none| vec![none; grid.counts()[2]]),
+            extents: vec![[0..0, 0..0]; grid.counts()[2]],
+            tops: vec![0; sweep::tiles(&grid) * grid.counts()[1]],
             grid,
         }
     }
@@ -119,7 +126,7 @@ impl Body {
     /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is all that the voxel's metal then covers seen
     /// from above. [`Self::refresh`] must follow.
     pub(super) fn add(&mut self, voxel: usize, volume: f64, area: f64) {
-        let [_, _, level] = self.grid.place(voxel);
+        let [x, y, level] = self.grid.place(voxel);
         let capacity = volume * self.stuff[level].capacity;
         let size = self.grid.size(voxel);
         self.theta[voxel] *= self.capacity[voxel] / (self.capacity[voxel] + capacity).max(f64::MIN_POSITIVE);
@@ -127,6 +134,11 @@ impl Body {
         self.metal[voxel] += volume;
         self.area[voxel] = self.area[voxel].max(area).min(size.x * size.y);
         self.levels = self.levels.max(level + 1);
+        for (extent, at) in self.extents[level].iter_mut().zip([x, y]) {
+            *extent = if extent.end == 0 { at..at + 1 } else { extent.start.min(at)..extent.end.max(at + 1) };
+        }
+        let top = &mut self.tops[y * sweep::tiles(&self.grid) + x / sweep::TILE];
+        *top = (*top).max(level + 1);
     }
 
     /// Heats a voxel, J. One without metal takes nothing.

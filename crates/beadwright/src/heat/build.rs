@@ -84,11 +84,11 @@ impl LayerHeat {
 /// A part being built, up to the pass that was laid last.
 #[derive(Debug, Clone)]
 pub struct Build {
-    settings: HeatSettings,
+    pub(super) settings: HeatSettings,
     nominal: Process,
     process: Process,
-    torch: Torch,
-    body: Body,
+    pub(super) torch: Torch,
+    pub(super) body: Body,
     /// Level of voxels of every layer.
     levels: Vec<usize>,
     /// Side area of the layers in every level, mm².
@@ -97,8 +97,8 @@ pub struct Build {
     covered: Vec<f64>,
     touched: Vec<usize>,
     /// Time since the beginning, s, and the end of it that the body has not seen.
-    now: f64,
-    pending: f64,
+    pub(super) now: f64,
+    pub(super) pending: f64,
 }
 
 impl Build {
@@ -208,7 +208,7 @@ impl Build {
     }
 
     /// Time passes; the body sees it before its temperatures are next asked for.
-    fn spend(&mut self, seconds: f64) {
+    pub(super) fn spend(&mut self, seconds: f64) {
         self.now += seconds;
         self.pending += seconds;
     }
@@ -257,64 +257,6 @@ impl Build {
             (heat + body.temperature(voxel) * body.metal(voxel), weight + body.metal(voxel))
         });
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
-    }
-
-    /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
-    /// gets there; `None` where it never cools so far.
-    pub(super) fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> Option<f64> {
-        self.catch_up();
-        let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
-        // What is as cool as this does not get too hot on the way.
-        if self.surface(layer, at) <= limit.midpoint(ambient) {
-            return Some(0.0);
-        }
-        let (today, now) = (self.body.clone(), self.now);
-        // How much too hot the metal is after a wait, K.
-        let after = |build: &mut Self, wait: f64| {
-            (build.now, build.pending) = (now, 0.0);
-            build.body.clone_from(&today);
-            build.spend(build.until(wait, start));
-            build.catch_up();
-            build.surface(layer, at) - limit
-        };
-        let wait = if after(self, 0.0) <= 0.0 {
-            Some(0.0)
-        } else {
-            self.cool(layer, at, limit).map(|guess| shortest(guess, limit - ambient, |wait| after(self, wait)))
-        };
-        (self.body, self.now, self.pending) = (today, now, 0.0);
-        wait
-    }
-
-    /// Seconds from now until the torch stands at a start, a wait before it included.
-    fn until(&self, wait: f64, start: DVec3) -> f64 {
-        let mut torch = self.torch.clone();
-        let pause = torch.wait(wait).map_or(0.0, |pause| pause.moving + pause.seconds);
-        pause + torch.approach(start).moving
-    }
-
-    /// Lets the metal under a place cool to `limit` °C; the time that this takes, in whole seconds.
-    fn cool(&mut self, layer: usize, at: DVec2, limit: f64) -> Option<f64> {
-        let (mut waited, mut step) = (0.0, 1.0_f64);
-        while self.surface(layer, at) > limit {
-            if waited >= LONGEST_WAIT {
-                return None;
-            }
-            let before = (step > 1.0).then(|| self.body.clone());
-            self.body.step(step);
-            match before {
-                // Too far: back, and on by smaller steps.
-                Some(before) if self.surface(layer, at) <= limit => {
-                    self.body = before;
-                    step = (step / 4.0).floor().max(1.0);
-                }
-                _ => {
-                    waited += step;
-                    step = (step * GROWTH).ceil().min(self.longest_step(waited).floor().max(1.0));
-                }
-            }
-        }
-        Some(waited)
     }
 
     /// Builds a pass of the layer with the index `layer`, after the wait that it has; `None` if it has no points.
@@ -429,28 +371,6 @@ impl Build {
         self.body.step(seconds + std::mem::take(&mut self.pending));
         ahead
     }
-}
-
-/// The shortest wait in whole seconds after which the metal is no hotter than it may be. `after(wait)` says by how much it is
-/// (K), `rise` (K) how far the limit lies above the surroundings; the search begins at `guess`.
-fn shortest(mut guess: f64, rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
-    let (mut short, mut long) = (0.0, f64::INFINITY);
-    while guess < LONGEST_WAIT {
-        let over = after(guess);
-        if over > 0.0 {
-            short = guess;
-        } else {
-            long = guess;
-        }
-        if long - short <= 1.0 {
-            return long;
-        }
-        // What cools freely loses about this much a second, or more.
-        let next = guess + (over * guess / rise.max(1.0)).round();
-        let next = if over > 0.0 { next.max(guess + 1.0) } else { next.min(guess - 1.0) };
-        guess = if short < next && next < long { next } else { short.midpoint(long.min(LONGEST_WAIT)).floor() };
-    }
-    LONGEST_WAIT
 }
 
 /// Where the voxels lie: the grid, the level of every layer, and the number of levels of the plate.

@@ -4,11 +4,15 @@
 //! step, which cancels most of the error of splitting.
 
 use super::body::{Air, Body, KELVIN, STEFAN_BOLTZMANN};
+use super::grid::Grid;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Strips into which planes are cut for sweeps along z; the same for any number of threads.
-const STRIPS: usize = 4;
+/// Voxels along x in a tile: columns that are swept along z side by side.
+pub(super) const TILE: usize = 32;
+
+/// Tiles that are worth handing to a thread.
+const TILES_A_TURN: usize = 8;
 
 /// Bodies with fewer voxels are not worth a second thread.
 const WORTH_SHARING: usize = 8_000;
@@ -106,15 +110,16 @@ fn stored(capacity: f64, seconds: f64) -> f64 {
 fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
     let axes = if body.reverse { [1, 0] } else { [0, 1] };
     let ([nx, ..], plane) = (body.grid.counts(), body.grid.strides()[2]);
-    let Body { air, theta, capacity, across, bare, sides, exposed, .. } = body;
+    let Body { air, theta, capacity, across, bare, sides, exposed, extents, .. } = body;
     let first = levels.start;
     let sweep = |(k, theta): (usize, &mut [f64])| {
         let (k, mut lost) = (first + k, 0.0);
         let mut scratch = Scratch::default();
         for axis in axes {
-            let rows = theta.chunks_mut(nx).enumerate().map(|(j, theta)| {
+            let [x, y] = &extents[k];
+            let rows = theta.chunks_mut(nx).enumerate().take(y.end).skip(y.start).map(|(j, theta)| {
                 let from = k * plane + j * nx;
-                let part = from..from + nx;
+                let (theta, part) = (&mut theta[x.clone()], from + x.start..from + x.end);
                 let [capacity, across, bare] =
                     [&capacity[..], &across[axis], &bare[axis]].map(|all| &all[part.clone()]);
                 let bare = if exposed[axis][k] > 0 { bare } else { &[] };
@@ -129,7 +134,8 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
         lost
     };
     let theta = &mut theta[plane * levels.start..plane * levels.end];
-    if theta.len() > WORTH_SHARING {
+    let swept: usize = extents[levels].iter().map(|[x, y]| x.len() * y.len()).sum();
+    if swept > WORTH_SHARING {
         let lost: Vec<f64> = theta.par_chunks_mut(plane).enumerate().map(sweep).collect();
         lost.iter().sum()
     } else {
@@ -137,28 +143,35 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
     }
 }
 
-/// The sweep along z, in strips.
+/// Tiles side by side along x.
+pub(super) fn tiles(grid: &Grid) -> usize {
+    grid.counts()[0].div_ceil(TILE)
+}
+
+/// The sweep along z, tile by tile.
 fn vertical(body: &mut Body, seconds: f64) -> f64 {
-    let plane = body.grid.strides()[2];
-    let Body { air, theta, capacity, across, bare, table, levels, exposed, .. } = body;
-    let width = plane.div_ceil(STRIPS);
-    let shared = plane * *levels > WORTH_SHARING;
-    let mut strips: Vec<Vec<Row<'_>>> = (0..plane.div_ceil(width)).map(|_| Vec::with_capacity(*levels)).collect();
+    let (tiles, [nx, ..], plane) = (tiles(&body.grid), body.grid.counts(), body.grid.strides()[2]);
+    let Body { air, theta, capacity, across, bare, table, levels, exposed, tops, .. } = body;
+    let mut columns: Vec<Vec<Row<'_>>> = tops.iter().map(|top| Vec::with_capacity(*top)).collect();
     for (k, theta) in theta[..plane * *levels].chunks_mut(plane).enumerate() {
-        for (s, theta) in theta.chunks_mut(width).enumerate() {
-            let within = s * width..s * width + theta.len();
-            let part = k * plane + within.start..k * plane + within.end;
-            let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
-            let bare = if exposed[2][k] > 0 { bare } else { &[] };
-            let table = if k == 0 { &table[within] } else { &[] };
-            strips[s].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
+        for (j, theta) in theta.chunks_mut(nx).enumerate() {
+            for (t, theta) in theta.chunks_mut(TILE).enumerate().filter(|(t, _)| k < tops[j * tiles + t]) {
+                let within = j * nx + t * TILE..j * nx + t * TILE + theta.len();
+                let part = k * plane + within.start..k * plane + within.end;
+                let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
+                let bare = if exposed[2][k] > 0 { bare } else { &[] };
+                let table = if k == 0 { &table[within] } else { &[] };
+                columns[j * tiles + t].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
+            }
         }
     }
-    if shared {
-        let lost: Vec<f64> = strips.par_iter_mut().map(|rows| between(rows, air, seconds)).collect();
+    let swept: usize = tops.iter().map(|top| top * TILE).sum();
+    if swept > WORTH_SHARING {
+        let columns = columns.par_iter_mut().with_min_len(TILES_A_TURN);
+        let lost: Vec<f64> = columns.map(|rows| between(rows, air, seconds)).collect();
         lost.iter().sum()
     } else {
-        strips.iter_mut().map(|rows| between(rows, air, seconds)).sum()
+        columns.iter_mut().map(|rows| between(rows, air, seconds)).sum()
     }
 }
 
