@@ -6,7 +6,7 @@
 //! Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
 
 use super::grid::Grid;
-use super::sweep::{self, Deep};
+use super::sweep::{self, Lags};
 use std::ops::Range;
 
 /// Stefan-Boltzmann constant, W/(mm²·K⁴).
@@ -72,8 +72,9 @@ pub struct Body {
     supplied: f64,
     lost: f64,
     pub(super) reverse: bool,
-    /// What lies deep.
-    pub(super) deep: Deep,
+    /// Time that has passed, s, and what has not seen all of it.
+    pub(super) clock: f64,
+    pub(super) lags: Lags,
     /// Number of voxels of each level that are bare across each axis.
     pub(super) exposed: [Vec<usize>; 3],
     /// Where each level has metal, along x and y: nothing beyond it is swept.
@@ -103,7 +104,8 @@ impl Body {
             supplied: 0.0,
             lost: 0.0,
             reverse: false,
-            deep: Deep::default(),
+            clock: 0.0,
+            lags: Lags::new(&grid),
             exposed: [0; 3].map(|none| vec![none; grid.counts()[2]]),
             extents: vec![[0..0, 0..0]; grid.counts()[2]],
             tops: vec![0; sweep::tiles(&grid) * grid.counts()[1]],
@@ -146,7 +148,18 @@ impl Body {
         if self.capacity[voxel] > 0.0 {
             self.theta[voxel] += joules / self.capacity[voxel];
             self.supplied += joules;
+            self.wake(voxel);
         }
+    }
+
+    /// Lets every place see all the time that has passed.
+    pub(super) fn settle(&mut self) {
+        self.lost += sweep::settle(self);
+    }
+
+    /// What lies around a voxel takes part in the next steps, and so sees all the time that has passed.
+    pub(super) fn wake(&mut self, voxel: usize) {
+        sweep::wake(self, voxel);
     }
 
     /// Computes anew what conducts and what lies bare, at these voxels and beside them.

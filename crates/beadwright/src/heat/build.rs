@@ -26,7 +26,7 @@ const FIRST_STEP: f64 = 1.0;
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
-/// Longest steps of what lies deep below the torch, over the same time.
+/// Longest steps of what lies far from the torch, over the same time.
 const PATIENCE: f64 = 2.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
@@ -140,9 +140,9 @@ impl Build {
         build
     }
 
-    /// Sets the longest steps of what lies deep, over the time in which heat crosses a voxel.
+    /// Sets the longest steps of what lies far from the torch, over the time in which heat crosses a voxel.
     fn be_patient(&mut self, steps: f64) {
-        self.body.deep.patience = steps * self.crossing();
+        self.body.lags.patience = steps * self.crossing();
     }
 
     /// The limits between passes.
@@ -183,7 +183,8 @@ impl Build {
         self.process = self.nominal.at_layer(layer.index);
         let pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
-        self.catch_up();
+        self.catch_up(None);
+        self.body.settle();
         // The layer before may lie in the same level of voxels; an empty one left nothing.
         let under = layer.index.checked_sub(1).map_or(self.level(0).saturating_sub(1), |before| self.level(before));
         let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
@@ -213,11 +214,15 @@ impl Build {
         self.pending += seconds;
     }
 
-    /// Lets the body see the time that has passed.
-    pub(super) fn catch_up(&mut self) {
+    /// Lets the body see the time that has passed; all of it where a temperature is to be read, at a place of a layer.
+    pub(super) fn catch_up(&mut self, at: Option<(usize, DVec2)>) {
         let (mut step, whole) = (FIRST_STEP * self.crossing(), self.pending);
+        let place = at.map(|(layer, at)| self.body.grid().column(at.x, at.y, self.level(layer)));
         while self.pending > 0.0 {
             let next = if self.pending < 1.5 * step { self.pending } else { step };
+            if let Some(place) = place {
+                self.body.wake(place);
+            }
             self.body.step(next);
             self.pending = if next == self.pending { 0.0 } else { self.pending - next };
             step = (step * GROWTH).min(self.longest_step(whole - self.pending));
@@ -266,12 +271,11 @@ impl Build {
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
         let approach = self.torch.approach(start);
         self.spend(approach.moving);
-        self.catch_up();
+        self.catch_up(Some((layer, start.truncate())));
         let moves = path(pass, self.torch.ends());
         let temperature = self.surface(layer, start.truncate());
         let welded = self.torch.weld(&moves);
         self.spend(welded.before);
-        self.catch_up();
         let at = self.now;
         let wait = pause.map_or(0.0, |pause| pause.seconds);
         let mut heat = PassHeat { at, wait, start: temperature, along: vec![temperature] };
@@ -286,7 +290,8 @@ impl Build {
     fn weld(&mut self, layer: usize, moves: &[(DVec3, f64)], pass: &Pass, moving: f64) -> Vec<f64> {
         let pieces = || moves.windows(2).map(|w| (w[0].0.truncate(), w[1].0.truncate(), w[1].1));
         let steady: f64 = pieces().map(|(a, b, pace)| a.distance(b) / self.process.speed_at(pace)).sum();
-        let (slower, length) = (moving / steady.max(1e-9), self.spacing());
+        let (slower, spacing) = (moving / steady.max(1e-9), self.spacing());
+        let mut left: f64 = pieces().map(|(a, b, _)| a.distance(b)).sum();
         let width = pass.segments().map(|s| s.length() * s.width).sum::<f64>() / pass.length().max(1e-9);
         let (mut chunk, mut along) = (Chunk::default(), Vec::new());
         // The arc burns before the torch leaves.
@@ -296,6 +301,8 @@ impl Build {
         for (a, b, pace) in pieces() {
             let (whole, mut done) = (a.distance(b), 0.0);
             while done < whole {
+                // A short rest is laid with the chunk before it.
+                let length = if left + chunk.length < 1.5 * spacing { f64::INFINITY } else { spacing };
                 let part = (length - chunk.length).min(whole - done);
                 let [from, to] = [done, done + part].map(|along| a.lerp(b, along / whole));
                 let seconds = part / self.process.speed_at(pace) * slower;
@@ -305,13 +312,16 @@ impl Build {
                 chunk.length += part;
                 self.cover([from, to], width, area * part, layer, &mut chunk);
                 done += part;
+                left -= part;
                 if chunk.length >= length * (1.0 - 1e-9) {
                     along.push(self.finish(layer, &mut chunk, to));
                 }
             }
         }
         if let Some((end, _)) = moves.last() {
-            self.finish(layer, &mut chunk, end.truncate());
+            let whole = chunk.length >= spacing;
+            let ahead = self.finish(layer, &mut chunk, end.truncate());
+            along.extend(whole.then_some(ahead));
         }
         along
     }
@@ -417,7 +427,7 @@ mod tests {
     use crate::{Task, example};
 
     #[test]
-    fn longer_steps_below_change_next_to_nothing() {
+    fn longer_steps_far_from_the_torch_change_next_to_nothing() {
         let profile = Profile::built_in("cmt-steel-robots").unwrap();
         let plan = crate::plan("vase", &example::find("vase").unwrap().mesh(), &profile, &Task::new()).unwrap();
         let points = plan.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
@@ -433,7 +443,7 @@ mod tests {
         let (eager, patient) = (run(0.0), run(PATIENCE));
         assert!(eager.len() > 50);
         let worst = eager.iter().zip(&patient).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
-        println!("longer steps below change starts by {:.2} % at most", 100.0 * worst);
+        println!("longer steps far away change starts by {:.2} % at most", 100.0 * worst);
         assert!(worst < 0.03, "{worst}");
     }
 }

@@ -29,7 +29,7 @@ impl Build {
         let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
         let (mut current, mut end) = (0, None);
         while queues.iter().any(|queue| !queue.is_empty()) {
-            self.catch_up();
+            self.catch_up(None);
             current = self.next(layer.index, &mut queues, current, end, &limits);
             let Some(mut pass) = queues[current].pop_front() else { break };
             let Some(start) = pass.start() else { continue };
@@ -79,7 +79,6 @@ impl Build {
     /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
     /// gets there; [`LONGEST_WAIT`] where it never cools so far.
     fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> f64 {
-        self.catch_up();
         let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
         // What is as cool as this does not get too hot on the way.
         if self.surface(layer, at) <= limit.midpoint(ambient) {
@@ -91,7 +90,7 @@ impl Build {
             (build.now, build.pending) = (now, 0.0);
             build.body.clone_from(&today);
             build.spend(build.until(wait, start));
-            build.catch_up();
+            build.catch_up(Some((layer, at)));
             build.surface(layer, at) - limit
         };
         let wait = shortest(limit - ambient, |wait| after(self, wait));
