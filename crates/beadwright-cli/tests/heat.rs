@@ -57,6 +57,18 @@ fn programs_wait_for_the_limit() {
     let starts = heat["layers"].as_array().unwrap().iter().flat_map(|l| l["passes"].as_array().unwrap());
     let hottest = starts.map(|pass| pass["start"].as_f64().unwrap()).fold(0.0, f64::max);
     assert!((140.0..151.0).contains(&hottest), "{hottest} °C");
+    // The report knows how warm it is where each pass begins, and how long each layer waits.
+    let report = |plan: &str| fs::read_to_string(at.join(plan).join("report.html")).unwrap();
+    let warmth = |report: &str| -> Vec<serde_json::Value> {
+        let data = report.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+        json(data)["warmth"].as_array().unwrap().clone()
+    };
+    let layers = warmth(&report("with"));
+    let starts = layers.iter().flat_map(|layer| layer["starts"].as_array().unwrap()).map(|t| t.as_f64().unwrap());
+    assert!(starts.clone().all(|celsius| celsius <= 151.0) && starts.fold(0.0, f64::max) > 140.0);
+    let told: f64 = layers.iter().map(|layer| layer["wait"].as_f64().unwrap()).sum();
+    assert!((told - waits).abs() < 0.01 * waits, "{told} s of {waits} s");
+    assert!(warmth(&report("without")).is_empty());
     // The waits stand in the program.
     let programs = fs::read_dir(at.join("with")).unwrap().map(|entry| entry.unwrap().path());
     let text: String = programs

@@ -18,6 +18,8 @@ pub struct Layer {
     pub islands: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
+    /// Temperature of the metal below where each pass begins, °C; empty where it was not computed.
+    pub temperatures: Vec<f64>,
     /// Area of the slice, mm².
     pub slice_area: f64,
     /// Area that beads cover, mm².

@@ -120,6 +120,30 @@ fn beads_keep_to_their_window_and_to_the_outline() {
     }
 }
 
+/// A bug once: edges that lay on a row of the lattice of distances were not seen from inside.
+#[test]
+fn outlines_a_whole_number_of_beads_wide_are_kept_to() {
+    let island = slice("cross");
+    let arm = 36.0;
+    for beads in [4.0, 5.0, 6.0, 8.0, 9.0, 10.0, 12.0] {
+        let mut profile = profile("cmt-al2319-kuka");
+        let scale = arm / beads / profile.bead.width;
+        (profile.bead.width, profile.bead.height) = (scale * profile.bead.width, scale * profile.bead.height);
+        profile.layers.height *= scale;
+        profile.fill.stepover = profile.fill.stepover.map(|stepover| scale * stepover);
+        for degrees in [0.0, 90.0, 180.0, 270.0] {
+            let island = turned(&island, degrees);
+            let island = moved(&island, |p| (p * 1e6).round() / 1e6);
+            for pass in looped(&island, &profile) {
+                for (i, p) in pass.points.iter().enumerate() {
+                    let (room, width) = (to_boundary(&island, *p), pass.width.after(i));
+                    assert!(island.contains(*p) && room >= 0.485 * width, "{beads} beads: {p} {room} {width}");
+                }
+            }
+        }
+    }
+}
+
 /// A layer takes the metal of its area, less what its rounded rim lacks.
 #[test]
 fn loops_lay_the_metal_of_the_area() {

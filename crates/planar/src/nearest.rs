@@ -90,9 +90,10 @@ impl Sweep<'_> {
             let (from, to) = (lattice.in_steps(a), lattice.in_steps(b));
             let count = ((to - from).abs().max_element() * 1.5).ceil().max(1.0) as usize;
             for k in 0..=count {
-                let cell = from.lerp(to, k as f64 / count as f64).floor();
-                for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
-                    let at = cell + DVec2::new(dx, dy);
+                // On both sides of a segment that lies on a row of points, too: those on one side may not be wanted.
+                let point = from.lerp(to, k as f64 / count as f64).round();
+                for (dx, dy) in [-1.0, 0.0, 1.0].into_iter().flat_map(|dx| [-1.0, 0.0, 1.0].map(|dy| (dx, dy))) {
+                    let at = point + DVec2::new(dx, dy);
                     let inside =
                         at.cmpge(DVec2::ZERO).all() && at.x < lattice.columns as f64 && at.y < lattice.rows as f64;
                     if inside {
@@ -156,4 +157,33 @@ pub fn foot((a, b): (DVec2, DVec2), p: DVec2) -> DVec2 {
     let square = way.length_squared();
     let t = if square > 0.0 { ((p - a).dot(way) / square).clamp(0.0, 1.0) } else { 0.0 };
     a + way * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+    use crate::lattice::Lattice;
+    use crate::{Bounds, Ring};
+    use glam::{DVec2, dvec2};
+
+    /// Rectangles whose edges lie on rows and columns of the lattice, and half-way between them.
+    #[test]
+    fn every_edge_is_seen_from_inside() {
+        for (width, height) in [(8.0, 5.0), (7.5, 12.5), (100.0, 36.0)] {
+            let half = dvec2(width, height) / 2.0;
+            let corners = [-half, dvec2(half.x, -half.y), half, dvec2(-half.x, half.y)];
+            for turn in 0..4 {
+                let mut corners = corners;
+                corners.rotate_left(turn);
+                let ring = Ring::new(corners.to_vec());
+                let lattice = Lattice::covering(&Bounds { min: -half, max: half }, 0.75, 0.375, 4);
+                let inside = lattice.inside([&ring]);
+                let near = nearest(&lattice, &ring.edges().collect::<Vec<_>>(), &inside);
+                for i in (0..lattice.len()).filter(|i| inside[*i]) {
+                    let room: DVec2 = half - lattice.place_of(i).abs();
+                    assert!((f64::from(near.distance[i]) - room.min_element()).abs() < 1e-4, "{}", lattice.place_of(i));
+                }
+            }
+        }
+    }
 }

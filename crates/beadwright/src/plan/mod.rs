@@ -534,7 +534,8 @@ impl<S: Sink> Emitter<'_, S> {
         let order = self.profile.order_settings(index);
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
         let passes = lifted(paths, index, (z, height), self.profile);
-        let mut layer = Layer { index, z, height, islands, passes, slice_area, planned_area, warnings };
+        let mut layer =
+            Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
         relight::relight(&mut layer, self.profile);
         self.cool(&mut layer);
         self.doubts(&mut layer);
@@ -550,6 +551,7 @@ impl<S: Sink> Emitter<'_, S> {
         let heat = build.layer_within_limits(layer);
         // The next layer is ordered from where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
+        layer.temperatures = heat.passes.iter().map(|pass| pass.start).collect();
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let kind = if pass.wait >= LONGEST_WAIT {
                 WarningKind::NeverCools

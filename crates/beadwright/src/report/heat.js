@@ -48,11 +48,10 @@ function drawMap(ctx, map, scale) {
   ctx.stroke(map.rim);
 }
 
-function drawHeatKey(canvas) {
+function drawKey(canvas, colourAt) {
   const ctx = canvas.getContext("2d");
   for (let i = 0; i < canvas.width; i++) {
-    ctx.fillStyle = `rgb(${heatAt(FULL_SCALE * i / canvas.width).map(Math.round).join(" ")})`;
+    ctx.fillStyle = `rgb(${colourAt(i / canvas.width).map(Math.round).join(" ")})`;
     ctx.fillRect(i, 0, 1, canvas.height);
   }
 }
-

@@ -51,6 +51,7 @@ async function readLayer(text, head) {
 // A layer with its height field, if it has one.
 async function readWhole(index) {
   const [layer, map] = await Promise.all([readLayer(data.layers[index], heads[index]), readMap(data.maps[index])]);
+  layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
   return { ...layer, map };
 }
 
@@ -71,6 +72,7 @@ function timePass(pass, start) {
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const heads = data.layers.map(readHead);
+data.warmth.forEach(({ starts, wait }, i) => Object.assign(heads[i], { hottest: Math.max(0, ...starts), wait }));
 const kept = new Map();
 
 // The promise of a layer; the last ones are kept.

@@ -42,6 +42,8 @@ pub struct Report {
     profile: Profile,
     layers: Vec<String>,
     maps: Vec<String>,
+    /// Of every layer: temperatures where its passes begin, °C, and the seconds that the torch waits.
+    warmth: Vec<(Vec<f64>, f64)>,
     figures: Option<Figures>,
     /// The layer in the middle, for plots over the raster angle.
     middle: Layer,
@@ -55,6 +57,7 @@ impl Report {
             profile: profile.clone(),
             layers: Vec::new(),
             maps: Vec::new(),
+            warmth: Vec::new(),
             figures: None,
             middle: Layer::default(),
         }
@@ -66,6 +69,8 @@ impl Report {
             self.middle = layer.clone();
         }
         self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
+        let waits = layer.passes.iter().map(|pass| pass.wait).sum();
+        self.warmth.push((layer.temperatures.clone(), waits));
         if let Some(judgement) = judgement {
             self.figures.get_or_insert_default().add(&judgement.figures);
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
@@ -86,7 +91,7 @@ impl Report {
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
             ("warnings", tables::warnings(summary, repair)),
-            ("data", data(profile, &self.layers, &self.maps)),
+            ("data", self.data()),
             (
                 "js",
                 [
@@ -101,14 +106,27 @@ impl Report {
         ];
         template::expand(include_str!("page.html"), &values)
     }
-}
 
-/// What the scripts need, as JSON that may stand in a `script` element.
-fn data(profile: &Profile, layers: &[String], maps: &[String]) -> String {
-    let bead = json!({ "width": profile.bead.width }).to_string().replace('<', "\\u003c");
-    // Base64 needs no escaping.
-    let list = |texts: &[String]| texts.iter().map(|text| format!("\n\"{text}\"")).collect::<Vec<_>>().join(",");
-    format!("{{\"bead\":{bead},\"layers\":[{}],\"maps\":[{}]}}", list(layers), list(maps))
+    /// What the scripts need, as JSON that may stand in a `script` element.
+    fn data(&self) -> String {
+        let bead = json!({ "width": self.profile.bead.width }).to_string().replace('<', "\\u003c");
+        // Base64 needs no escaping.
+        let list = |texts: &[String]| texts.iter().map(|text| format!("\n\"{text}\"")).collect::<Vec<_>>().join(",");
+        let (layers, maps) = (list(&self.layers), list(&self.maps));
+        format!("{{\"bead\":{bead},\"warmth\":{},\"layers\":[{layers}],\"maps\":[{maps}]}}", self.warmth())
+    }
+
+    /// Starts in whole °C and waits in seconds, layer by layer; nothing where no temperature was computed.
+    fn warmth(&self) -> serde_json::Value {
+        if self.warmth.iter().all(|(starts, _)| starts.is_empty()) {
+            return json!([]);
+        }
+        let layer = |(starts, wait): &(Vec<f64>, f64)| {
+            let starts: Vec<i64> = starts.iter().map(|celsius| celsius.round() as i64).collect();
+            json!({ "starts": starts, "wait": wait.round() as i64 })
+        };
+        self.warmth.iter().map(layer).collect()
+    }
 }
 
 /// Moves without arc within a layer: from the end of a pass to the start of the next.

@@ -20,6 +20,7 @@ function tellLayer() {
     ["Travel across", metres(head.travel)], ["Layer height", `${head.height.toFixed(2)} mm`],
     ["Covered / slice area", area(head.planned), ` of ${area(head.slice)} (${head.share.toFixed(1)} %)`],
     ...head.judged ? [["Void", `${head.voids.toFixed(2)} %`], ["Overfill", `${head.overfill.toFixed(2)} %`]] : [],
+    ...data.warmth.length ? [["Hottest start", `${head.hottest} °C`], ["Wait for cooling", clock(head.wait)]] : [],
     ["Warnings", head.warnings ? `${head.warnings}` : "none"],
   ];
   $("numbers").replaceChildren(...numbers.map(([name, value, more]) => {
@@ -64,7 +65,7 @@ async function show(index) {
   for (const near of [index + 1, index - 1]) if (near >= 0 && near < heads.length) layerAt(near);
 }
 
-const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, share: v => `${v.toFixed(1)} %`, voids: v => `${v.toFixed(2)} %`, overfill: v => `${v.toFixed(2)} %` };
+const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, share: v => `${v.toFixed(1)} %`, voids: v => `${v.toFixed(2)} %`, overfill: v => `${v.toFixed(2)} %`, hottest: v => `${v} °C`, wait: clock };
 
 function drawBars() {
   const ctx = bars.getContext("2d"), width = bars.clientWidth, height = bars.clientHeight, n = heads.length;
@@ -172,7 +173,8 @@ function connect() {
     radio.onchange = () => {
       shown.byOrder = radio.value === "order";
       shown.heat = radio.value === "heat";
-      for (const key of ["kind", "order", "heat"]) $(`key-${key}`).hidden = radio.value !== key;
+      shown.warm = radio.value === "warm";
+      for (const key of ["kind", "order", "heat", "warm"]) $(`key-${key}`).hidden = radio.value !== key;
       redraw();
     };
   });
@@ -198,7 +200,12 @@ function start() {
   if (!heads.length) return void ($("viewer").hidden = true);
   if (data.maps.length) {
     document.querySelectorAll(".judged").forEach(node => { node.hidden = false; });
-    drawHeatKey($("heat-ramp"));
+    drawKey($("heat-ramp"), part => heatAt(FULL_SCALE * part));
+  }
+  if (data.warmth.length) {
+    document.querySelectorAll(".warmed").forEach(node => { node.hidden = false; });
+    [$("warm-low").textContent, $("warm-high").textContent] = warmth.map(celsius => `${celsius} °C`);
+    drawKey($("warm-ramp"), part => rampAt(part, EMBER));
   }
   readColours();
   connect();

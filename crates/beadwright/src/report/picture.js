@@ -2,10 +2,12 @@
 
 const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
 const CHUNKS = 240;
+// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
+const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
 
 const picture = document.getElementById("picture");
 const view = { scale: 1, x: 0, y: 0, width: 0, height: 0, fitted: true };
-const shown = { layer: null, index: 0, until: Infinity, byOrder: false, heat: false, width: true, travels: true, ends: true, outline: true };
+const shown = { layer: null, index: 0, until: Infinity, byOrder: false, heat: false, warm: false, width: true, travels: true, ends: true, outline: true };
 let colours = {};
 
 function readColours() {
@@ -19,9 +21,18 @@ const rgb = c => `rgb(${c.map(Math.round).join(" ")})`;
 const mix = (c, to, part) => c.map((v, i) => v + (to[i] - v) * part);
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
-function rampAt(part) {
-  const at = Math.min(Math.max(part, 0), 1) * (RAMP.length - 1), i = Math.min(Math.floor(at), RAMP.length - 2);
-  return mix(RAMP[i], RAMP[i + 1], at - i);
+function rampAt(part, ramp = RAMP) {
+  const at = Math.min(Math.max(part, 0), 1) * (ramp.length - 1), i = Math.min(Math.floor(at), ramp.length - 2);
+  return mix(ramp[i], ramp[i + 1], at - i);
+}
+
+// The coldest and the hottest start of all passes, °C.
+const warmth = data.warmth.flatMap(({ starts }) => starts).reduce(([low, high], t) => [Math.min(low, t), Math.max(high, t)], [Infinity, -Infinity]);
+
+// The colour of a whole pass: its kind, or how warm the metal is where it begins.
+function plainColour(pass) {
+  if (!shown.warm || pass.celsius === undefined) return colours.kinds[pass.kind];
+  return rampAt((pass.celsius - warmth[0]) / Math.max(warmth[1] - warmth[0], 1), EMBER);
 }
 
 // The whole part in the middle; the same for all layers, so that they can be compared.
@@ -80,15 +91,15 @@ function strokes(pass, layer) {
   if (along.length > 1) {
     const list = [];
     for (let i = 0; i + 1 < times.length && (!i || times[i] < until); i++) {
-      const colour = shown.byOrder ? rampAt((times[i] + times[i + 1]) / 2 / layer.seconds) : colours.kinds[pass.kind];
+      const colour = shown.byOrder ? rampAt((times[i] + times[i + 1]) / 2 / layer.seconds) : plainColour(pass);
       const end = times[i + 1] > until ? pointAt(pass, i, until) : [pass.xy[2 * i + 2], pass.xy[2 * i + 3]];
       list.push({ path: pathOf([pass.xy[2 * i], pass.xy[2 * i + 1], ...end]), colour, wide: after(pass, i)[0] });
     }
     return list;
   }
   if (!shown.byOrder) {
-    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: colours.kinds[pass.kind], wide }];
-    return [{ path: between(pass, pass.start, until).path, colour: colours.kinds[pass.kind], wide }];
+    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: plainColour(pass), wide }];
+    return [{ path: between(pass, pass.start, until).path, colour: plainColour(pass), wide }];
   }
   const step = layer.seconds / CHUNKS || 1, list = [];
   const count = Math.max(1, Math.round((pass.end - pass.start) / step)), chunk = (pass.end - pass.start) / count;
