@@ -169,8 +169,9 @@ mod tests {
     /// Rectangles whose edges lie on rows and columns of the lattice, and half-way between them.
     #[test]
     fn every_edge_is_seen_from_inside() {
-        for (width, height) in [(8.0, 5.0), (7.5, 12.5), (100.0, 36.0)] {
-            let half = dvec2(width, height) / 2.0;
+        let sizes = (4..40).flat_map(|columns| [1, 2, 3, 8].map(|of| (columns, 3 + columns / of)));
+        for (columns, rows) in sizes {
+            let half = 0.1875 * dvec2(f64::from(columns), f64::from(rows));
             let corners = [-half, dvec2(half.x, -half.y), half, dvec2(-half.x, half.y)];
             for turn in 0..4 {
                 let mut corners = corners;
