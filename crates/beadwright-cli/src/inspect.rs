@@ -1,10 +1,9 @@
 //! `beadwright inspect`.
 
-use crate::{convert, file, model, profile, program, progress};
+use crate::{convert, file, model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::export::toolpath;
-use beadwright::files::write_file;
 use beadwright::model::iges::{IgesCurve, IgesFile};
 use beadwright::model::{Import, Units, decoded, import_damaged, is_solid, outline, stl};
 use glam::DVec3;
@@ -13,12 +12,12 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// - for standard input, or a model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
     /// Write the mended solid as STL, in the units of the file; with --output.
     #[arg(long, requires = "output")]
     repair: bool,
-    /// File for the mended solid.
+    /// File for the mended solid; - for standard output.
     #[arg(long, short, value_name = "FILE", requires = "repair")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -51,7 +50,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(path) = &arguments.output {
         write_mended(path, &import)?;
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = say::done(arguments.output.as_deref().is_some_and(file::is_standard));
     if arguments.json {
         let value = serde_json::json!({
             "format": import.format, "units": import.units, "objects": import.objects, "min": low.to_array(), "max": high.to_array(), "volume": volume, "repair": repair,
@@ -84,11 +83,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Writes what the mending has left, as STL.
 fn write_mended(path: &Path, import: &Import) -> anyhow::Result<()> {
-    let is_stl = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
+    let is_stl = file::is_standard(path) || path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
     anyhow::ensure!(is_stl, "{}: the mended solid is written as STL; give a name that ends in .stl", path.display());
     let mesh = &import.mesh;
     let facets = mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize]));
-    Ok(write_file(path, &stl::write("mended by beadwright", facets))?)
+    file::write(path, &stl::write("mended by beadwright", facets))
 }
 
 /// What a drawing holds.

@@ -23,6 +23,7 @@ mod progress;
 mod reach;
 mod remedy;
 mod reproduce;
+mod say;
 mod simulate;
 mod studio;
 
@@ -38,6 +39,12 @@ struct Arguments {
     /// Most memory that may be used, GB; three quarters of the machine's if left out.
     #[arg(long, global = true, value_name = "GB", value_parser = parse_memory)]
     max_memory: Option<f64>,
+    /// Say only warnings and errors, besides what is asked for.
+    #[arg(long, short, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Tell how long each stage took.
+    #[arg(long, short, global = true)]
+    verbose: bool,
 }
 
 #[derive(Subcommand)]
@@ -83,6 +90,7 @@ enum Command {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     memory::watch(arguments.max_memory);
+    say::set(arguments.quiet, arguments.verbose);
     let result = match arguments.command {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

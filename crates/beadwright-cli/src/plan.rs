@@ -1,6 +1,6 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
-use crate::{model, profile, program, progress};
+use crate::{model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
@@ -219,14 +219,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let figures = files.judge.as_ref().map(|judge| *judge.total());
     let written = files.finish(&summary, &model.repair())?;
 
-    let mut out = std::io::stdout().lock();
     if arguments.json {
-        writeln!(out, "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
-    } else {
-        print_head(&mut out, &part, &profile, &model, &places)?;
-        print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &written)?;
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
+        return Ok(());
     }
-    Ok(())
+    print_head(&mut say::done(false), &part, &profile, &model, &places)?;
+    print_warnings(&profile, &model, &summary)?;
+    Ok(print_summary(&mut say::done(false), arguments, &summary, figures.as_ref(), &written)?)
 }
 
 /// Programs that nobody should start.
@@ -320,21 +319,26 @@ fn print_head(
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)
 }
 
+/// What is said even with `--quiet`.
+fn print_warnings(profile: &Profile, model: &Part, summary: &Summary) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let events = summary.warnings.summaries().map(|w| w.sentence());
+    let told =
+        profile.forbidden().into_iter().chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned());
+    for line in told {
+        writeln!(out, "warning: {line}")?;
+    }
+    Ok(())
+}
+
 fn print_summary(
     out: &mut impl Write,
     arguments: &Arguments,
-    profile: &Profile,
-    model: &Part,
     summary: &Summary,
     figures: Option<&Figures>,
     written: &Written,
 ) -> std::io::Result<()> {
     let m = &summary.metrics;
-    let events = summary.warnings.summaries().map(|w| w.sentence());
-    let forbidden = profile.forbidden().into_iter();
-    for line in forbidden.chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned()) {
-        writeln!(out, "warning: {line}")?;
-    }
     writeln!(out)?;
     for (name, value) in rows::totals(m).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;

@@ -11,6 +11,7 @@ mod fill;
 mod hybrid;
 mod layers;
 mod limits;
+mod missing;
 mod one_loop;
 mod order;
 mod read;
@@ -49,7 +50,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! plasma_304 {
     ($name:literal, $control:literal, $gcode:literal) => {
         concat!(
-            "# CNC plasma-arc deposition of stainless steel, after Liu et al. 2022 (doi 10.11951/j.issn.1005-0299.20210131).\n",
+            "#:schema ./profile.schema.json\n# CNC plasma-arc deposition of stainless steel, after Liu et al. 2022 (doi 10.11951/j.issn.1005-0299.20210131).\n",
             "# The paper gives single beads 3-6 mm wide and 1-2 mm high; what it does not give is marked \"ours\".\n",
             "name = \"",
             $name,
