@@ -16,6 +16,7 @@ mod heat;
 mod inspect;
 mod memory;
 mod model;
+mod parts;
 mod plan;
 mod profile;
 mod program;
@@ -24,6 +25,7 @@ mod reach;
 mod remedy;
 mod reproduce;
 mod say;
+mod several;
 mod simulate;
 mod studio;
 
@@ -92,7 +94,7 @@ fn main() -> ExitCode {
     memory::watch(arguments.max_memory);
     say::set(arguments.quiet, arguments.verbose);
     let result = match arguments.command {
-        Command::Plan(arguments) => plan::run(&arguments),
+        Command::Plan(arguments) => parts::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
