@@ -5,7 +5,8 @@ use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::export::toolpath;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::{Import, Units, decoded, import_damaged, is_solid, outline, stl};
+use beadwright::model::{Import, Units, decoded, holes, import_damaged, is_solid, outline, stl};
+use beadwright::report::overhang;
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,6 +21,12 @@ pub(crate) struct Arguments {
     /// File for the mended solid; - for standard output.
     #[arg(long, short, value_name = "FILE", requires = "repair")]
     output: Option<PathBuf>,
+    /// Also close holes up to this size, measured across, in the units of the file.
+    #[arg(long, value_name = "SIZE", requires = "repair", value_parser = parse_size)]
+    fill_holes: Option<f64>,
+    /// Write a picture of the faces that hang over, seen from below, as SVG.
+    #[arg(long, value_name = "FILE")]
+    overhang: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
     #[command(flatten)]
@@ -27,6 +34,11 @@ pub(crate) struct Arguments {
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
+}
+
+fn parse_size(text: &str) -> Result<f64, String> {
+    let size: f64 = text.parse().map_err(|_| "a size in the units of the file is expected".to_owned())?;
+    if size > 0.0 && size.is_finite() { Ok(size) } else { Err("it must be above 0".to_owned()) }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -45,6 +57,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let bytes = convert::solid(&arguments.file, bytes.to_vec())?;
     let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
+    let (import, told) = match arguments.fill_holes {
+        Some(widest) => {
+            let (import, closed) = holes::close(import, widest);
+            (import, closed.sentences())
+        }
+        None => (import, Vec::new()),
+    };
+    if let Some(path) = &arguments.overhang {
+        let picture = overhang::svg(&import.mesh).with_context(|| format!("{}", arguments.file.display()))?;
+        file::write(path, picture.as_bytes())?;
+    }
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
     if let Some(path) = &arguments.output {
@@ -72,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if repair.is_clean() {
         writeln!(out, "  The mesh is closed and clean.")?;
     }
-    for line in repair.sentences() {
+    for line in told.into_iter().chain(repair.sentences()) {
         writeln!(out, "  {line}")?;
     }
     if let Some(path) = &arguments.output {

@@ -15,6 +15,13 @@ fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
+/// The program that calls the others: that with the shortest name.
+fn main_program(folder: &Path) -> String {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let programs = files.filter(|path| path.extension().is_some_and(|end| end == "src"));
+    programs.map(|path| path.display().to_string()).min_by_key(String::len).unwrap()
+}
+
 /// Areas of the islands of a layer.
 fn areas(layer: &serde_json::Value) -> Vec<f64> {
     let ring = |points: &serde_json::Value| {
@@ -62,7 +69,7 @@ fn four_parts_grow_together() {
         assert!(points.into_iter().all(|p| p[2].as_f64().unwrap() == top));
     }
     // The program says the same, read back.
-    let read = beadwright(at, &["inspect", "all/CROSS_AND_3_MORE.src"]);
+    let read = beadwright(at, &["inspect", &main_program(&at.join("all"))]);
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
     assert!(beadwright(at, &["check", "all/plan.json"]).status.code().is_some());
 }
@@ -110,7 +117,7 @@ fn four_parts_are_welded_one_after_another() {
         let text = String::from_utf8_lossy(&said.stderr).into_owned();
         assert!(said.status.code().is_some() && !text.contains("panicked"), "{command}: {text}");
     }
-    let read = beadwright(at, &["inspect", "all/CROSS_AND_3_MORE.src"]);
+    let read = beadwright(at, &["inspect", &main_program(&at.join("all"))]);
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
     // Nearer to each other the torch would hit them; together they may stand so.
     let near = ["-o", "near", "--gap", "5"];
