@@ -179,7 +179,8 @@ fn all_missing_keys_are_told_at_once() {
         let error = Profile::parse(&bare.to_string()).unwrap_err().to_string();
         let told = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
         let mut told: Vec<&str> = told.split(", ").collect();
-        (told.sort_unstable(), needed.sort_unstable());
+        told.sort_unstable();
+        needed.sort_unstable();
         assert_eq!(told, needed, "{name}");
     }
     // Whole sections are told by their keys, and what is there is not.

@@ -29,14 +29,17 @@ pub struct Closed {
 impl Closed {
     /// What was done, as sentences.
     pub fn sentences(&self) -> Vec<String> {
-        let Self { holes, triangles, widest, left, widest_left } = self;
-        let closed = (*holes > 0).then(|| {
-            format!("{holes} holes closed with {triangles} triangles; the widest measures {widest:.3} across.")
+        let Self { holes, triangles, widest, left, widest_left } = *self;
+        let count = |n: usize, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
+        let closed = (holes > 0).then(|| {
+            let (holes, triangles) = (count(holes, "hole"), count(triangles, "triangle"));
+            format!("{holes} closed with {triangles}; the widest measures {widest:.3} across.")
         });
-        let open = (*left > 0).then(|| {
+        let open = (left > 0).then(|| {
+            let left = count(left, "hole");
             format!(
-                "{left} holes left open: wider than asked for, of more than {MOST_EDGES} edges, or touching others; the \
-                 widest measures {widest_left:.3} across."
+                "{left} left open: wider than asked for, of more than {MOST_EDGES} edges, or touching others; the widest \
+                 measures {widest_left:.3} across."
             )
         });
         closed.into_iter().chain(open).collect()

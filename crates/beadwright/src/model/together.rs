@@ -29,6 +29,9 @@ pub enum TogetherError {
     Empty,
 }
 
+/// A part's name and its solid.
+pub type Named = (String, Import);
+
 /// A part's name and its extent on the plate, mm.
 pub type Place = (String, Bounds);
 
@@ -36,7 +39,7 @@ pub type Place = (String, Bounds);
 ///
 /// # Errors
 /// [`TogetherError`].
-pub fn together(parts: Vec<(String, Import)>, arrangement: Arrangement) -> Result<(Import, Vec<Place>), TogetherError> {
+pub fn together(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Import, Vec<Place>), TogetherError> {
     let (parts, places) = arrange(parts, arrangement)?;
     let mut all = parts.into_iter().map(|(_, import)| import);
     let first = all.next().ok_or(TogetherError::Empty)?;
@@ -47,10 +50,7 @@ pub fn together(parts: Vec<(String, Import)>, arrangement: Arrangement) -> Resul
 ///
 /// # Errors
 /// [`TogetherError::Overlap`].
-pub fn arrange(
-    parts: Vec<(String, Import)>,
-    arrangement: Arrangement,
-) -> Result<(Vec<(String, Import)>, Vec<Place>), TogetherError> {
+pub fn arrange(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Vec<Named>, Vec<Place>), TogetherError> {
     let extents: Vec<Bounds> = parts.iter().map(|(_, import)| extent(&import.mesh)).collect();
     let moves = match arrangement {
         Arrangement::Rows { gap } => rows(&extents, gap),

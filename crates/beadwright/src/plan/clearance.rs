@@ -67,11 +67,12 @@ impl Clearance {
         for (standing, slabs) in before {
             let near = slabs.iter().filter_map(|(height, extent)| {
                 let (needs, has) = (torch.radius(height - layer.z)?, apart(&path, extent));
-                let (welded, standing) = (welded.clone(), standing.clone());
-                (has < needs).then(|| Close { welded, standing, z: layer.z, height: *height, needs, has })
+                (has < needs).then_some((needs, has, *height))
             });
-            if let Some(worst) = near.max_by(|a, b| a.lacks().total_cmp(&b.lacks())) {
-                note(&mut self.close, worst);
+            let worst = near.max_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)));
+            if let Some((needs, has, height)) = worst {
+                let (welded, standing) = (welded.clone(), standing.clone());
+                note(&mut self.close, Close { welded, standing, z: layer.z, height, needs, has });
             }
         }
     }
