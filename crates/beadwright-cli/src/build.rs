@@ -213,6 +213,6 @@ fn print(arguments: &Arguments, part: &str, layers: &[Layer], runs: &[Vec<Built>
         out,
         "\nRMS of the top against the end of the plan, in layer heights, over all builds; layers and mean of the first."
     )?;
-    writeln!(out, "the first build layer by layer in {}", arguments.output.display())?;
+    writeln!(crate::say::done(false), "the first build layer by layer in {}", arguments.output.display())?;
     Ok(())
 }

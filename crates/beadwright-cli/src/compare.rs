@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     print(&mut out, &entries)?;
     notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
-    writeln!(out, "\nheight fields in {}", arguments.output.display())?;
+    writeln!(crate::say::done(false), "\nheight fields in {}", arguments.output.display())?;
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! STEP and IGES solids become STL by a program of others, where one is installed: Open CASCADE is not linked in.
 
+use crate::file;
 use anyhow::Context;
 use beadwright::model::{self, is_iges};
 use beadwright::task::Task;
@@ -31,7 +32,14 @@ pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     };
     let folder = tempfile::tempdir().context("cannot make a temporary folder for the converted model")?;
     let stl = folder.path().join("model.stl");
-    let mut command = converter(path, &stl);
+    let from = match file::is_standard(path) {
+        true => folder.path().join(format!("model.{}", if is_step(&bytes) { "step" } else { "igs" })),
+        false => path.to_owned(),
+    };
+    if file::is_standard(path) {
+        std::fs::write(&from, &bytes).context("cannot write the model into a temporary folder")?;
+    }
+    let mut command = converter(&from, &stl);
     let program = command.get_program().to_string_lossy().into_owned();
     let done = command.stdin(Stdio::null()).output();
     let done = done.map_err(|error| {

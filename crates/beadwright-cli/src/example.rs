@@ -1,8 +1,8 @@
 //! `beadwright example`.
 
+use crate::{file, say};
 use anyhow::Context;
 use beadwright::example;
-use beadwright::files::write_file;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Name of the part.
     name: Option<String>,
-    /// File to write, or a folder for NAME.stl; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
+    /// File to write, - for standard output, or a folder for NAME.stl; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -26,11 +26,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names = || example::ALL.iter().map(|e| e.name).collect::<Vec<_>>().join(", ");
     let example = example::find(name)
         .with_context(|| format!("there is no example part \"{name}\". The parts are {}.", names()))?;
-    let file = format!("{name}.stl");
+    let usual = format!("{name}.stl");
     let path = match &arguments.output {
-        Some(folder) if folder.is_dir() => folder.join(file),
+        Some(folder) if folder.is_dir() => folder.join(usual),
         Some(path) => path.clone(),
-        None => PathBuf::from(file),
+        None => PathBuf::from(usual),
     };
     let wants_curves = path.extension().is_some_and(|e| e == "igs" || e == "iges");
     let bytes = match (wants_curves, example.iges()) {
@@ -38,7 +38,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         (true, Some(text)) => text.into_bytes(),
         (true, None) => anyhow::bail!("{name} is no thin wall and has no centre-lines; write it as STL"),
     };
-    write_file(&path, &bytes)?;
-    writeln!(out, "{}: {}", path.display(), example.about)?;
+    drop(out);
+    file::write(&path, &bytes)?;
+    writeln!(say::done(file::is_standard(&path)), "{}: {}", path.display(), example.about)?;
     Ok(())
 }

@@ -1,9 +1,8 @@
 //! `beadwright export`.
 
-use crate::{profile, program, progress};
+use crate::{file, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::export::{self, Beads, FORMATS, LAYER_FORMATS, LayerFormat};
-use beadwright::files::write_file;
 use beadwright::heat::{self, HeatSettings, History};
 use beadwright::layer::Layer;
 use beadwright::plan_file::PlanFile;
@@ -13,14 +12,18 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json, or toolpaths in 3MF.
+    /// plan.json, or toolpaths in 3MF; - for standard input.
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
     /// File to write; its ending tells the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
-    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf, .svg or .png (drawings of layers: NAME-001.dxf and so on).
+    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf, .svg or .png (drawings of layers: NAME-001.dxf and so on); - for
+    /// standard output, with --format.
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
+    /// Format of what goes to standard output, as the ending of a file that has it, such as csv.
+    #[arg(long, value_name = "ENDING")]
+    format: Option<String>,
     /// Draw only this layer, counted from 1, into the file itself; for .dxf, .svg and .png.
     #[arg(long, value_name = "LAYER")]
     layer: Option<usize>,
@@ -34,8 +37,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = source.plan().with_context(|| {
         format!("{}: plans are exported; give the plan.json of the program", arguments.plan.display())
     })?;
-    let extension = arguments.output.extension().map(|end| end.to_string_lossy().into_owned()).unwrap_or_default();
+    let standard = file::is_standard(&arguments.output);
+    let ending = arguments.output.extension().map(|end| end.to_string_lossy().into_owned());
+    let extension = arguments.format.clone().or(ending).unwrap_or_default();
+    anyhow::ensure!(
+        !standard || arguments.format.is_some(),
+        "--output -: the format of standard output is told by --format, such as --format csv"
+    );
     if let Some(format) = export::layer_format(&extension) {
+        anyhow::ensure!(
+            !standard || arguments.layer.is_some(),
+            "--output -: one layer is drawn there; --layer tells which"
+        );
         return drawings(arguments, plan, format);
     }
     let format = export::format(&extension).with_context(|| {
@@ -51,9 +64,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let heat = arguments.temperatures.then(|| heat_of(plan, &profile)).transpose()?.flatten();
     let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: heat.as_ref() };
     let bytes = (format.write)(&beads).with_context(|| format!("{}", arguments.plan.display()))?;
-    write_file(&arguments.output, &bytes)?;
+    file::write(&arguments.output, &bytes)?;
     let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
-    writeln!(std::io::stdout(), "{passes} passes in {} layers in {}", plan.layers.len(), arguments.output.display())?;
+    writeln!(say::done(standard), "{passes} passes in {} layers in {}", plan.layers.len(), arguments.output.display())?;
     Ok(())
 }
 
@@ -68,8 +81,8 @@ fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>
 
 /// One layer in the file, or each in one of its own.
 fn drawings(arguments: &Arguments, plan: &PlanFile, format: &LayerFormat) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    let write = |path: &Path, layer: &Layer| -> anyhow::Result<()> { Ok(write_file(path, &(format.write)(layer)?)?) };
+    let mut out = say::done(file::is_standard(&arguments.output));
+    let write = |path: &Path, layer: &Layer| -> anyhow::Result<()> { file::write(path, &(format.write)(layer)?) };
     if let Some(number) = arguments.layer {
         let layer = number.checked_sub(1).and_then(|index| plan.layers.get(index));
         let layer =

@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(writeln!(out, "{:#}", serde_json::json!(history))?);
     }
     print(&mut out, &loaded.name, &history, limits, settings.voxel())?;
-    Ok(writeln!(out, "\npictures in {}", arguments.output.display())?)
+    Ok(writeln!(crate::say::done(false), "\npictures in {}", arguments.output.display())?)
 }
 
 fn print(

@@ -1,26 +1,32 @@
 //! `beadwright inspect`.
 
-use crate::{convert, file, model, profile, program, progress};
+use crate::{convert, file, model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::export::toolpath;
-use beadwright::files::write_file;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::{Import, Units, decoded, import_damaged, is_solid, outline, stl};
+use beadwright::model::{Import, Units, decoded, holes, import_damaged, is_solid, outline, stl};
+use beadwright::report::overhang;
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// - for standard input, or a model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
     file: PathBuf,
     /// Write the mended solid as STL, in the units of the file; with --output.
     #[arg(long, requires = "output")]
     repair: bool,
-    /// File for the mended solid.
+    /// File for the mended solid; - for standard output.
     #[arg(long, short, value_name = "FILE", requires = "repair")]
     output: Option<PathBuf>,
+    /// Also close holes up to this size, measured across, in the units of the file.
+    #[arg(long, value_name = "SIZE", requires = "repair", value_parser = parse_size)]
+    fill_holes: Option<f64>,
+    /// Write a picture of the faces that hang over, seen from below, as SVG.
+    #[arg(long, value_name = "FILE")]
+    overhang: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
     #[command(flatten)]
@@ -28,6 +34,11 @@ pub(crate) struct Arguments {
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
+}
+
+fn parse_size(text: &str) -> Result<f64, String> {
+    let size: f64 = text.parse().map_err(|_| "a size in the units of the file is expected".to_owned())?;
+    if size > 0.0 && size.is_finite() { Ok(size) } else { Err("it must be above 0".to_owned()) }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -46,12 +57,23 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let bytes = convert::solid(&arguments.file, bytes.to_vec())?;
     let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
+    let (import, told) = match arguments.fill_holes {
+        Some(widest) => {
+            let (import, closed) = holes::close(import, widest);
+            (import, closed.sentences())
+        }
+        None => (import, Vec::new()),
+    };
+    if let Some(path) = &arguments.overhang {
+        let picture = overhang::svg(&import.mesh).with_context(|| format!("{}", arguments.file.display()))?;
+        file::write(path, picture.as_bytes())?;
+    }
     let (low, high) = import.mesh.bounds();
     let (size, volume, repair) = (high - low, import.mesh.volume(), &import.repair);
     if let Some(path) = &arguments.output {
         write_mended(path, &import)?;
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = say::done(arguments.output.as_deref().is_some_and(file::is_standard));
     if arguments.json {
         let value = serde_json::json!({
             "format": import.format, "units": import.units, "objects": import.objects, "min": low.to_array(), "max": high.to_array(), "volume": volume, "repair": repair,
@@ -73,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if repair.is_clean() {
         writeln!(out, "  The mesh is closed and clean.")?;
     }
-    for line in repair.sentences() {
+    for line in told.into_iter().chain(repair.sentences()) {
         writeln!(out, "  {line}")?;
     }
     if let Some(path) = &arguments.output {
@@ -84,11 +106,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Writes what the mending has left, as STL.
 fn write_mended(path: &Path, import: &Import) -> anyhow::Result<()> {
-    let is_stl = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
+    let is_stl = file::is_standard(path) || path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
     anyhow::ensure!(is_stl, "{}: the mended solid is written as STL; give a name that ends in .stl", path.display());
     let mesh = &import.mesh;
     let facets = mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize]));
-    Ok(write_file(path, &stl::write("mended by beadwright", facets))?)
+    file::write(path, &stl::write("mended by beadwright", facets))
 }
 
 /// What a drawing holds.

@@ -16,6 +16,7 @@ mod heat;
 mod inspect;
 mod memory;
 mod model;
+mod parts;
 mod plan;
 mod profile;
 mod program;
@@ -23,6 +24,8 @@ mod progress;
 mod reach;
 mod remedy;
 mod reproduce;
+mod say;
+mod several;
 mod simulate;
 mod studio;
 
@@ -38,6 +41,12 @@ struct Arguments {
     /// Most memory that may be used, GB; three quarters of the machine's if left out.
     #[arg(long, global = true, value_name = "GB", value_parser = parse_memory)]
     max_memory: Option<f64>,
+    /// Say only warnings and errors, besides what is asked for.
+    #[arg(long, short, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Tell how long each stage took.
+    #[arg(long, short, global = true)]
+    verbose: bool,
 }
 
 #[derive(Subcommand)]
@@ -83,8 +92,9 @@ enum Command {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     memory::watch(arguments.max_memory);
+    say::set(arguments.quiet, arguments.verbose);
     let result = match arguments.command {
-        Command::Plan(arguments) => plan::run(&arguments),
+        Command::Plan(arguments) => parts::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Which model, and how it is placed.
 #[derive(clap::Args, Clone)]
 pub(crate) struct Model {
-    /// The model: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
+    /// The model, or - for standard input: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
     /// centre-lines of walls, and DXF and SVG with outlines (--height).
     pub(crate) model: PathBuf,
     /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
@@ -113,7 +113,7 @@ impl Model {
 
     /// The part's name: the file name without its extension.
     pub(crate) fn part(&self) -> String {
-        self.model.file_stem().map_or("part".to_owned(), |stem| stem.to_string_lossy().into_owned())
+        file::stem(&self.model).unwrap_or_else(|| "part".to_owned())
     }
 
     /// The model, scaled to mm, turned, and placed on z = 0.

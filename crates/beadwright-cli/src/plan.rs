@@ -1,12 +1,13 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
-use crate::{model, profile, program, progress};
+use crate::several::{Build, Order, Several};
+use crate::{model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
 use beadwright::layer::Layer;
-use beadwright::model::together::{Arrangement, Place, together};
+use beadwright::model::together::Place;
 use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, PlanError, Sink, Summary};
@@ -17,42 +18,34 @@ use beadwright::task::Task;
 use beadwright::{dialect, fill};
 use glam::DVec3;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    model: model::Model,
-    /// Another part for the same build, turned and scaled alike; may be given several times. The parts stand in rows and grow
-    /// together, layer by layer.
-    #[arg(long, value_name = "MODEL")]
-    with: Vec<PathBuf>,
-    /// Distance between the parts of one build, mm.
-    #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = parse_gap, requires = "with")]
-    gap: f64,
-    /// Leave the parts of one build where their files have them, seen from above.
-    #[arg(long, requires = "with", conflicts_with = "gap")]
-    as_placed: bool,
+    pub(crate) model: model::Model,
+    #[command(flatten)]
+    pub(crate) several: Several,
     /// Profile: a built-in name (see `beadwright profile list`) or a TOML file.
     #[arg(long, short, default_value = "cmt-al2319-kuka", value_name = "NAME|FILE")]
-    profile: String,
+    pub(crate) profile: String,
     /// Height of a wall given by its centre-lines (IGES), mm; that of the highest of them if left out. Height of a part given
     /// by its outlines (DXF, SVG), mm.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
-    height: Option<f64>,
+    pub(crate) height: Option<f64>,
     #[arg(long, short, value_name = "NAME", help = strategy_help())]
-    strategy: Option<String>,
+    pub(crate) strategy: Option<String>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
     #[arg(long, value_name = "NAME|DIR", help = post_help())]
-    post: Vec<String>,
+    pub(crate) post: Vec<String>,
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Plan only what lies above this height of the placed part, mm: the cut comes to lie on the table.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
-    from_z: Option<f64>,
+    pub(crate) from_z: Option<f64>,
     /// Write the programs of these layers only, counted from 1, such as 10-20; plan.json and the report keep all layers.
     #[arg(long, value_name = "FIRST-LAST", value_parser = parse_layers, conflicts_with = "from_layer")]
     layers: Option<(u32, u32)>,
@@ -66,25 +59,25 @@ pub(crate) struct Arguments {
     /// Write programs that only move the torch, to run before the first bead: the same paths at the same speeds, but
     /// with arc, gas and wire always off. Their names begin with "dry_"; plan.json and the report stay as they are.
     #[arg(long)]
-    dry_run: bool,
+    pub(crate) dry_run: bool,
     /// Folder for the files that are written.
     #[arg(long, short, default_value = "beadwright-out", value_name = "DIR")]
-    output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Also write a picture of this layer, counted from 1, as SVG.
     #[arg(long, value_name = "LAYER")]
     picture: Vec<usize>,
     /// Skip the deposit model: faster, but no voids and no height fields in the report.
     #[arg(long)]
-    no_deposit: bool,
+    pub(crate) no_deposit: bool,
     /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
-    grid: Option<f64>,
+    pub(crate) grid: Option<f64>,
     /// Write the files even where the program would leave the part, be laid on nothing, or drag the torch over beads.
     #[arg(long)]
-    allow_findings: bool,
+    pub(crate) allow_findings: bool,
     /// Print the metrics as JSON instead of the summary.
     #[arg(long)]
-    json: bool,
+    pub(crate) json: bool,
     /// Number of threads; all of the machine's if left out. The result does not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -100,11 +93,6 @@ fn post_help() -> String {
          own, such as ./gantry",
         dialect::names().join(", ")
     )
-}
-
-fn parse_gap(text: &str) -> Result<f64, String> {
-    let gap: f64 = text.parse().map_err(|_| "a distance in mm is expected".to_owned())?;
-    if (0.0..=1000.0).contains(&gap) { Ok(gap) } else { Err("the gap must lie between 0 and 1000 mm".to_owned()) }
 }
 
 fn parse_height(text: &str) -> Result<f64, String> {
@@ -131,77 +119,87 @@ impl Arguments {
     /// The name of the build: that of its part, or of the first of several.
     fn name(&self) -> String {
         let first = self.model.part();
-        match self.with.len() {
+        match self.several.with.len() {
             0 => first,
             1 => format!("{first}_and_1_more"),
             more => format!("{first}_and_{more}_more"),
         }
     }
 
-    /// What is built, and where each of several parts stands.
-    fn parts(&self, bead_width: f64, task: &Task) -> anyhow::Result<(Part, Vec<Place>)> {
-        let first = self.model.part_placed(bead_width, self.height, task)?;
-        if self.with.is_empty() {
-            return Ok((first, Vec::new()));
+    /// What is built.
+    pub(crate) fn build(&self, bead_width: f64, task: &Task) -> anyhow::Result<Build> {
+        self.several.stand(&self.model, |model| {
+            let part = model.part_placed(bead_width, self.height, task)?;
+            match self.from_z {
+                Some(z) => part.above(z).with_context(|| format!("--from-z {z}")),
+                None => Ok(part),
+            }
+        })
+    }
+
+    /// The profile of that name with what was asked for.
+    pub(crate) fn profile(&self, name: &str) -> anyhow::Result<Profile> {
+        let mut profile = profile::load(name, &self.settings())?;
+        if !self.post.is_empty() {
+            profile.posts.clone_from(&self.post);
         }
-        let others = self.with.iter().map(|path| model::Model { model: path.clone(), ..self.model.clone() });
-        let mut parts = Vec::with_capacity(self.with.len() + 1);
-        for (model, placed) in [(self.model.clone(), Some(first))].into_iter().chain(others.map(|model| (model, None)))
-        {
-            let placed = placed.map_or_else(|| model.part_placed(bead_width, self.height, task), Ok)?;
-            let Part::Mesh(import) = placed else {
-                anyhow::bail!("{}: only solids stand together in one build", model.model.display())
-            };
-            parts.push((model.part(), import));
-        }
-        let arrangement = if self.as_placed { Arrangement::AsTheyAre } else { Arrangement::Rows { gap: self.gap } };
-        let (import, places) = together(parts, arrangement)?;
-        Ok((Part::Mesh(import), places))
+        Ok(profile)
+    }
+
+    /// The programs of a part beside others that stand that high, mm.
+    pub(crate) fn programs(
+        &self,
+        name: &str,
+        profile: &Profile,
+        part: &str,
+        standing: f64,
+    ) -> anyhow::Result<Programs> {
+        let base = if self.post.is_empty() { profile::folder(name) } else { PathBuf::new() };
+        let programs = if self.dry_run { profile.clone().dry_run() } else { profile.clone() };
+        let mut job = programs.job(part);
+        job.weld.standing = standing;
+        profile::programs(&profile.posts, &base, &job)
+    }
+
+    /// What is asked of the profile besides its name.
+    fn settings(&self) -> Vec<String> {
+        let strategy = self.strategy.iter().map(|s| format!("fill.strategy=\"{s}\""));
+        let literal = self.literal.then(|| "hybrid.literal=true".to_owned());
+        self.set.iter().cloned().chain(strategy).chain(literal).collect()
     }
 }
 
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+/// Sets the threads, and looks whether the arguments go together.
+pub(crate) fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(threads) = arguments.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
     }
-    let mut settings = arguments.set.clone();
-    settings.extend(arguments.strategy.iter().map(|s| format!("fill.strategy=\"{s}\"")));
-    settings.extend(arguments.literal.then(|| "hybrid.literal=true".to_owned()));
-    let mut profile = profile::load(&arguments.profile, &settings)?;
+    arguments.several.check()
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let profile = arguments.profile(&arguments.profile)?;
     let part = arguments.name();
-    let base = if arguments.post.is_empty() { profile::folder(&arguments.profile) } else { PathBuf::new() };
-    if !arguments.post.is_empty() {
-        profile.posts.clone_from(&arguments.post);
-    }
-    let programs = if arguments.dry_run { profile.clone().dry_run() } else { profile.clone() };
-    let programs = profile::programs(&profile.posts, &base, &programs.job(&part))?;
+    let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
 
     let (task, bar) = progress::task()?;
-    let (model, places) = arguments.parts(profile.bead.width, &task)?;
-    let model = match arguments.from_z {
-        Some(z) => model.above(z).with_context(|| format!("--from-z {z}"))?,
-        None => model,
-    };
+    let Build { whole: model, places, lowest_first } = arguments.build(profile.bead.width, &task)?;
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let (first, last) = arguments.layers.unwrap_or((arguments.from_layer, u32::MAX));
     let start = Start { layer: first as usize - 1, pass: arguments.from_pass as usize - 1, last: last as usize - 1 };
-    let mut files = Files {
-        folder: Folder::new(&arguments.output)?,
-        programs: Some(programs),
-        files: None,
-        pictures: &arguments.picture,
-        profile: &profile,
-        judge: (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS)),
-        start,
+    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let files = Files::new(&arguments.output, programs, &profile)?.judged(judge);
+    let mut files = Files { start, pictures: &arguments.picture, ..files };
+    let planned = match arguments.several.order {
+        Order::Layers => plan::plan_into(&part, &model, &profile, &task, &mut files),
+        Order::Parts => {
+            let solids: Vec<_> = lowest_first.iter().map(|(name, import)| (name.clone(), &import.mesh)).collect();
+            plan::parts_into(&part, &solids, &profile, &task, &mut files)
+        }
     };
-    let planned = plan::plan_into(&part, &model, &profile, &task, &mut files);
     bar.finish_and_clear();
-    let mut summary = planned.map_err(|error| match error {
-        PlanError::Sink(error) => error,
-        PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
-        other => anyhow::anyhow!("{}: {other}", arguments.model.model.display()),
-    })?;
+    let mut summary = planned.map_err(|error| refused(error, &arguments.model.model))?;
     anyhow::ensure!(
         start.layer < summary.metrics.layers,
         "{} {first} lies above the part, which has {} layers",
@@ -214,28 +212,35 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         return Err(Refused(summary.forbidden).into());
     }
-    let volumes = files.files.iter().flat_map(PlanFiles::notes);
-    summary.notes.splice(0..0, note.into_iter().chain(volumes));
-    let figures = files.judge.as_ref().map(|judge| *judge.total());
+    summary.notes.splice(0..0, note.into_iter().chain(files.notes()));
+    let figures = files.figures();
     let written = files.finish(&summary, &model.repair())?;
 
-    let mut out = std::io::stdout().lock();
     if arguments.json {
-        writeln!(out, "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
-    } else {
-        print_head(&mut out, &part, &profile, &model, &places)?;
-        print_summary(&mut out, arguments, &profile, &model, &summary, figures.as_ref(), &written)?;
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
+        return Ok(());
     }
-    Ok(())
+    print_head(&mut say::done(false), &part, &profile, &model, &places)?;
+    print_warnings(&profile, &model, &summary)?;
+    Ok(print_summary(&mut say::done(false), &arguments.output, &summary, figures.as_ref(), &written)?)
+}
+
+/// Why a model was not planned.
+pub(crate) fn refused(error: PlanError<anyhow::Error>, model: &Path) -> anyhow::Error {
+    match error {
+        PlanError::Sink(error) => error,
+        PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
+        other => anyhow::anyhow!("{}: {other}", model.display()),
+    }
 }
 
 /// Programs that nobody should start.
 #[derive(Debug, thiserror::Error)]
 #[error("nothing was written, since the program should not be started:\n{}\n--allow-findings writes it all the same.", .0.join("\n"))]
-pub(crate) struct Refused(Vec<String>);
+pub(crate) struct Refused(pub(crate) Vec<String>);
 
 /// Where the layers go.
-struct Files<'a> {
+pub(crate) struct Files<'a> {
     folder: Folder,
     /// The programs until the plan begins, then all files.
     programs: Option<Programs>,
@@ -247,9 +252,30 @@ struct Files<'a> {
     start: Start,
 }
 
-impl Files<'_> {
+impl<'a> Files<'a> {
+    /// Files for a folder, of all layers and without judgement.
+    pub(crate) fn new(folder: &Path, programs: Programs, profile: &'a Profile) -> anyhow::Result<Self> {
+        let (folder, programs) = (Folder::new(folder)?, Some(programs));
+        Ok(Self { folder, programs, files: None, pictures: &[], profile, judge: None, start: Start::default() })
+    }
+
+    /// The same, judged by the deposit model.
+    pub(crate) fn judged(self, judge: Option<Judge>) -> Self {
+        Self { judge, ..self }
+    }
+
+    /// What the deposit model says of all layers.
+    pub(crate) fn figures(&self) -> Option<Figures> {
+        self.judge.as_ref().map(|judge| *judge.total())
+    }
+
+    /// What people must know about the programs: sentences.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        self.files.iter().flat_map(PlanFiles::notes).collect()
+    }
+
     /// Writes what comes last, and moves everything into place.
-    fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Written> {
+    pub(crate) fn finish(mut self, summary: &Summary, repair: &RepairReport) -> anyhow::Result<Written> {
         if let Some(files) = self.files {
             self.folder.extend(files.end(summary, repair, self.judge.as_ref().map(Judge::total))?)?;
         }
@@ -300,7 +326,7 @@ pub(crate) fn deposit_settings(
 }
 
 /// Name and size, and where each of several parts stands.
-fn print_head(
+pub(crate) fn print_head(
     out: &mut impl Write,
     part: &str,
     profile: &Profile,
@@ -320,21 +346,26 @@ fn print_head(
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)
 }
 
-fn print_summary(
+/// What is said even with `--quiet`.
+pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let events = summary.warnings.summaries().map(|w| w.sentence());
+    let told =
+        profile.forbidden().into_iter().chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned());
+    for line in told {
+        writeln!(out, "warning: {line}")?;
+    }
+    Ok(())
+}
+
+pub(crate) fn print_summary(
     out: &mut impl Write,
-    arguments: &Arguments,
-    profile: &Profile,
-    model: &Part,
+    folder: &Path,
     summary: &Summary,
     figures: Option<&Figures>,
     written: &Written,
 ) -> std::io::Result<()> {
     let m = &summary.metrics;
-    let events = summary.warnings.summaries().map(|w| w.sentence());
-    let forbidden = profile.forbidden().into_iter();
-    for line in forbidden.chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned()) {
-        writeln!(out, "warning: {line}")?;
-    }
     writeln!(out)?;
     for (name, value) in rows::totals(m).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()) {
         writeln!(out, "  {name:<22} {value}")?;
@@ -344,7 +375,7 @@ fn print_summary(
     if !removed.is_empty() {
         writeln!(out, "{} files of an earlier plan removed: {}", removed.len(), shorten(removed))?;
     }
-    writeln!(out, "{} files in {}: {}", files.len(), arguments.output.display(), shorten(files))
+    writeln!(out, "{} files in {}: {}", files.len(), folder.display(), shorten(files))
 }
 
 /// All names, or the first and the last of many.

@@ -1,8 +1,9 @@
 //! `beadwright profile`, and how `--profile` and `--set` are read.
 
+use crate::file;
 use anyhow::Context;
 use beadwright::dialect::{DialectError, Job};
-use beadwright::files::{self, Programs};
+use beadwright::files::{self, Programs, write_file};
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,9 @@ pub(crate) enum Command {
     Show {
         /// Name of the profile.
         name: String,
+        /// Save it as this new file instead, with the schema beside it by which editors complete keys.
+        #[arg(long, short, value_name = "FILE")]
+        output: Option<PathBuf>,
     },
     /// Check a profile: a built-in name or a file.
     Check {
@@ -50,7 +54,8 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             let list: Vec<serde_json::Value> = known().into_iter().map(entry).collect();
             writeln!(out, "{:#}", serde_json::Value::from(list))?;
         }
-        Command::Show { name } => write!(out, "{}", Profile::built_in_text(name)?)?,
+        Command::Show { name, output: None } => write!(out, "{}", Profile::built_in_text(name)?)?,
+        Command::Show { name, output: Some(path) } => save(Profile::built_in_text(name)?, path)?,
         Command::Check { profile } => {
             let checked = load(profile, &[])?;
             // What `plan` would refuse for any part.
@@ -67,6 +72,16 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
         Command::Schema => writeln!(out, "{:#}", Profile::schema())?,
     }
     Ok(())
+}
+
+/// The file that the `#:schema` lines of profiles name.
+const SCHEMA: &str = "profile.schema.json";
+
+/// Writes a profile to be edited, and its schema beside it.
+fn save(text: &str, path: &Path) -> anyhow::Result<()> {
+    anyhow::ensure!(!path.exists(), "{}: there is such a file already; give the name of a new one", path.display());
+    write_file(path, text.as_bytes())?;
+    Ok(write_file(&path.with_file_name(SCHEMA), format!("{:#}\n", Profile::schema()).as_bytes())?)
 }
 
 /// Which profile a plan or a program is read with.
@@ -87,7 +102,7 @@ pub(crate) const USUAL: &str = "cmt-al2319-kuka";
 /// The profile with a built-in name or from a file, with `key=value` settings applied to it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
     let text = match file_of(profile) {
-        Some(path) => crate::file::text(&path)?,
+        Some(path) => file::text(&path)?,
         None => Profile::built_in_text(profile)?.to_owned(),
     };
     let parsed = parse(&text, &folder(profile)).with_context(|| profile.to_owned())?;
@@ -97,7 +112,10 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
 /// The file that a word means: a path, or the name of one of the user's own profiles.
 fn file_of(profile: &str) -> Option<PathBuf> {
     let path = Path::new(profile);
-    let is_file = path.extension().is_some_and(|e| e == "toml") || path.components().count() > 1 || path.is_file();
+    let is_file = file::is_standard(path)
+        || path.extension().is_some_and(|e| e == "toml")
+        || path.components().count() > 1
+        || path.is_file();
     let own = || own_folder().map(|folder| folder.join(format!("{profile}.toml"))).filter(|own| own.is_file());
     if is_file { Some(path.to_owned()) } else { own() }
 }
@@ -120,7 +138,7 @@ fn parse(text: &str, folder: &Path) -> Result<Profile, ProfileError> {
         let Some(named) = file_of(name) else { return Ok(Profile::built_in_text(name)?.to_owned()) };
         let path = if named.is_absolute() { named } else { folder.join(named) };
         folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
-        crate::file::text(&path).map_err(|error| ProfileError::File { path, reason: format!("{error:#}") })
+        file::text(&path).map_err(|error| ProfileError::File { path, reason: format!("{error:#}") })
     })
 }
 

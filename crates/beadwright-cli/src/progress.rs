@@ -1,25 +1,117 @@
-//! The progress bar and Ctrl-C (or SIGTERM), both through the library's task handle.
+//! The progress bar and Ctrl-C (or SIGTERM), both through the library's task handle; how long stages take and will take.
 
-use beadwright::task::Task;
+use crate::say::{Loudness, loudness};
+use beadwright::task::{Stage, Task};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
 static RUNNING: OnceLock<Task> = OnceLock::new();
 
+/// A stage that has run so long is asked how long it will go on.
+const SOON: Duration = Duration::from_secs(5);
+/// A rest that is told.
+const LONG: Duration = Duration::from_secs(60);
+
+/// The bar and the clock of a command.
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    clock: Arc<Mutex<Clock>>,
+}
+
 /// A task that draws a bar when standard error is a terminal, and that Ctrl-C cancels.
-pub(crate) fn task() -> anyhow::Result<(Task, ProgressBar)> {
-    let bar = if std::io::stderr().is_terminal() { ProgressBar::new(1000) } else { ProgressBar::hidden() };
+pub(crate) fn task() -> anyhow::Result<(Task, Bar)> {
+    let quiet = loudness() == Loudness::Quiet;
+    let drawn = std::io::stderr().is_terminal() && !quiet;
+    let bar = if drawn { ProgressBar::new(1000) } else { ProgressBar::hidden() };
     bar.set_style(ProgressStyle::with_template("{msg:>8} {wide_bar} {percent:>3} %")?);
-    let shown = bar.clone();
+    let clock = Arc::new(Mutex::new(Clock::new(Instant::now())));
+    let (shown, ticking) = (bar.clone(), clock.clone());
     let task = Task::with_progress(move |stage, fraction| {
         shown.set_message(stage.name());
         shown.set_position((fraction * 1000.0) as u64);
+        let told = ticking.lock().unwrap_or_else(PoisonError::into_inner).step(stage, fraction, Instant::now());
+        if let Some(told) = told.filter(|_| !quiet) {
+            shown.suspend(|| eprintln!("{told}"));
+        }
     });
     _ = RUNNING.set(task.clone());
     ctrlc::set_handler(stop)?;
-    Ok((task, bar))
+    Ok((task, Bar { bar, clock }))
+}
+
+impl Bar {
+    /// Takes the bar away, and tells with `--verbose` how long the stages took.
+    pub(crate) fn finish_and_clear(&self) {
+        self.bar.finish_and_clear();
+        if loudness() == Loudness::Verbose {
+            let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+            clock.stages(Instant::now()).iter().for_each(|line| eprintln!("{line}"));
+        }
+    }
+}
+
+/// Stages with the time spent in them.
+struct Clock {
+    begun: Instant,
+    /// The stage since when.
+    now: Option<(Stage, Instant)>,
+    spent: Vec<(Stage, Duration)>,
+    /// The last stage whose rest was told.
+    told: Option<Stage>,
+}
+
+impl Clock {
+    fn new(begun: Instant) -> Self {
+        Self { begun, now: None, spent: Vec::new(), told: None }
+    }
+
+    /// Takes note of a step; once a stage, a sentence where it will go on for long.
+    fn step(&mut self, stage: Stage, fraction: f64, at: Instant) -> Option<String> {
+        let since = match self.now {
+            Some((current, since)) if current == stage => since,
+            _ => {
+                self.close(at);
+                self.now = Some((stage, at));
+                at
+            }
+        };
+        let elapsed = at.saturating_duration_since(since);
+        if elapsed < SOON || !(fraction > 0.0 && fraction < 1.0) || self.told == Some(stage) {
+            return None;
+        }
+        let rest = elapsed.mul_f64((1.0 - fraction) / fraction);
+        if rest < LONG {
+            return None;
+        }
+        self.told = Some(stage);
+        let minutes = (rest.as_secs_f64() / 60.0).ceil();
+        Some(format!(
+            "{}: {:.0} % done, about {minutes:.0} min to go. Ctrl-C stops it.",
+            stage.name(),
+            100.0 * fraction
+        ))
+    }
+
+    /// Adds the time of the present stage to its sum.
+    fn close(&mut self, at: Instant) {
+        let Some((stage, since)) = self.now.take() else { return };
+        let spent = at.saturating_duration_since(since);
+        match self.spent.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, sum)) => *sum += spent,
+            None => self.spent.push((stage, spent)),
+        }
+    }
+
+    /// The stages in their order, and the whole.
+    fn stages(&mut self, at: Instant) -> Vec<String> {
+        self.close(at);
+        let line = |name: &str, spent: Duration| format!("{name:<8} {:>9.2} s", spent.as_secs_f64());
+        let all = at.saturating_duration_since(self.begun);
+        self.spent.iter().map(|(stage, spent)| line(stage.name(), *spent)).chain([line("all", all)]).collect()
+    }
 }
 
 /// Asked once, stops the task; asked again, ends at once. What it leaves, the next run clears.
@@ -34,4 +126,28 @@ fn stop() {
 /// Stops the task, if one runs.
 pub(crate) fn cancel() {
     RUNNING.get().into_iter().for_each(Task::cancel);
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_rest_is_told_once_a_stage() {
+        let begun = Instant::now();
+        let at = |seconds: u64| begun + Duration::from_secs(seconds);
+        let mut clock = Clock::new(begun);
+        assert_eq!(clock.step(Stage::Plan, 0.0, at(0)), None);
+        // Too early to tell, then 95 s to go for 5 s of work.
+        assert_eq!(clock.step(Stage::Plan, 0.04, at(4)), None);
+        let told = clock.step(Stage::Plan, 0.05, at(5)).unwrap();
+        assert!(told.starts_with("plan: 5 % done, about 2 min to go"), "{told}");
+        assert_eq!(clock.step(Stage::Plan, 0.06, at(6)), None);
+        // The next stage has less than a minute to go.
+        assert_eq!(clock.step(Stage::Deposit, 0.0, at(10)), None);
+        assert_eq!(clock.step(Stage::Deposit, 0.5, at(20)), None);
+        let lines = clock.stages(at(30));
+        assert_eq!(lines, ["plan         10.00 s", "deposit      20.00 s", "all          30.00 s"]);
+    }
 }

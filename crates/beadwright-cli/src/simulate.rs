@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(());
     }
     print(&mut out, &loaded, &entry)?;
-    writeln!(out, "\nheight fields in {}", arguments.output.display())?;
+    writeln!(crate::say::done(false), "\nheight fields in {}", arguments.output.display())?;
     Ok(())
 }
 

@@ -107,6 +107,27 @@ fn parts_are_cut_and_mended() {
     assert!(refused(at, &["inspect", "cross.stl", "--repair", "-o", "fixed.obj"]).contains(".stl"));
 }
 
+/// The example without its last facet.
+#[test]
+fn holes_are_filled_and_overhangs_drawn() {
+    let folder = planned();
+    let at = folder.path();
+    let mut bytes = fs::read(at.join("cross.stl")).unwrap();
+    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap());
+    bytes[80..84].copy_from_slice(&(count - 1).to_le_bytes());
+    bytes.truncate(bytes.len() - 50);
+    fs::write(at.join("open.stl"), bytes).unwrap();
+    let said = ok(at, &["inspect", "open.stl", "--repair", "--fill-holes", "500", "-o", "filled.stl"]);
+    assert!(said.contains("1 hole closed with 1 triangle;"), "{said}");
+    let [whole, filled] = ["cross.stl", "filled.stl"].map(|file| json(at, &["inspect", file, "--json"]));
+    assert_eq!(whole["volume"], filled["volume"]);
+    let said = ok(at, &["inspect", "open.stl", "--repair", "--fill-holes", "0.5", "-o", "open2.stl"]);
+    assert!(said.contains("1 hole left open") && said.contains("open edges"), "{said}");
+    assert!(refused(at, &["inspect", "open.stl", "--fill-holes", "5"]).contains("--repair"));
+    ok(at, &["inspect", "cross.stl", "--overhang", "below.svg"]);
+    assert!(fs::read_to_string(at.join("below.svg")).unwrap().contains("on the plate: "));
+}
+
 #[test]
 fn programs_of_some_layers_only() {
     let folder = planned();

@@ -15,6 +15,13 @@ fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
+/// The program that calls the others: that with the shortest name.
+fn main_program(folder: &Path) -> String {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let programs = files.filter(|path| path.extension().is_some_and(|end| end == "src"));
+    programs.map(|path| path.display().to_string()).min_by_key(String::len).unwrap()
+}
+
 /// Areas of the islands of a layer.
 fn areas(layer: &serde_json::Value) -> Vec<f64> {
     let ring = |points: &serde_json::Value| {
@@ -62,9 +69,7 @@ fn four_parts_grow_together() {
         assert!(points.into_iter().all(|p| p[2].as_f64().unwrap() == top));
     }
     // The program says the same, read back.
-    let programs = fs::read_dir(at.join("all")).unwrap().map(|entry| entry.unwrap().path());
-    let main = programs.into_iter().find(|path| path.extension().is_some_and(|e| e == "src")).unwrap();
-    let read = beadwright(at, &["inspect", main.to_str().unwrap()]);
+    let read = beadwright(at, &["inspect", &main_program(&at.join("all"))]);
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
     assert!(beadwright(at, &["check", "all/plan.json"]).status.code().is_some());
 }
@@ -79,4 +84,86 @@ fn parts_in_each_others_way_are_refused() {
     let said = beadwright(at, &["plan", "cross.stl", "--with", "gear.stl", "--as-placed", "-o", "all"]);
     let text = String::from_utf8_lossy(&said.stderr).into_owned();
     assert!(said.status.code() == Some(1) && text.contains("overlap") && !at.join("all").exists(), "{text}");
+}
+
+/// The four parts in a folder.
+fn parts(at: &Path) {
+    for name in PARTS {
+        assert!(beadwright(at, &["example", name, "-o", &format!("{name}.stl")]).status.success());
+    }
+}
+
+const PLAN: [&str; 8] =
+    ["plan", "cross.stl", "--with=gear.stl", "--with=star.stl", "--with=vase.stl", "--no-deposit", "-s", "contour"];
+
+/// Each of them from its first layer to its last.
+#[test]
+fn four_parts_are_welded_one_after_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    parts(at);
+    let apart = ["--order", "parts", "--gap", "120"];
+    let said = beadwright(at, &[&PLAN[..], &apart, &["-o", "all"]].concat());
+    let text = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(said.status.success(), "{text}{}", String::from_utf8_lossy(&said.stderr));
+    let report = fs::read_to_string(at.join("all/report.html")).unwrap();
+    assert!(PARTS.iter().all(|name| text.contains(&format!("{name} (layers ")) && report.contains(name)), "{text}");
+    let all = json(&at.join("all/plan.json"));
+    let z: Vec<f64> = all["layers"].as_array().unwrap().iter().map(|layer| layer["z"].as_f64().unwrap()).collect();
+    assert_eq!(z.windows(2).filter(|pair| pair[1] <= pair[0]).count(), 3, "{z:?}");
+    // What follows a plan understands this one.
+    for command in ["check", "inspect", "simulate", "heat", "build"] {
+        let said = beadwright(at, &[command, "all/plan.json"]);
+        let text = String::from_utf8_lossy(&said.stderr).into_owned();
+        assert!(said.status.code().is_some() && !text.contains("panicked"), "{command}: {text}");
+    }
+    let read = beadwright(at, &["inspect", &main_program(&at.join("all"))]);
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    // Nearer to each other the torch would hit them; together they may stand so.
+    let near = ["-o", "near", "--gap", "5"];
+    let refused = beadwright(at, &[&PLAN[..], &near, &["--order", "parts"]].concat());
+    let text = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(3) && !at.join("near").exists(), "{text}");
+    assert!(text.contains("The torch would hit") && text.contains("mm farther apart"), "{text}");
+    assert!(beadwright(at, &[&PLAN[..], &near].concat()).status.success());
+}
+
+/// Programs and plans by part, one of them with another profile.
+#[test]
+fn each_part_has_programs_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    parts(at);
+    let plan = ["plan", "cross.stl", "--with=gear.stl:profile=cmt-steel-abb", "--with=star.stl", "--no-deposit"];
+    let each = ["--order", "parts", "--programs", "parts", "--gap", "150", "-o", "out"];
+    let said = beadwright(at, &[&plan[..], &each].concat());
+    let text = String::from_utf8_lossy(&said.stdout).into_owned();
+    assert!(said.status.success(), "{text}{}", String::from_utf8_lossy(&said.stderr));
+    let mut folders: Vec<String> =
+        fs::read_dir(at.join("out")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    folders.sort();
+    let of = |name: &str| folders.iter().find(|folder| folder.ends_with(name)).unwrap().clone();
+    assert_eq!(folders.len(), 3);
+    let mut heights = Vec::new();
+    for name in ["cross", "gear", "star"] {
+        let plan = json(&at.join("out").join(of(name)).join("plan.json"));
+        let steel = if name == "gear" { "cmt-steel-abb" } else { "cmt-al2319-kuka" };
+        assert_eq!((plan["part"].as_str(), plan["profile"]["name"].as_str()), (Some(name), Some(steel)));
+        heights.push((of(name), plan["layers"].as_array().unwrap().last().unwrap()["z"].as_f64().unwrap()));
+    }
+    // The lowest comes first.
+    heights.sort_by(|a, b| a.0.cmp(&b.0));
+    assert!(heights.windows(2).all(|pair| pair[0].1 <= pair[1].1 + 2.0), "{heights:?}");
+    assert!(at.join("out").join(of("gear")).join("gear.mod").exists() || text.contains(".mod"), "{text}");
+    // One that cannot be welded keeps the others from being written.
+    let near = ["--order", "parts", "--programs", "parts", "--gap", "1", "-o", "near"];
+    assert_eq!(beadwright(at, &[&plan[..], &near].concat()).status.code(), Some(3));
+    assert!(!at.join("near").exists());
+    let refused = |arguments: &[&str], words: &str| {
+        let said = beadwright(at, &[&plan[..], arguments].concat());
+        let text = String::from_utf8_lossy(&said.stderr).into_owned();
+        assert!(said.status.code() == Some(1) && text.contains(words), "{text}");
+    };
+    refused(&["--programs", "parts"], "--order parts");
+    refused(&["--order", "parts"], "--programs parts");
 }

@@ -153,7 +153,43 @@ fn missing_keys_are_named_at_their_section() {
         check_text(&edited, line_of(&edited, &format!("\n[{section}]\n")) + 1, &[&format!("\"{key}\" is missing")]);
     }
     let error = Profile::parse(text(CNC).split("[travel]").next().unwrap()).unwrap_err().to_string();
-    assert!(error.contains("the key \"travel\" is missing"), "{error}");
+    let keys = ["travel.clearance", "travel.speed"];
+    assert!(keys.iter().all(|key| error.contains(key)) && error.contains("keys are missing: "), "{error}");
+}
+
+#[test]
+fn all_missing_keys_are_told_at_once() {
+    for (name, full) in BUILT_IN {
+        // What a profile without one key lacks, it lacks together with all others.
+        let document: DocumentMut = full.parse().unwrap();
+        let alone = |section: &str, key: &str| {
+            let mut without = document.clone();
+            without[section].as_table_mut().unwrap().remove(key);
+            Profile::parse(&without.to_string()).is_err_and(|error| error.to_string().contains("is missing here"))
+        };
+        let mut bare = document.clone();
+        let mut needed = Vec::new();
+        for (section, item) in document.iter() {
+            let Some(table) = item.as_table() else { continue };
+            for (key, _) in table.iter().filter(|(key, _)| alone(section, key)) {
+                bare[section].as_table_mut().unwrap().remove(key);
+                needed.push(format!("{section}.{key}"));
+            }
+        }
+        let error = Profile::parse(&bare.to_string()).unwrap_err().to_string();
+        let told = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
+        let mut told: Vec<&str> = told.split(", ").collect();
+        told.sort_unstable();
+        needed.sort_unstable();
+        assert_eq!(told, needed, "{name}");
+    }
+    // Whole sections are told by their keys, and what is there is not.
+    let error = Profile::parse("name = \"empty\"\n[wire]\ndiameter = 1.2\n").unwrap_err().to_string();
+    assert!(error.starts_with("line 1 of the profile: ") || error.starts_with("line 2 of the profile: "), "{error}");
+    for key in ["description", "posts", "wire.density", "process.deposition_speed", "bead.width", "travel.clearance"] {
+        assert!(error.contains(&format!(" {key}")), "{key}: {error}");
+    }
+    assert!(!error.contains("wire.diameter") && !error.contains("name,"), "{error}");
 }
 
 #[test]
@@ -240,9 +276,7 @@ fn what_is_no_toml_is_refused_with_its_line() {
     check(KUKA, "[bead]", "[bead", &[]);
     check(KUKA, "height = 2.0", "height = 2,0", &[]);
     check(KUKA, "density = 2.82", "diameter = 1.4", &["duplicate key"]);
-    assert!(
-        Profile::parse("").unwrap_err().to_string().starts_with("line 1 of the profile: the key \"name\" is missing")
-    );
+    assert!(Profile::parse("").unwrap_err().to_string().contains("keys are missing: name, description"));
 }
 
 /// Sets `section.key` in a built-in profile and expects it to be called impossible, on its line.
@@ -553,6 +587,22 @@ mod schema {
         });
         // Twelve sections and what is in them.
         assert!(count > 60, "{count}");
+    }
+
+    /// Editors read the schema beside the profile that a `#:schema` line names.
+    #[test]
+    fn the_schema_beside_the_profiles_is_that_of_the_library() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/profile.schema.json");
+        let text = format!("{:#}\n", Profile::schema());
+        if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|value| value == "write") {
+            std::fs::write(&path, &text).unwrap();
+        }
+        assert_eq!(std::fs::read_to_string(path).unwrap(), text, "BEADWRIGHT_GOLDEN=write writes it anew");
+        for (name, text) in BUILT_IN {
+            assert!(text.starts_with("#:schema ./profile.schema.json\n"), "{name}");
+            let without = text.split_once('\n').unwrap().1;
+            assert_eq!(Profile::parse(without).unwrap(), Profile::parse(text).unwrap(), "{name}");
+        }
     }
 
     #[test]

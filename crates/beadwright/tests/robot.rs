@@ -90,6 +90,58 @@ fn the_abb_stands_as_its_maker_tells() {
     assert!(a.rotation.angle_between(b.rotation) < 1e-7 && a.position.distance(b.position) > 300.0);
 }
 
+/// Poses worked out by hand from the axes of their descriptions: all joints at zero, straight up, turned, hand down.
+#[test]
+fn arms_for_arc_welding_stand_as_described() {
+    let abb = bare("abb-irb2600-12-165");
+    stands(&abb, [0.0; 6], [1030.0, 0.0, 1260.0], DVec3::X);
+    stands(&abb, [0.0, 0.0, -90.0, 0.0, 0.0, 0.0], [35.0, 0.0, 2025.0], DVec3::Z);
+    stands(&abb, [90.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1030.0, 1260.0], DVec3::Y);
+    stands(&abb, [0.0, 0.0, 0.0, 0.0, 90.0, 0.0], [945.0, 0.0, 1175.0], DVec3::NEG_Z);
+    let kuka = bare("kuka-kr8-r1440-arc");
+    stands(&kuka, [0.0, -90.0, 0.0, 0.0, 0.0, 0.0], [-40.0, 0.0, 1742.0], DVec3::Z);
+    stands(&kuka, [0.0, -90.0, 90.0, 0.0, 0.0, 0.0], [877.0, 0.0, 1245.0], DVec3::X);
+    stands(&kuka, [0.0; 6], [1487.0, 0.0, 635.0], DVec3::X);
+    stands(&kuka, [90.0, -90.0, 90.0, 0.0, 0.0, 0.0], [0.0, -877.0, 1245.0], DVec3::NEG_Y);
+    stands(&kuka, [0.0, -90.0, 90.0, 0.0, 90.0, 0.0], [797.0, 0.0, 1165.0], DVec3::NEG_Z);
+    let fanuc = bare("fanuc-arc-mate-100id");
+    stands(&fanuc, [0.0; 6], [850.0, 0.0, 1285.0], DVec3::X);
+    stands(&fanuc, [0.0, 0.0, 90.0, 0.0, 0.0, 0.0], [-120.0, 0.0, 1865.0], DVec3::Z);
+    stands(&fanuc, [90.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 850.0, 1285.0], DVec3::Y);
+    stands(&fanuc, [0.0, 0.0, 0.0, 0.0, -90.0, 0.0], [775.0, 0.0, 1210.0], DVec3::NEG_Z);
+    // J2 moves the forearm, and does not turn it; at rest the flange's x axis points up.
+    let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+    stands(&fanuc, [0.0, 30.0, 0.0, 0.0, 0.0, 0.0], [850.0 + 640.0 * sin, 0.0, 645.0 + 640.0 * cos], DVec3::X);
+    assert!((fanuc.arm().forward(&[0.0; 6]).rotation * DVec3::X).distance(DVec3::Z) < 1e-12);
+    // Any pose, worked out from the descriptions by another program; J3 of the description is J3 + J2 on the pendant.
+    for (cell, joints, at, x, z) in [
+        (
+            &kuka,
+            [10.0, -70.0, 60.0, 20.0, 30.0, 40.0],
+            [1016.307, -193.094, 1288.914],
+            [-0.446748, -0.764968, -0.463939],
+            [0.890564, -0.330679, -0.312325],
+        ),
+        (
+            &fanuc,
+            [10.0, 20.0, -15.0, 25.0, -40.0, 35.0],
+            [1052.061, 164.818, 1001.512],
+            [0.447725, 0.876089, 0.178913],
+            [0.627385, -0.16522, -0.76098],
+        ),
+    ] {
+        let flange = cell.arm().forward(&joints);
+        assert!(flange.position.distance(at.into()) < 2e-3, "{}: {}", cell.name, flange.position);
+        assert!((flange.rotation * DVec3::X).distance(x.into()) < 2e-6, "{}", cell.name);
+        assert!((flange.rotation * DVec3::Z).distance(z.into()) < 2e-6, "{}", cell.name);
+    }
+    // Stretched out, the wrist is as far from axis 1 as the makers tell, mm.
+    for (cell, reach) in [(&abb, 1653.0), (&kuka, 1441.0), (&fanuc, 1441.0)] {
+        let Shape::Opw(arm) = &cell.arm.shape else { panic!("lengths") };
+        assert!((arm.a1 + arm.c2 + arm.c3.hypot(arm.a2) - reach).abs() < 1.0, "{}", cell.name);
+    }
+}
+
 /// Numbers from 0 to 1, always the same ones.
 fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;

@@ -18,7 +18,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut below = 0.0;
     for layer in &subject.layers {
-        let gap = layer.z - layer.height - below;
+        let bottom = layer.z - layer.height;
+        // On the plate another part may begin.
+        let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - below };
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
             let way = if gap < 0.0 { "inside" } else { "above" };
             findings.push(Finding::of_layer(

@@ -22,6 +22,7 @@ pub(crate) mod adjacency;
 mod amf;
 pub mod cut;
 mod formats;
+pub mod holes;
 pub mod iges;
 pub(crate) mod merge_vertices;
 mod obj;

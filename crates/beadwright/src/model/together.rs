@@ -29,6 +29,9 @@ pub enum TogetherError {
     Empty,
 }
 
+/// A part's name and its solid.
+pub type Named = (String, Import);
+
 /// A part's name and its extent on the plate, mm.
 pub type Place = (String, Bounds);
 
@@ -36,7 +39,18 @@ pub type Place = (String, Bounds);
 ///
 /// # Errors
 /// [`TogetherError`].
-pub fn together(parts: Vec<(String, Import)>, arrangement: Arrangement) -> Result<(Import, Vec<Place>), TogetherError> {
+pub fn together(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Import, Vec<Place>), TogetherError> {
+    let (parts, places) = arrange(parts, arrangement)?;
+    let mut all = parts.into_iter().map(|(_, import)| import);
+    let first = all.next().ok_or(TogetherError::Empty)?;
+    Ok((all.fold(first, joined), places))
+}
+
+/// The parts moved to where they stand.
+///
+/// # Errors
+/// [`TogetherError::Overlap`].
+pub fn arrange(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Vec<Named>, Vec<Place>), TogetherError> {
     let extents: Vec<Bounds> = parts.iter().map(|(_, import)| extent(&import.mesh)).collect();
     let moves = match arrangement {
         Arrangement::Rows { gap } => rows(&extents, gap),
@@ -48,13 +62,12 @@ pub fn together(parts: Vec<(String, Import)>, arrangement: Arrangement) -> Resul
     if let Some((a, b)) = crowded(&places) {
         return Err(TogetherError::Overlap(a, b));
     }
-    let mut all = parts.into_iter().zip(moves).map(|((name, mut import), by)| {
+    let moved = parts.into_iter().zip(moves).map(|((name, mut import), by)| {
         import.mesh.vertices.iter_mut().for_each(|vertex| *vertex += by.extend(0.0));
-        import.objects = vec![Object { name, triangles: import.repair.triangles_read }];
-        import
+        import.objects = vec![Object { name: name.clone(), triangles: import.repair.triangles_read }];
+        (name, import)
     });
-    let first = all.next().ok_or(TogetherError::Empty)?;
-    Ok((all.fold(first, joined), places))
+    Ok((moved.collect(), places))
 }
 
 fn extent(mesh: &Mesh) -> Bounds {

@@ -6,6 +6,8 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
+//! | [`clearance`] | whether the torch has room beside parts that stand |
+//! | `parts` | parts that are welded one after another |
 //! | [`choice`] | which strategy a part is planned with |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
@@ -13,12 +15,15 @@
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 pub mod choice;
+pub mod clearance;
 mod filled;
 mod levels;
+mod parts;
 mod preview;
 mod relight;
 mod scan_lines;
 
+pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use scan_lines::{ToFill, raster_angle};
 
@@ -149,6 +154,9 @@ pub enum PlanError<E> {
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]
     Empty(String),
+    /// Parts cannot be welded one after another with this profile.
+    #[error("the parts cannot be welded one after another: {0}")]
+    Parts(&'static str),
     /// The sink failed.
     #[error(transparent)]
     Sink(E),

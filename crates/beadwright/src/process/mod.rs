@@ -3,10 +3,12 @@
 mod by_layer;
 mod cost;
 mod start_stop;
+mod torch_shape;
 
 pub use by_layer::LayerProcess;
 pub use cost::Cost;
 pub use start_stop::StartStop;
+pub use torch_shape::TorchShape;
 
 use crate::limit::{Limit, TINY, limits};
 use serde::{Deserialize, Serialize};

@@ -33,6 +33,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.slice.limits(w),
         p.check.limits(),
         p.travel.limits(),
+        p.torch.iter().flat_map(|torch| torch.limits()).collect(),
         p.program.limits(w),
         p.safety.limits(),
         p.weave.iter().flat_map(|weave| weave.limits()).collect(),

@@ -11,6 +11,7 @@ mod fill;
 mod hybrid;
 mod layers;
 mod limits;
+mod missing;
 mod one_loop;
 mod order;
 mod read;
@@ -38,7 +39,7 @@ use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
-use crate::process::{Cost, Process, StartStop, Travel, Wire};
+use crate::process::{Cost, Process, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
@@ -49,7 +50,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! plasma_304 {
     ($name:literal, $control:literal, $gcode:literal) => {
         concat!(
-            "# CNC plasma-arc deposition of stainless steel, after Liu et al. 2022 (doi 10.11951/j.issn.1005-0299.20210131).\n",
+            "#:schema ./profile.schema.json\n# CNC plasma-arc deposition of stainless steel, after Liu et al. 2022 (doi 10.11951/j.issn.1005-0299.20210131).\n",
             "# The paper gives single beads 3-6 mm wide and 1-2 mm high; what it does not give is marked \"ours\".\n",
             "name = \"",
             $name,
@@ -120,6 +121,8 @@ pub struct Profile {
     pub check: CheckLimits,
     /// Moves with the arc off.
     pub travel: Travel,
+    /// How much room the torch takes, for parts that are welded one after another; optional.
+    pub torch: Option<TorchShape>,
     /// How paths become moves of a program; optional.
     #[serde(default)]
     pub program: ProgramSettings,
@@ -345,7 +348,8 @@ impl Profile {
     /// Settings for welding.
     pub fn weld_settings(&self) -> WeldSettings {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
-        let weld = WeldSettings { process, ends, travel: self.travel.clone(), motion: self.motion, arc_end_time: None };
+        let (travel, motion) = (self.travel.clone(), self.motion);
+        let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0 };
         let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
         WeldSettings { arc_end_time, ..weld }
     }

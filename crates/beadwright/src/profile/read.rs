@@ -1,5 +1,6 @@
 //! Reads TOML text into a [`Profile`], with errors that name the line and the nearest valid word.
 
+use super::missing::missing;
 use super::{BUILT_IN, Profile, limits};
 use crate::dialect::{self, Sections};
 use crate::limit::Broken;
@@ -78,10 +79,7 @@ pub(super) fn parse(
         }
         ancestors.push(text);
     }
-    let profile = deserialize(text, &ancestors).map_err(|e| {
-        let line = e.span().map_or(1, |span| line_of(text, span.start));
-        ProfileError::Text { line, reason: explain(e.message()) }
-    })?;
+    let profile = deserialize(text, &ancestors).map_err(|e| refused(&e, text, &ancestors))?;
     match limits::first_broken(&profile) {
         None => Ok(profile),
         Some(Broken { key, value, reason }) => {
@@ -138,8 +136,33 @@ fn fill_in<'a>(table: &mut DeTable<'a>, base: DeTable<'a>) {
     }
 }
 
-/// The sections of dialects are taken out and read separately, so that a profile need not know each of them.
 fn deserialize(text: &str, ancestors: &[String]) -> Result<Profile, toml::de::Error> {
+    let [general, sections] = tables(text, ancestors)?;
+    let dialects = Sections::deserialize(Deserializer::from(sections))?;
+    Ok(Profile { dialects, ..Profile::deserialize(Deserializer::from(general))? })
+}
+
+/// Why a profile cannot be read: all the keys that it lacks, or the first fault.
+fn refused(error: &toml::de::Error, text: &str, ancestors: &[String]) -> ProfileError {
+    let line = error.span().map_or(1, |span| line_of(text, span.start));
+    let first = ProfileError::Text { line, reason: explain(error.message()) };
+    let Ok([general, sections]) = tables(text, ancestors) else { return first };
+    if !error.message().starts_with("missing field") {
+        return first;
+    }
+    let lacks = [missing::<Profile>(general.into_inner()), missing::<Sections>(sections.into_inner())].concat();
+    match &lacks[..] {
+        [] | [_] => first,
+        [lack, ..] => ProfileError::Text {
+            line: line_of_key(text, lack),
+            reason: format!("{} keys are missing: {}.", lacks.len(), lacks.join(", ")),
+        },
+    }
+}
+
+/// The tables of a profile and of its dialects, whose sections are taken out and read separately, so that a profile need
+/// not know each of them.
+fn tables<'a>(text: &'a str, ancestors: &'a [String]) -> Result<[Spanned<DeTable<'a>>; 2], toml::de::Error> {
     let mut general = DeTable::parse(text)?;
     for ancestor in ancestors {
         fill_in(general.get_mut(), DeTable::parse(ancestor)?.into_inner());
@@ -150,8 +173,7 @@ fn deserialize(text: &str, ancestors: &[String]) -> Result<Profile, toml::de::Er
             sections.get_mut().insert(key, section);
         }
     }
-    let dialects = Sections::deserialize(Deserializer::from(sections))?;
-    Ok(Profile { dialects, ..Profile::deserialize(Deserializer::from(general))? })
+    Ok([general, sections])
 }
 
 pub(super) fn unknown_name(name: &str) -> ProfileError {

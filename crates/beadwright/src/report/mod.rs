@@ -9,6 +9,7 @@
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
+//! | [`overhang`] | faces that hang over, seen from below |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
@@ -16,6 +17,7 @@
 pub mod angles;
 pub mod bead_window;
 pub mod encode;
+pub mod overhang;
 pub mod plot;
 pub mod rows;
 pub mod sheet;

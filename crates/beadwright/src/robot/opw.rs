@@ -49,6 +49,11 @@ impl std::fmt::Debug for Opw {
     }
 }
 
+/// What joint 3 of a parallelogram shows, so that it is the forearm's angle to the floor, per degree of joint 2.
+fn coupling(signs: [i8; 6]) -> f64 {
+    f64::from(signs[1] * signs[2])
+}
+
 impl Opw {
     /// An arm; whole turns are dropped from the offsets, °.
     pub(super) fn new(lengths: Lengths, offsets: Joints, signs: [i8; 6], parallelogram: bool) -> Self {
@@ -68,7 +73,7 @@ impl Opw {
         };
         let plain = Arc::new(OPWKinematics::new(parameters));
         let kinematics: Arc<dyn Kinematics> = match parallelogram {
-            true => Arc::new(Parallelogram { robot: plain, scaling: 1.0, driven: 1, coupled: 2 }),
+            true => Arc::new(Parallelogram { robot: plain, scaling: coupling(signs), driven: 1, coupled: 2 }),
             false => plain,
         };
         Self { lengths, offsets, signs, parallelogram, kinematics }
@@ -88,7 +93,7 @@ impl Opw {
     fn model(&self, joints: &Joints) -> [f64; 6] {
         let mut model = *joints;
         if self.parallelogram {
-            model[2] -= model[1];
+            model[2] -= coupling(self.signs) * model[1];
         }
         for ((angle, sign), offset) in model.iter_mut().zip(self.signs).zip(self.offsets) {
             *angle = (*angle * f64::from(sign) - offset).to_radians();

@@ -35,4 +35,6 @@ pub struct WeldSettings {
     /// How long the torch stands at the end of a pass after its crater is filled, s; by default the time for arc end, gas
     /// postflow and drawing the wire back.
     pub arc_end_time: Option<f64>,
+    /// Height of what stands beside the part before its first pass, mm; the way to that pass leads over it.
+    pub standing: f64,
 }

@@ -22,6 +22,10 @@ pub struct Torch {
     at: Option<DVec3>,
     /// Height of the last pass's end, mm: travels keep clear of it.
     low: f64,
+    /// Height of all that stands, mm: the way to another part leads over it.
+    highest: f64,
+    /// Whether a layer begins.
+    fresh: bool,
     /// Time since the layer began, s.
     seconds: f64,
 }
@@ -82,13 +86,15 @@ impl Torch {
             clearance,
             at: None,
             low: 0.0,
+            highest: 0.0,
+            fresh: false,
             seconds: 0.0,
         }
     }
 
     /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
-        let WeldSettings { process, ends, travel, motion, arc_end_time } = settings.clone();
+        let WeldSettings { process, ends, travel, motion, arc_end_time, standing } = settings.clone();
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
@@ -96,6 +102,7 @@ impl Torch {
             motion,
             arc_end_time,
             travel_speed: travel.speed,
+            highest: standing,
             ..Self::new(travel.clearance)
         }
     }
@@ -128,6 +135,7 @@ impl Torch {
     /// Begins the layer with an index, with the wait that the previous layer needs.
     pub fn begin_layer(&mut self, index: usize) -> Option<Pause> {
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
+        self.fresh = true;
         let missing = self.ends.min_layer_time - self.seconds;
         let pause = self.pause(missing.max(self.ends.interpass_time));
         // The wait counts for neither layer.
@@ -152,9 +160,12 @@ impl Torch {
     }
 
     /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
-    /// place to rise from.
+    /// place to rise from. Where a layer does not rise above the last one, another part begins, and the way leads over all
+    /// that stands.
     pub fn approach(&mut self, start: DVec3) -> Way {
-        let high = self.at.map_or(start.z, |_| self.low.max(start.z)) + self.clearance;
+        let another = std::mem::take(&mut self.fresh) && start.z <= self.low;
+        let below = if another || self.at.is_none() { self.highest } else { self.low };
+        let high = below.max(start.z) + self.clearance;
         // After a wait the torch is already at this height or higher.
         let top = self.at.map_or(high, |at| at.z.max(high));
         let rise = self.at.map(|at| at.with_z(top));
@@ -217,6 +228,7 @@ impl Torch {
         self.seconds += before + moving + crater + after;
         if let Some(&(end, _)) = moves.last() {
             (self.at, self.low) = (Some(end), end.z);
+            self.highest = moves.iter().fold(self.highest, |high, (place, _)| high.max(place.z));
         }
         welded
     }

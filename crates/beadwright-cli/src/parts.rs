@@ -1,0 +1,124 @@
+//! Parts that are welded one after another, each with plan and programs of its own.
+
+use crate::plan::{self, Arguments, Files, Refused, print_head, print_summary, print_warnings, refused};
+use crate::several::Programs;
+use crate::{progress, say};
+use beadwright::compare::MAP_PIXELS;
+use beadwright::deposit::{Figures, Judge};
+use beadwright::model::together::Place;
+use beadwright::model::{Import, Part};
+use beadwright::plan::choice::{self, Choice};
+use beadwright::plan::clearance::{Clearance, Close, Watch};
+use beadwright::plan::{Summary, plan_into, torch_of};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Plans a model, or several; each by itself where there is to be a program for each.
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    plan::prepare(arguments)?;
+    if arguments.several.programs == Programs::Parts { each(arguments) } else { plan::run(arguments) }
+}
+
+/// A part that is planned, with its files still to be written.
+struct Planned<'a> {
+    name: &'a str,
+    profile: &'a Profile,
+    model: &'a Part,
+    folder: PathBuf,
+    files: Files<'a>,
+    summary: Summary,
+    figures: Option<Figures>,
+}
+
+/// A part with the profile that it is welded with.
+struct Own {
+    name: String,
+    /// The profile's name.
+    named: String,
+    profile: Profile,
+    model: Part,
+    note: Option<String>,
+}
+
+/// Plans the parts one after another, each with programs of its own. All are written, or none.
+fn each(arguments: &Arguments) -> anyhow::Result<()> {
+    let (task, bar) = progress::task()?;
+    let build = arguments.build(arguments.profile(&arguments.profile)?.bead.width, &task)?;
+    let own = |(name, import): (String, Import)| own(arguments, name, import, &task);
+    let owned: Vec<Own> = build.lowest_first.into_iter().map(own).collect::<anyhow::Result<_>>()?;
+    let mut clearance = Clearance::default();
+    let mut planned = Vec::with_capacity(owned.len());
+    for (index, own) in owned.iter().enumerate() {
+        planned.push(one(arguments, index, own, &mut clearance, &task)?);
+    }
+    bar.finish_and_clear();
+    let named = |one: &Planned<'_>| -> Vec<String> {
+        one.summary.forbidden.iter().map(|reason| format!("{}: {reason}", one.name)).collect()
+    };
+    let reasons: Vec<String> =
+        planned.iter().flat_map(named).chain(clearance.close().iter().map(Close::sentence)).collect();
+    if !reasons.is_empty() && !arguments.allow_findings {
+        return Err(Refused(reasons).into());
+    }
+    let mut all = Vec::new();
+    for part in planned {
+        let told = part.write(arguments, &build.places)?;
+        all.extend(told);
+    }
+    if arguments.json {
+        writeln!(std::io::stdout(), "{:#}", serde_json::Value::from(all))?;
+    }
+    Ok(())
+}
+
+fn own(arguments: &Arguments, name: String, import: Import, task: &Task) -> anyhow::Result<Own> {
+    let named = arguments.several.profile_of(&name).unwrap_or(&arguments.profile).to_owned();
+    let (profile, model) = (arguments.profile(&named)?, Part::Mesh(import));
+    let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), task)?;
+    Ok(Own { name, named, profile, model, note })
+}
+
+/// Plans one of the parts; its files are numbered in the order of welding.
+fn one<'a>(
+    arguments: &Arguments,
+    index: usize,
+    own: &'a Own,
+    clearance: &mut Clearance,
+    task: &Task,
+) -> anyhow::Result<Planned<'a>> {
+    let Own { name, named, profile, model, note } = own;
+    clearance.begin(name);
+    let folder = arguments.output.join(format!("{}-{name}", index + 1));
+    let programs = arguments.programs(named, profile, name, clearance.height())?;
+    let settings = plan::deposit_settings(arguments.grid, profile, model.bounds())?;
+    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let mut files = Files::new(&folder, programs, profile)?.judged(judge);
+    let torch = torch_of(profile).map_err(|error| refused(error, Path::new(name)))?;
+    let mut watch = Watch { sink: &mut files, clearance, torch, width: profile.bead.width };
+    let summary = plan_into(name, model, profile, task, &mut watch);
+    let mut summary = summary.map_err(|error| refused(error, Path::new(name)))?;
+    summary.notes.splice(0..0, note.clone().into_iter().chain(files.notes()));
+    let figures = files.figures();
+    Ok(Planned { name, profile, model, folder, files, summary, figures })
+}
+
+impl Planned<'_> {
+    /// Writes the files and tells of them; with `--json` it gives the totals instead.
+    fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
+        let Self { name, profile, model, folder, files, summary, figures } = self;
+        let written = files.finish(&summary, &model.repair())?;
+        if arguments.json {
+            let mut value = summary.json(figures.as_ref());
+            value["part"] = name.into();
+            return Ok(Some(value));
+        }
+        let place: Vec<Place> = places.iter().filter(|(part, _)| part == name).cloned().collect();
+        print_head(&mut say::done(false), name, profile, model, &place)?;
+        print_warnings(profile, model, &summary)?;
+        print_summary(&mut say::done(false), &folder, &summary, figures.as_ref(), &written)?;
+        writeln!(say::done(false))?;
+        Ok(None)
+    }
+}

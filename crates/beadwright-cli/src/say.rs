@@ -1,0 +1,40 @@
+//! How much is said: `--quiet` and `--verbose`.
+
+use std::io::Write;
+use std::sync::OnceLock;
+
+/// How much a command says besides what it is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Loudness {
+    /// Warnings and errors.
+    Quiet,
+    /// What was done too.
+    Usual,
+    /// How long each stage took too.
+    Verbose,
+}
+
+static LOUDNESS: OnceLock<Loudness> = OnceLock::new();
+
+/// Sets it, once.
+pub(crate) fn set(quiet: bool, verbose: bool) {
+    let loudness = match (quiet, verbose) {
+        (true, _) => Loudness::Quiet,
+        (_, true) => Loudness::Verbose,
+        _ => Loudness::Usual,
+    };
+    _ = LOUDNESS.set(loudness);
+}
+
+pub(crate) fn loudness() -> Loudness {
+    LOUDNESS.get().copied().unwrap_or(Loudness::Usual)
+}
+
+/// Where a command tells what it has done: nowhere with `--quiet`, on standard error where standard output takes a file.
+pub(crate) fn done(output_is_standard: bool) -> Box<dyn Write> {
+    match loudness() {
+        Loudness::Quiet => Box::new(std::io::sink()),
+        _ if output_is_standard => Box::new(std::io::stderr().lock()),
+        _ => Box::new(std::io::stdout().lock()),
+    }
+}

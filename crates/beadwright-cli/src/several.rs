@@ -1,0 +1,121 @@
+//! Which parts are in a build, in which order they are welded, and in how many programs.
+
+use crate::model;
+use beadwright::model::together::{Arrangement, Place, arrange, together};
+use beadwright::model::{Import, Part};
+use std::path::Path;
+
+#[derive(clap::Args)]
+pub(crate) struct Several {
+    /// Another part for the same build, turned and scaled alike; may be given several times. The parts stand in rows. With
+    /// --programs parts it may have a profile of its own: FILE:profile=NAME.
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) with: Vec<String>,
+    /// Distance between the parts of one build, mm.
+    #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = parse_gap, requires = "with")]
+    gap: f64,
+    /// Leave the parts of one build where their files have them, seen from above.
+    #[arg(long, requires = "with", conflicts_with = "gap")]
+    as_placed: bool,
+    /// Let the parts grow together, layer by layer, or weld one after another, the lowest first. Refused where the torch
+    /// (section [torch] of the profile) would hit a part that stands.
+    #[arg(long, value_enum, default_value_t = Order::Layers, requires = "with")]
+    pub(crate) order: Order,
+    /// Write one plan with one program, or those of each part into a folder of its own; with --order parts.
+    #[arg(long, value_enum, default_value_t = Programs::One, requires = "with")]
+    pub(crate) programs: Programs,
+}
+
+/// Which comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Order {
+    /// All parts of a layer before the next layer.
+    Layers,
+    /// All layers of a part before the next part.
+    Parts,
+}
+
+/// How many programs there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Programs {
+    /// One for the build.
+    One,
+    /// One for each part.
+    Parts,
+}
+
+fn parse_gap(text: &str) -> Result<f64, String> {
+    let gap: f64 = text.parse().map_err(|_| "a distance in mm is expected".to_owned())?;
+    if (0.0..=1000.0).contains(&gap) { Ok(gap) } else { Err("the gap must lie between 0 and 1000 mm".to_owned()) }
+}
+
+impl Several {
+    /// What does not go together.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        anyhow::ensure!(
+            self.programs == Programs::One || self.order == Order::Parts,
+            "--programs parts: parts that grow together need one program. --order parts welds them one after another."
+        );
+        let own = self.with.iter().find(|with| own_profile(with).1.is_some());
+        if let Some(with) = own.filter(|_| self.programs == Programs::One) {
+            anyhow::bail!("--with {with}: a part has a profile of its own only with --programs parts");
+        }
+        Ok(())
+    }
+
+    fn arrangement(&self) -> Arrangement {
+        if self.as_placed { Arrangement::AsTheyAre } else { Arrangement::Rows { gap: self.gap } }
+    }
+
+    /// Where the first model and the others stand; `place` reads and places one of them.
+    pub(crate) fn stand(
+        &self,
+        first: &model::Model,
+        place: impl Fn(&model::Model) -> anyhow::Result<Part>,
+    ) -> anyhow::Result<Build> {
+        let whole = place(first)?;
+        if self.with.is_empty() {
+            return Ok(Build { whole, places: Vec::new(), lowest_first: Vec::new() });
+        }
+        let mut parts = vec![(first.part(), solid(whole, &first.model)?)];
+        for with in &self.with {
+            let model = model::Model { model: own_profile(with).0.to_owned(), ..first.clone() };
+            parts.push((model.part(), solid(place(&model)?, &model.model)?));
+        }
+        let (mut solids, places) = arrange(parts, self.arrangement())?;
+        let (whole, _) = together(solids.clone(), Arrangement::AsTheyAre)?;
+        solids.sort_by(|(_, a), (_, b)| a.mesh.size().z.total_cmp(&b.mesh.size().z));
+        Ok(Build { whole: Part::Mesh(whole), places, lowest_first: solids })
+    }
+
+    /// The name of the profile that a part has for its own.
+    pub(crate) fn profile_of(&self, part: &str) -> Option<&str> {
+        let named = |with: &&String| model::Model::of(own_profile(with).0).part() == part;
+        self.with.iter().find(named).and_then(|with| own_profile(with).1)
+    }
+}
+
+/// What is built.
+pub(crate) struct Build {
+    /// As one part.
+    pub(crate) whole: Part,
+    /// Where each of several parts stands.
+    pub(crate) places: Vec<Place>,
+    /// Each of several parts by its name and by itself, the lowest first.
+    pub(crate) lowest_first: Vec<(String, Import)>,
+}
+
+fn solid(part: Part, path: &Path) -> anyhow::Result<Import> {
+    match part {
+        Part::Mesh(import) => Ok(import),
+        Part::Curves { .. } => anyhow::bail!("{}: only solids stand together in one build", path.display()),
+    }
+}
+
+/// The file and the profile of `FILE:profile=NAME`.
+fn own_profile(with: &str) -> (&Path, Option<&str>) {
+    match with.rsplit_once(":profile=") {
+        Some((file, profile)) => (Path::new(file), Some(profile)),
+        None => (Path::new(with), None),
+    }
+}

@@ -1,0 +1,139 @@
+//! Holes in a surface, closed with triangles of the least area in all.
+//!
+//! A hole is a loop of open edges. It is closed by the triangulation of its loop with the least area (Barequet and Sharir 1995,
+//! "Filling gaps in the boundary of a polyhedron"), found by dynamic programming; no vertex is added.
+
+use super::repair::mend;
+use super::{Import, Mesh, NO_NEIGHBOUR};
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Loops of more edges are left open: the time grows with the third power of their number.
+const MOST_EDGES: usize = 400;
+
+/// What was closed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Closed {
+    /// Holes that were closed.
+    pub holes: usize,
+    /// Their triangles.
+    pub triangles: usize,
+    /// The widest of them, in the units of the file.
+    pub widest: f64,
+    /// Holes that were left open: too wide, of too many edges, or touching another one.
+    pub left: usize,
+    /// The widest of those, in the units of the file.
+    pub widest_left: f64,
+}
+
+impl Closed {
+    /// What was done, as sentences.
+    pub fn sentences(&self) -> Vec<String> {
+        let Self { holes, triangles, widest, left, widest_left } = *self;
+        let count = |n: usize, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
+        let closed = (holes > 0).then(|| {
+            let (holes, triangles) = (count(holes, "hole"), count(triangles, "triangle"));
+            format!("{holes} closed with {triangles}; the widest measures {widest:.3} across.")
+        });
+        let open = (left > 0).then(|| {
+            let left = count(left, "hole");
+            format!(
+                "{left} left open: wider than asked for, of more than {MOST_EDGES} edges, or touching others; the widest \
+                 measures {widest_left:.3} across."
+            )
+        });
+        closed.into_iter().chain(open).collect()
+    }
+}
+
+/// Closes the holes that measure at most `widest` across, in the units of the file, and mends what that leaves.
+pub fn close(import: Import, widest: f64) -> (Import, Closed) {
+    let Import { mut mesh, repair, .. } = import;
+    let (loops, touching) = loops(&mesh);
+    let mut closed = Closed { left: touching, ..Closed::default() };
+    for corners in loops {
+        let across = extent(&mesh, &corners);
+        if across > widest || corners.len() > MOST_EDGES {
+            closed.left += 1;
+            closed.widest_left = closed.widest_left.max(across);
+            continue;
+        }
+        let cover = least_area(&mesh, &corners);
+        closed.holes += 1;
+        closed.triangles += cover.len();
+        closed.widest = closed.widest.max(across);
+        mesh.triangles.extend(cover);
+    }
+    let (mesh, mut mended) = mend(mesh.vertices, mesh.triangles);
+    mended.triangles_read = repair.triangles_read;
+    mended.damage = repair.damage;
+    mended.appended_bytes = repair.appended_bytes;
+    mended.degenerate += repair.degenerate;
+    mended.duplicate += repair.duplicate;
+    mended.vertices_merged += repair.vertices_merged;
+    mended.flipped += repair.flipped;
+    mended.inside_out |= repair.inside_out;
+    mended.normals_against_winding = repair.normals_against_winding;
+    (Import { mesh, repair: mended, ..import }, closed)
+}
+
+/// The loops of open edges, against the direction of their triangles, and how many vertices lie on more than one loop.
+fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
+    let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (corners, across) in mesh.triangles.iter().zip(&mesh.neighbours) {
+        for edge in (0..3).filter(|&edge| across[edge] == NO_NEIGHBOUR) {
+            next.entry(corners[(edge + 1) % 3]).or_default().push(corners[edge]);
+        }
+    }
+    let touching = next.values().filter(|ends| ends.len() > 1).count();
+    // Only where one way leads on is it clear how the loop goes.
+    let mut next: BTreeMap<u32, u32> =
+        next.into_iter().filter(|(_, to)| to.len() == 1).map(|(from, to)| (from, to[0])).collect();
+    let mut loops = Vec::new();
+    while let Some((start, mut at)) = next.pop_first() {
+        let mut corners = vec![start];
+        while at != start {
+            corners.push(at);
+            match next.remove(&at) {
+                Some(to) => at = to,
+                None => break,
+            }
+        }
+        if at == start && corners.len() > 2 {
+            loops.push(corners);
+        }
+    }
+    (loops, touching)
+}
+
+/// Diagonal of the box around a loop.
+fn extent(mesh: &Mesh, corners: &[u32]) -> f64 {
+    let places = || corners.iter().map(|&corner| mesh.vertices[corner as usize]);
+    let (low, high) = (places().reduce(DVec3::min), places().reduce(DVec3::max));
+    low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
+}
+
+/// The triangulation of a loop with the least area: for each pair of its corners the least that closes the loop between them.
+fn least_area(mesh: &Mesh, corners: &[u32]) -> Vec<[u32; 3]> {
+    let count = corners.len();
+    let place = |k: usize| mesh.vertices[corners[k] as usize];
+    let area = |i: usize, m: usize, k: usize| (place(m) - place(i)).cross(place(k) - place(i)).length() / 2.0;
+    let mut least = vec![vec![(0.0_f64, 0_usize); count]; count];
+    for span in 2..count {
+        for i in 0..count - span {
+            let k = i + span;
+            let choices = (i + 1..k).map(|m| (least[i][m].0 + least[m][k].0 + area(i, m, k), m));
+            least[i][k] = choices.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        }
+    }
+    let (mut cover, mut open) = (Vec::with_capacity(count - 2), vec![(0, count - 1)]);
+    while let Some((i, k)) = open.pop() {
+        if k - i < 2 {
+            continue;
+        }
+        let m = least[i][k].1;
+        cover.push([i, m, k].map(|corner| corners[corner]));
+        open.extend([(i, m), (m, k)]);
+    }
+    cover
+}

@@ -1,0 +1,126 @@
+//! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
+
+use super::clearance::{Clearance, Close, Watch};
+use super::{Header, PlanError, Sink, Summary, plan_into, slabs_of, strategy_of};
+use crate::layer::Layer;
+use crate::metrics::Metrics;
+use crate::model::Mesh;
+use crate::process::TorchShape;
+use crate::profile::Profile;
+use crate::task::Task;
+use crate::warning::Warnings;
+
+/// Plans solids that stand beside each other on z = 0, each from its first layer to its last before the next one begins, and
+/// hands all layers to `sink`, numbered through. Ways to another part lead over all that stands. Where the torch
+/// (`[torch]`) would hit a part that stands, [`Summary::forbidden`] says so.
+///
+/// # Errors
+/// [`PlanError`], also where the profile lacks `[torch]`, or has values for some layers only.
+pub fn parts_into<S: Sink + Send>(
+    name: &str,
+    parts: &[(String, &Mesh)],
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    let torch = torch_of(profile)?;
+    if !profile.process.layers.is_empty() {
+        return Err(PlanError::Parts(
+            "process.layers: layers are numbered by the part, so it is not clear which are meant",
+        ));
+    }
+    let counts: Result<Vec<usize>, _> =
+        parts.iter().map(|(_, mesh)| slabs_of(mesh, profile, task).map(|slabs| slabs.len())).collect();
+    let counts = counts?;
+    let (layers, strategy) = (counts.iter().sum(), strategy_of(profile)?.name().to_owned());
+    let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, layers };
+    sink.begin(&header).map_err(PlanError::Sink)?;
+    let (mut clearance, width) = (Clearance::default(), profile.bead.width);
+    let mut row = Row { first: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    let mut told = Told::of(profile);
+    let mut volume = Some(0.0);
+    for ((part, mesh), count) in parts.iter().zip(&counts) {
+        clearance.begin(part);
+        let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
+        let own = plan_into(part, *mesh, profile, task, &mut watch)?;
+        told.add(part, &own);
+        volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
+        row.first += count;
+    }
+    let Row { mut metrics, warnings, .. } = row;
+    metrics.mesh_volume_mm3 = volume;
+    let Told { mut notes, mut forbidden } = told;
+    notes.insert(0, sentence(parts, &counts));
+    forbidden.extend(clearance.close().iter().map(Close::sentence));
+    Ok(Summary { metrics, warnings, notes, forbidden })
+}
+
+/// The room that the torch of a profile takes.
+///
+/// # Errors
+/// [`PlanError::Parts`] where the profile does not say.
+pub fn torch_of<E>(profile: &Profile) -> Result<TorchShape, PlanError<E>> {
+    profile
+        .torch
+        .ok_or(PlanError::Parts("the profile lacks the section [torch] with nozzle_radius, stick_out and cone"))
+}
+
+/// Which layers are those of which part.
+fn sentence(parts: &[(String, &Mesh)], counts: &[usize]) -> String {
+    let mut first = 1;
+    let range = |((name, _), count): (&(String, &Mesh), &usize)| {
+        let text = format!("{name} (layers {first} to {})", first + count - 1);
+        first += count;
+        text
+    };
+    let ranges: Vec<String> = parts.iter().zip(counts).map(range).collect();
+    format!("The parts are welded one after another: {}.", ranges.join(", "))
+}
+
+/// What is said of the parts, each thing once.
+struct Told {
+    notes: Vec<String>,
+    forbidden: Vec<String>,
+}
+
+impl Told {
+    fn of(profile: &Profile) -> Self {
+        Self { notes: profile.notes(), forbidden: profile.forbidden() }
+    }
+
+    fn add(&mut self, part: &str, own: &Summary) {
+        let named = |known: &mut Vec<String>, new: &[String]| {
+            let new: Vec<String> =
+                new.iter().filter(|text| !known.contains(text)).map(|text| format!("{part}: {text}")).collect();
+            known.extend(new);
+        };
+        named(&mut self.notes, &own.notes);
+        named(&mut self.forbidden, &own.forbidden);
+    }
+}
+
+/// Numbers the layers of all parts through.
+struct Row<'a, S> {
+    /// Layers of the parts before.
+    first: usize,
+    sink: &'a mut S,
+    metrics: Metrics,
+    warnings: Warnings,
+}
+
+impl<S: Sink> Sink for Row<'_, S> {
+    type Error = S::Error;
+
+    /// The whole has begun already.
+    fn begin(&mut self, _part: &Header) -> Result<(), S::Error> {
+        Ok(())
+    }
+
+    fn layer(&mut self, mut layer: Layer) -> Result<(), S::Error> {
+        layer.index += self.first;
+        layer.warnings.iter_mut().for_each(|warning| warning.layer += self.first);
+        layer.warnings.iter().for_each(|warning| self.warnings.add(*warning));
+        self.metrics.add(&layer);
+        self.sink.layer(layer)
+    }
+}
