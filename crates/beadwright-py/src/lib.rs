@@ -8,15 +8,24 @@
 //! | `part`, `profile` | what is planned, and how |
 //! | `plan`, `layer` | the plan, its layers and passes |
 //! | `save` | the files of a plan, byte for byte those of the command |
+//! | `program` | anyone's program, read back as layers |
+//! | `judge` | what layers would build: height fields, comparisons |
+//! | `heat`, `reach` | how warm the metal becomes, and whether a robot gets there |
+//! | `bead_library` | measured beads |
 //!
 //! Files are read by the Python around it (`python/beadwright`), which is also what users see; no name here is meant for them.
 
 mod array;
+mod bead_library;
 mod error;
+mod heat;
+mod judge;
 mod layer;
 mod part;
 mod plan;
 mod profile;
+mod program;
+mod reach;
 mod running;
 mod save;
 
@@ -27,6 +36,12 @@ mod _core {
     #[pymodule_export]
     use crate::array::Array;
     #[pymodule_export]
+    use crate::bead_library::{BeadLibrary, demonstration_csv};
+    #[pymodule_export]
+    use crate::heat::{Heat, heat};
+    #[pymodule_export]
+    use crate::judge::{Judged, compare, height_field, judge, page};
+    #[pymodule_export]
     use crate::layer::{Layer, Pass};
     #[pymodule_export]
     use crate::part::Part;
@@ -34,6 +49,10 @@ mod _core {
     use crate::plan::{Plan, plan};
     #[pymodule_export]
     use crate::profile::{Profile, profile_names, strategy_names};
+    #[pymodule_export]
+    use crate::program::{language, simulate, told_profile};
+    #[pymodule_export]
+    use crate::reach::{Reach, cell_names, cell_text, reach};
 
     /// Version of the library.
     #[pymodule_export]

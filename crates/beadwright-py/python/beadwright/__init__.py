@@ -10,14 +10,24 @@ Lengths are in mm, times in s, areas in mm², unless a name says otherwise. What
 from beadwright._core import VERSION as __version__
 from beadwright._errors import BeadwrightError
 from beadwright._progress import Progress
-from beadwright.layer import Island, Layer, LayerWarning, Pass
-from beadwright.part import Part
-from beadwright.plan import Plan, plan
-from beadwright.profile import Profile, profiles, strategies
+from beadwright._bead import Bead, BeadLibrary, demonstration_csv
+from beadwright._heat import Heat, heat
+from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
+from beadwright._layer import Island, Layer, LayerWarning, Pass
+from beadwright._part import Part
+from beadwright._plan import Plan, plan
+from beadwright._profile import Profile, profiles, strategies
+from beadwright._robot import Reach, ReachFinding, Trajectory, cells, reach
 
 __all__ = [
+    "Bead",
+    "BeadLibrary",
     "BeadwrightError",
+    "Comparison",
+    "Heat",
+    "HeightField",
     "Island",
+    "Judged",
     "Layer",
     "LayerWarning",
     "Part",
@@ -25,8 +35,18 @@ __all__ = [
     "Plan",
     "Profile",
     "Progress",
+    "Reach",
+    "ReachFinding",
+    "Trajectory",
     "__version__",
+    "cells",
+    "compare",
+    "demonstration_csv",
+    "heat",
+    "height_field",
     "plan",
     "profiles",
+    "reach",
+    "simulate",
     "strategies",
 ]

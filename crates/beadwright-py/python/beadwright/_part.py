@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from beadwright import _core
 from beadwright._array import floats, indices
@@ -25,8 +25,9 @@ Turn: TypeAlias = tuple[float, float, float]
 class Part:
     """A solid, or a wall given by curves, in mm and set onto z = 0. Made by :meth:`read` and its siblings."""
 
-    __slots__ = ("_core", "_maker")
-    _core: _core.Part
+    __slots__ = ("_inner", "_maker")
+    _inner: _core.Part
+    _maker: tuple[Any, ...]
 
     def __init__(self) -> None:
         raise TypeError("a part is made by Part.read, Part.from_triangles or Part.from_trimesh")
@@ -36,7 +37,7 @@ class Part:
         """The part of a call of the core, which is kept: a part travels to other processes as that call."""
         part = object.__new__(cls)
         kind, *arguments = maker
-        part._core = _core.Part.read(*arguments) if kind == "read" else _triangles(*arguments)
+        part._inner = _core.Part.read(*arguments) if kind == "read" else _triangles(*arguments)
         part._maker = maker
         return part
 
@@ -106,8 +107,8 @@ class Part:
     def from_trimesh(cls, mesh: Any, *, name: str = "part", turn: Turn = (0.0, 0.0, 0.0)) -> Part:
         """A solid from a ``trimesh.Trimesh``; its units are taken where it has some, mm otherwise."""
         known: dict[str, Unit] = {"millimeters": "mm", "centimeters": "cm", "meters": "m", "inches": "in"}
-        named = mesh.units or "mm"
-        units = known.get(named, named)
+        named = str(mesh.units or "mm")
+        units = known.get(named, cast(Unit, named))
         return cls.from_triangles(mesh.vertices, mesh.faces, name=name, units=units, turn=turn)
 
     @classmethod
@@ -119,40 +120,40 @@ class Part:
     def above(self, z: float) -> Part:
         """What lies above the height ``z`` (mm), set onto z = 0."""
         part = object.__new__(Part)
-        part._core = self._core.above(z)
+        part._inner = self._inner.above(z)
         part._maker = ("above", self._maker, z)
         return part
 
     @property
     def name(self) -> str:
         """The name for files and headings."""
-        return self._core.name
+        return self._inner.name
 
     @property
     def is_solid(self) -> bool:
         """Whether it is a solid; a wall given by curves is none."""
-        return self._core.is_solid
+        return self._inner.is_solid
 
     @property
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Lowest and highest coordinates, mm."""
-        (a, b, c), (d, e, f) = self._core.bounds
+        (a, b, c), (d, e, f) = self._inner.bounds
         return (a, b, c), (d, e, f)
 
     @property
     def volume(self) -> float | None:
         """Volume of a solid, mm³; exact where its surface is closed."""
-        return self._core.volume
+        return self._inner.volume
 
     @property
     def vertices(self) -> Floats:
         """Corners of the mended solid, n × 3, mm; not copied."""
-        return floats(self._mesh(self._core.vertices))
+        return floats(self._mesh(self._inner.vertices))
 
     @property
     def faces(self) -> Indices:
         """Its triangles, m × 3, as indices of corners; not copied."""
-        return indices(self._mesh(self._core.faces))
+        return indices(self._mesh(self._inner.faces))
 
     def _mesh(self, array: _core.Array | None) -> _core.Array:
         if array is None:
@@ -162,7 +163,7 @@ class Part:
     @property
     def notes(self) -> list[str]:
         """What was mended, and what is not read."""
-        return self._core.notes
+        return self._inner.notes
 
     @property
     def key(self) -> str:

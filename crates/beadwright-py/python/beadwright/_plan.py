@@ -6,14 +6,15 @@ import os
 from collections.abc import Sequence
 from functools import cached_property
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from beadwright import _core
 from beadwright._progress import Progress, steps
-from beadwright.layer import Layer, LayerWarning, Pass
-from beadwright.part import Part
-from beadwright.profile import Profile
+from beadwright._layer import Layer, LayerWarning, Pass
+from beadwright._part import Part
+from beadwright._profile import Profile
 
 Model: TypeAlias = Part | str | os.PathLike[str]
 Process: TypeAlias = Profile | str | os.PathLike[str]
@@ -49,34 +50,34 @@ def plan(
     if strategy is not None:
         wanted = wanted.set({"fill.strategy": strategy})
     with steps(progress) as step:
-        return Plan(_core.plan(part_of(part)._core, wanted._core, strategy is not None, threads, step))
+        return Plan(_core.plan(part_of(part)._inner, wanted._inner, strategy is not None, threads, step))
 
 
 class Plan:
     """The layers of a part, ready to be written as a program. Made by :func:`plan`."""
 
     def __init__(self, core: _core.Plan) -> None:
-        self._core = core
+        self._inner = core
 
     @property
     def part(self) -> str:
         """Name of the part."""
-        return self._core.part
+        return self._inner.part
 
     @property
     def profile(self) -> str:
         """Name of the profile."""
-        return self._core.profile
+        return self._inner.profile
 
     @property
     def strategy(self) -> str:
         """Name of the strategy."""
-        return self._core.strategy
+        return self._inner.strategy
 
     @cached_property
     def layers(self) -> list[Layer]:
         """The layers, lowest first."""
-        return [Layer(core) for core in self._core.layers]
+        return [Layer(core) for core in self._inner.layers]
 
     @property
     def passes(self) -> list[Pass]:
@@ -86,22 +87,22 @@ class Plan:
     @cached_property
     def metrics(self) -> dict[str, Any]:
         """The totals, as in metrics.json: the names tell the units."""
-        return self._core.metrics
+        return self._inner.metrics
 
     @cached_property
     def warnings(self) -> list[LayerWarning]:
         """What was lost or mended, or cannot be built."""
-        return [LayerWarning._of(value, sentence) for value, sentence in self._core.warnings]
+        return [LayerWarning._of(value, sentence) for value, sentence in self._inner.warnings]
 
     @property
     def notes(self) -> list[str]:
         """What does not fit in the profile, as sentences."""
-        return self._core.notes
+        return self._inner.notes
 
     @property
     def forbidden(self) -> list[str]:
         """Why its programs should not be written; empty for a plan that can be welded."""
-        return self._core.forbidden
+        return self._inner.forbidden
 
     def post(self, *dialects: str) -> dict[str, str]:
         """The programs: the text of each file by its name. Without dialects (such as ``"krl"``, or the path of a folder with
@@ -109,7 +110,7 @@ class Plan:
 
         Raises :class:`BeadwrightError`, for instance where the profile has no section for a dialect.
         """
-        return self._core.post(list(dialects))
+        return self._inner.post(list(dialects))
 
     def save(
         self,
@@ -131,13 +132,39 @@ class Plan:
         """
         dialects = [post] if isinstance(post, str) else list(post)
         with steps(progress) as step:
-            names = self._core.save(os.fspath(folder), dialects, deposit, allow_findings, threads, step)
+            names = self._inner.save(os.fspath(folder), dialects, deposit, allow_findings, threads, step)
         return [Path(folder) / name for name in names]
 
     def export(self, path: str | os.PathLike[str]) -> None:
         """Writes the beads for other programs; the ending tells the format: .csv, .parquet, .vtp, .3mf, .stl or .glb."""
         path = Path(path)
-        path.write_bytes(self._core.export(path.suffix.removeprefix(".")))
+        path.write_bytes(self._inner.export(path.suffix.removeprefix(".")))
+
+    def table(self) -> Any:
+        """All straight pieces of the beads as they are welded, as a ``pyarrow.Table``: the columns of ``export(".parquet")``,
+        whose names tell the units.
+        """
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        return pq.read_table(pa.BufferReader(self._inner.export("parquet")))
+
+    def to_trimesh(self) -> Any:
+        """The shape as built, as ``trimesh.Trimesh``, mm."""
+        import trimesh
+
+        return trimesh.load(BytesIO(self._inner.export("stl")), file_type="stl")
+
+    def to_pyvista(self) -> Any:
+        """The beads as ``pyvista.PolyData`` with width, speed, time and the other columns of :meth:`table`."""
+        import pyvista
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+        reader = vtkXMLPolyDataReader()
+        reader.ReadFromInputStringOn()
+        reader.SetInputString(self._inner.export("vtp").decode())
+        reader.Update()
+        return pyvista.wrap(reader.GetOutput())
 
     def _repr_html_(self) -> str:
         """Totals, warnings, and the layer in the middle."""

@@ -24,45 +24,45 @@ class Island(NamedTuple):
 class Pass:
     """A path that is welded with the arc on."""
 
-    __slots__ = ("_core",)
+    __slots__ = ("_inner",)
 
     def __init__(self, core: _core.Pass) -> None:
-        self._core = core
+        self._inner = core
 
     @property
     def kind(self) -> str:
         """What it is for: contour, infill, skeleton or wall."""
-        return self._core.kind
+        return self._inner.kind
 
     @property
     def closed(self) -> bool:
         """Whether it ends where it began; its first point is then not repeated."""
-        return self._core.closed
+        return self._inner.closed
 
     @property
     def wait(self) -> float:
         """How long the torch waits before it, s."""
-        return self._core.wait
+        return self._inner.wait
 
     @property
     def length(self) -> float:
         """Its length, mm."""
-        return self._core.length
+        return self._inner.length
 
     @property
     def points(self) -> Floats:
         """Where the torch goes, n × 3, mm; z is the top of the layer."""
-        return floats(self._core.points)
+        return floats(self._inner.points)
 
     @property
     def width(self) -> Floats:
         """Width of the bead from each point to the next, n, mm."""
-        return floats(self._core.width)
+        return floats(self._inner.width)
 
     @property
     def pace(self) -> Floats:
         """Speed at which the nominal wire feed lays the metal from each point to the next, n, mm/s."""
-        return floats(self._core.pace)
+        return floats(self._inner.pace)
 
     def __repr__(self) -> str:
         return f"<Pass {self.kind}: {self.length:.1f} mm>"
@@ -71,55 +71,55 @@ class Pass:
 class Layer:
     """A layer: what of the part is to be filled, and the passes that do."""
 
-    __slots__ = ("_core",)
+    __slots__ = ("_inner",)
 
     def __init__(self, core: _core.Layer) -> None:
-        self._core = core
+        self._inner = core
 
     @property
     def index(self) -> int:
         """Its number, from 0."""
-        return self._core.index
+        return self._inner.index
 
     @property
     def z(self) -> float:
         """Its top, mm."""
-        return self._core.z
+        return self._inner.z
 
     @property
     def height(self) -> float:
         """Its thickness, mm."""
-        return self._core.height
+        return self._inner.height
 
     @property
     def slice_area(self) -> float:
         """Area of the slice, mm²."""
-        return self._core.slice_area
+        return self._inner.slice_area
 
     @property
     def planned_area(self) -> float:
         """Area that beads cover, mm²."""
-        return self._core.planned_area
+        return self._inner.planned_area
 
     @property
     def islands(self) -> list[Island]:
         """The slice."""
-        return [Island(floats(outer), [floats(hole) for hole in holes]) for outer, holes in self._core.islands]
+        return [Island(floats(outer), [floats(hole) for hole in holes]) for outer, holes in self._inner.islands]
 
     @property
     def passes(self) -> list[Pass]:
         """Its passes in the order in which they are welded."""
-        return [Pass(core) for core in self._core.passes]
+        return [Pass(core) for core in self._inner.passes]
 
     def svg(self, title: str | None = None) -> str:
         """Its picture."""
-        return self._core.svg(title or f"Layer {self.index + 1}, z {self.z:.2f} mm")
+        return self._inner.svg(title or f"Layer {self.index + 1}, z {self.z:.2f} mm")
 
     def _repr_svg_(self) -> str:
         return self.svg()
 
     def __repr__(self) -> str:
-        return f"<Layer {self.index}: z {self.z:.2f} mm, {len(self._core.passes)} passes>"
+        return f"<Layer {self.index}: z {self.z:.2f} mm, {len(self._inner.passes)} passes>"
 
 
 @dataclass(frozen=True)

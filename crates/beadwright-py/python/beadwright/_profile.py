@@ -21,8 +21,8 @@ class Profile:
     5.0
     """
 
-    __slots__ = ("_core",)
-    _core: _core.Profile
+    __slots__ = ("_inner",)
+    _inner: _core.Profile
 
     def __init__(self, source: str | os.PathLike[str] = "cmt-al2319-kuka") -> None:
         """Raises :class:`BeadwrightError` with the line, the key and what would be right."""
@@ -30,12 +30,12 @@ class Profile:
             text, place, folder = source, None, Path()
         else:
             text, place, folder = _found(os.fspath(source))
-        self._core = _core.Profile.parse(text, place, folder, _base(folder))
+        self._inner = _core.Profile.parse(text, place, folder, _base(folder))
 
     @classmethod
     def _of(cls, core: _core.Profile) -> Profile:
         profile = object.__new__(cls)
-        profile._core = core
+        profile._inner = core
         return profile
 
     def set(self, values: Mapping[str, Value] | None = None, /, **named: Value) -> Profile:
@@ -45,32 +45,32 @@ class Profile:
         """
         given = dict(values or {}) | {key.replace("__", "."): value for key, value in named.items()}
         toml = [(key, _toml(key, value)) for key, value in given.items()]
-        return Profile._of(self._core.set(toml, _base(self._core.folder)))
+        return Profile._of(self._inner.set(toml, _base(self._inner.folder)))
 
     @property
     def name(self) -> str:
         """Its name."""
-        return self._core.name
+        return self._inner.name
 
     @property
     def text(self) -> str:
         """Its TOML text, with the values set since."""
-        return self._core.text
+        return self._inner.text
 
     @property
     def values(self) -> dict[str, Any]:
         """All values, by section and key."""
-        return self._core.values
+        return self._inner.values
 
     @property
     def notes(self) -> list[str]:
         """What does not fit in it, as sentences."""
-        return self._core.notes
+        return self._inner.notes
 
     @property
     def key(self) -> str:
         """The same for profiles that mean the same, however they are written."""
-        return self._core.whole_text
+        return self._inner.whole_text
 
     def __getitem__(self, key: str) -> Any:
         """The value of a key such as ``"bead.width"``."""
@@ -82,7 +82,7 @@ class Profile:
         return value
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _remade, (self._core.text, self._core.folder)
+        return _remade, (self._inner.text, self._inner.folder)
 
     def __repr__(self) -> str:
         return f"<Profile {self.name}>"
