@@ -44,7 +44,7 @@ mod _core {
     #[pymodule_export]
     use crate::layer::{Layer, Pass};
     #[pymodule_export]
-    use crate::part::Part;
+    use crate::part::{Part, example_names, example_stl};
     #[pymodule_export]
     use crate::plan::{Plan, plan};
     #[pymodule_export]

@@ -4,11 +4,26 @@ use crate::array::{Array, Item, Numbers};
 use crate::error::{Refuse, raise};
 use crate::running::Running;
 use beadwright::model::{self, Import, Model, Placement, Units, units};
-use beadwright::{Mesh, model::PartError};
+use beadwright::{Mesh, example, model::PartError};
 use glam::DVec3;
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
+
+/// Names of the example parts.
+#[pyfunction]
+pub(crate) fn example_names() -> Vec<&'static str> {
+    example::ALL.iter().map(|part| part.name).collect()
+}
+
+/// The bytes of the STL file of an example part.
+#[pyfunction]
+pub(crate) fn example_stl(name: &str) -> PyResult<Cow<'static, [u8]>> {
+    let found = example::find(name).map(|part| part.stl().into());
+    let known = || format!("there is no example part \"{name}\": {} are.", example_names().join(", "));
+    found.ok_or_else(|| raise(&known(), Some("name"), None))
+}
 
 /// How a part is placed: unit, factor, turn about x, y and z (°), whether its middle comes to x = y = 0, how it is laid
 /// ("flat" or "orient"), and where it ends (mm).

@@ -13,6 +13,7 @@ use beadwright::plan::{self as library, Header, PlanError, Summary};
 use beadwright::{model, profile};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
@@ -151,12 +152,12 @@ impl Plan {
     }
 
     /// The bytes of a file in a format for other programs, by its ending.
-    fn export(&self, py: Python<'_>, extension: &str) -> PyResult<Vec<u8>> {
+    fn export(&self, py: Python<'_>, extension: &str) -> PyResult<Cow<'static, [u8]>> {
         let known = || export::FORMATS.map(|format| format.extension).join(", ");
         let format = export::format(extension)
             .ok_or_else(|| PyValueError::new_err(format!("\"{extension}\" is no format: {} are.", known())))?;
         let plan = &self.0;
         let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &plan.profile, heat: None };
-        Running::new(None, None).run(py, None, |_| (format.write)(&beads))
+        Ok(Running::new(None, None).run(py, None, |_| (format.write)(&beads))?.into())
     }
 }

@@ -14,7 +14,7 @@ from beadwright._bead import Bead, BeadLibrary, demonstration_csv
 from beadwright._heat import Heat, heat
 from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
 from beadwright._layer import Island, Layer, LayerWarning, Pass
-from beadwright._part import Part
+from beadwright._part import Part, examples
 from beadwright._plan import Plan, plan
 from beadwright._profile import Profile, profiles, strategies
 from beadwright._robot import Reach, ReachFinding, Trajectory, cells, reach
@@ -42,6 +42,7 @@ __all__ = [
     "cells",
     "compare",
     "demonstration_csv",
+    "examples",
     "heat",
     "height_field",
     "plan",

@@ -9,6 +9,36 @@ from typing_extensions import Buffer
 _Step = Callable[[str, float], object] | None
 _Placing = tuple[Any, ...]
 
+__all__ = [
+    "Array",
+    "BeadLibrary",
+    "Heat",
+    "Judged",
+    "Layer",
+    "Part",
+    "Pass",
+    "Plan",
+    "Profile",
+    "Reach",
+    "VERSION",
+    "cell_names",
+    "cell_text",
+    "compare",
+    "demonstration_csv",
+    "example_names",
+    "example_stl",
+    "heat",
+    "height_field",
+    "judge",
+    "language",
+    "page",
+    "plan",
+    "profile_names",
+    "reach",
+    "simulate",
+    "strategy_names",
+    "told_profile",
+]
 VERSION: Final[str]
 
 @final
@@ -213,3 +243,5 @@ class BeadLibrary:
     def svg(self) -> str: ...
 
 def demonstration_csv() -> str: ...
+def example_names() -> list[str]: ...
+def example_stl(name: str) -> bytes: ...

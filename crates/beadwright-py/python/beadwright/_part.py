@@ -72,6 +72,12 @@ class Part:
         return cls._made(("read", path.stem, str(path), content, accept_damaged, placing))
 
     @classmethod
+    def example(cls, name: str) -> Part:
+        """One of the parametric example parts, such as ``"propeller"``; :func:`examples` names them all."""
+        placing = _placing(None, 1.0, (0.0, 0.0, 0.0), False, None, None)
+        return cls._made(("read", name, name, _core.example_stl(name), False, placing))
+
+    @classmethod
     def from_triangles(
         cls,
         vertices: npt.ArrayLike,
@@ -183,6 +189,11 @@ class Part:
         low, high = self.bounds
         size = " × ".join(f"{b - a:.1f}" for a, b in zip(low, high, strict=True))
         return f"<Part {self.name}: {size} mm>"
+
+
+def examples() -> list[str]:
+    """Names of the example parts."""
+    return _core.example_names()
 
 
 def _placing(
