@@ -165,7 +165,11 @@ fn solid(corners: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Import, String
     }
     let read = triangles.len();
     let (mesh, repair) = Mesh::from_triangles(corners, triangles);
-    if mesh.triangles.is_empty() {
+    let area = |&[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| mesh.vertices[corner as usize]);
+        (b - a).cross(c - a).length_squared()
+    };
+    if !mesh.triangles.iter().any(|triangle| area(triangle) > 0.0) {
         return Err(format!("there is no triangle with an area ({read} given), so there is nothing to build."));
     }
     Ok(Import { mesh, repair, format: "triangles", units: None, objects: Vec::new(), notes: Vec::new() })

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
@@ -28,6 +29,12 @@ def prism(outline: npt.ArrayLike, height: float) -> tuple[Array, Faces]:
     fan = np.array([[0, k, k + 1] for k in range(1, n - 1)])
     sides = [[[k, (k + 1) % n, n + (k + 1) % n], [k, n + (k + 1) % n, n + k]] for k in range(n)]
     return np.vstack([low, high]), np.vstack([fan[:, ::-1], fan + n, *map(np.array, sides)])
+
+
+def stl(corners: Array, faces: Faces) -> bytes:
+    """Binary STL."""
+    body = b"".join(struct.pack("<12fH", 0, 0, 0, *corners[face].ravel(), 0) for face in faces)
+    return bytes(80) + struct.pack("<I", len(faces)) + body
 
 
 def box(x: float, y: float, z: float, **placing: object) -> Part:

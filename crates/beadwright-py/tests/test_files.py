@@ -6,8 +6,9 @@ import json
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
-from conftest import Command, box
+from conftest import Command, box, prism
 
 import beadwright
 from beadwright import BeadwrightError, Part, Plan, Profile
@@ -106,9 +107,6 @@ def test_a_dialect_without_its_section_is_refused(cross: Plan) -> None:
 
 
 def test_what_should_not_be_started_is_not_written(tmp_path: Path) -> None:
-    import numpy as np
-    from conftest import prism
-
     low, faces = prism([(0, 0), (60, 0), (60, 40), (0, 40)], 4)
     high, more = prism([(0, 0), (60, 0), (60, 40), (0, 40)], 4)
     part = Part.from_triangles(np.vstack([low, high + (0, 0, 20)]), np.vstack([faces, more + len(low)]))

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import pickle
-import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Array, Faces, box, polygon, prism
+from conftest import box, polygon, prism, stl
 
 from beadwright import BeadwrightError, Part, examples
-
-
-def stl(corners: Array, faces: Faces) -> bytes:
-    """Binary STL."""
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *corners[face].ravel(), 0) for face in faces)
-    return bytes(80) + struct.pack("<I", len(faces)) + body
 
 
 @pytest.mark.parametrize(("x", "y", "z"), [(30, 20, 10), (100, 7.5, 2), (12.5, 12.5, 250)])

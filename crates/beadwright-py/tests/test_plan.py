@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import gc
+import hashlib
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import box, path_length, polygon, prism, shoelace
+from conftest import box, path_length, polygon, prism, shoelace, stl
 
 import beadwright
 from beadwright import BeadwrightError, Part, Plan
@@ -87,8 +89,9 @@ def test_one_width_is_held_once(contours: Plan) -> None:
     constant = [width for width in widths if width.strides == (0,)]
     assert constant
     assert all(np.ptp(width) == 0 for width in constant)
+    one = next(each for each in contours.passes if each.width.strides == (0,))
     with pytest.raises(BufferError):
-        memoryview(b"").cast("B") if False else np.frombuffer(contours.passes[0]._inner.width, dtype=np.float64)  # type: ignore[call-overload]
+        hashlib.sha256(one._inner.width)
 
 
 def test_an_array_outlives_its_plan() -> None:
@@ -101,17 +104,13 @@ def test_an_array_outlives_its_plan() -> None:
     assert np.array_equal(points, kept)
 
 
-@pytest.mark.parametrize("strategy", ["contour", "zigzag", "spiral"])
+@pytest.mark.parametrize("strategy", ["contour", "loop", "spiral"])
 def test_a_quarter_turn_and_a_mirror_change_nothing(strategy: str) -> None:
     corners, faces = prism([(0, 0), (70, 0), (70, 30), (20, 45)], 6)
-    settings = {"fill.raster_angle": 0.0}
-    turned = beadwright.Profile().set({"fill.raster_angle": 90.0})
-    as_is = beadwright.plan(Part.from_triangles(corners, faces), beadwright.Profile().set(settings), strategy=strategy)
-    quarter = beadwright.plan(Part.from_triangles(corners, faces, turn=(0, 0, 90)), turned, strategy=strategy)
-    mirrored = beadwright.plan(
-        Part.from_triangles(corners * (-1, 1, 1), faces[:, ::-1]), beadwright.Profile().set(settings), strategy=strategy
-    )
-    for other in [quarter, mirrored]:
+    as_is = beadwright.plan(Part.from_triangles(corners, faces), strategy=strategy)
+    quarter = Part.from_triangles(corners, faces, turn=(0, 0, 90))
+    mirrored = Part.from_triangles(corners * (-1, 1, 1), faces[:, ::-1])
+    for other in [beadwright.plan(part, strategy=strategy) for part in (quarter, mirrored)]:
         for name in ["arc_starts", "deposited_length_mm", "part_volume_mm3"]:
             assert other.metrics[name] == pytest.approx(as_is.metrics[name], rel=1e-3), name
 
@@ -147,12 +146,8 @@ def test_a_part_too_small_for_millimetres_is_refused() -> None:
     assert caught.value.place is not None
 
 
-def test_a_file_in_inches_asks_for_its_unit(tmp_path: object) -> None:
-    from pathlib import Path
-
-    from test_part import stl
-
-    path = Path(str(tmp_path)) / "inch.stl"
+def test_a_file_in_inches_asks_for_its_unit(tmp_path: Path) -> None:
+    path = tmp_path / "inch.stl"
     path.write_bytes(stl(*prism([(0, 0), (3, 0), (3, 2), (0, 2)], 1)))
     with pytest.raises(BeadwrightError, match='units="in"'):
         beadwright.plan(path)

@@ -11,6 +11,7 @@ from beadwright._core import VERSION as __version__
 from beadwright._errors import BeadwrightError
 from beadwright._progress import Progress
 from beadwright._bead import Bead, BeadLibrary, demonstration_csv
+from beadwright._executors import LocalExecutor, RayExecutor
 from beadwright._heat import Heat, heat
 from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
 from beadwright._layer import Island, Layer, LayerWarning, Pass
@@ -18,6 +19,7 @@ from beadwright._part import Part, examples
 from beadwright._plan import Plan, plan
 from beadwright._profile import Profile, profiles, strategies
 from beadwright._robot import Reach, ReachFinding, Trajectory, cells, reach
+from beadwright._study import Study, study
 
 __all__ = [
     "Bead",
@@ -30,13 +32,16 @@ __all__ = [
     "Judged",
     "Layer",
     "LayerWarning",
+    "LocalExecutor",
     "Part",
     "Pass",
     "Plan",
     "Profile",
     "Progress",
+    "RayExecutor",
     "Reach",
     "ReachFinding",
+    "Study",
     "Trajectory",
     "__version__",
     "cells",
@@ -50,4 +55,5 @@ __all__ = [
     "reach",
     "simulate",
     "strategies",
+    "study",
 ]

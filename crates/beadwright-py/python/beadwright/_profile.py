@@ -153,6 +153,9 @@ def _base(folder: Path) -> Callable[[str], str | None]:
 
 def _toml(key: str, value: Value) -> str:
     """A value in TOML, whose strings are written as in JSON."""
+    if hasattr(value, "item"):
+        # A number of NumPy, some of which are Python's floats, too.
+        value = value.item()
     if isinstance(value, bool | str):
         return json.dumps(value)
     if isinstance(value, int | float):
@@ -161,7 +164,4 @@ def _toml(key: str, value: Value) -> str:
         return f"[{', '.join(_toml(key, item) for item in value)}]"
     if isinstance(value, dict):
         return f"{{ {', '.join(f'{json.dumps(name)} = {_toml(key, item)}' for name, item in value.items())} }}"
-    if hasattr(value, "item"):
-        # A number of NumPy.
-        return _toml(key, value.item())
     raise BeadwrightError(f"{key}: a {type(value).__name__} cannot stand in a profile.", key)
