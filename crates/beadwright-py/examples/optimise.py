@@ -5,7 +5,7 @@ import optuna
 import beadwright
 
 PART = beadwright.Part.example("cross")
-BASE = beadwright.Profile("cmt-al2319-kuka").set(fill__overlap="free")
+BASE = beadwright.Profile("cmt-al2319-kuka").set(fill__overlap="free", fill__stepover=5.4)
 #: The most void that is taken, %.
 MOST_VOID = 1.0
 

@@ -81,7 +81,8 @@ impl Array {
         }
         let whole = array.strides.first() != Some(&0);
         let contiguous = [ffi::PyBUF_C_CONTIGUOUS, ffi::PyBUF_ANY_CONTIGUOUS].into_iter().any(asks);
-        if asks(ffi::PyBUF_F_CONTIGUOUS) && array.shape.len() > 1 || !whole && (contiguous || !asks(ffi::PyBUF_STRIDES)) {
+        if asks(ffi::PyBUF_F_CONTIGUOUS) && array.shape.len() > 1 || !whole && (contiguous || !asks(ffi::PyBUF_STRIDES))
+        {
             return Err(PyBufferError::new_err("the numbers do not lie in memory as asked for"));
         }
         let item = array.item;

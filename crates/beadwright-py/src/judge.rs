@@ -110,7 +110,11 @@ pub(crate) fn compare<'py>(
 ) -> PyResult<Vec<Judged>> {
     let profile = &*profile.profile;
     let Some(mesh) = part.part.mesh() else {
-        return Err(raise("strategies are compared on solids, and this is a wall given by curves.", Some(&part.name), None));
+        return Err(raise(
+            "strategies are compared on solids, and this is a wall given by curves.",
+            Some(&part.name),
+            None,
+        ));
     };
     let count = (mesh.bounds().1.z / profile.layers.height) as usize;
     let settings = fitted(grid, plan::deposit_settings(profile), &seen_from_above(mesh.bounds()), count)?;
@@ -159,16 +163,19 @@ pub(crate) fn height_field(
     let planned = &plan.0;
     let Some(layer) = planned.layers.get(layer) else {
         let last = planned.layers.len() - 1;
-        return Err(raise(&format!("there is no layer {layer}; they have the indices 0 to {last}."), Some("layer"), None));
+        return Err(raise(
+            &format!("there is no layer {layer}; they have the indices 0 to {last}."),
+            Some("layer"),
+            None,
+        ));
     };
     let bounds = extent(std::slice::from_ref(layer));
     let settings = fitted(grid, plan::deposit_settings(&planned.profile), &bounds, 1)?;
     let welded = plan::welded(layer, &planned.profile);
     let strokes: Vec<_> = welded.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
     let grid = Grid::covering(&bounds, settings.nominal.bead.width, settings.step);
-    let heights = Running::new(None, None).run(py, None, |_| {
-        Ok::<_, std::convert::Infallible>(bands(&strokes, &grid, |band| band.heights).concat())
-    })?;
+    let heights = Running::new(None, None)
+        .run(py, None, |_| Ok::<_, std::convert::Infallible>(bands(&strokes, &grid, |band| band.heights).concat()))?;
     let low = grid.place(0, 0);
     Ok((Array::rows(heights, Item::Float, grid.columns as isize), (low.x, low.y), grid.step))
 }

@@ -46,7 +46,8 @@ impl Part {
 
     fn of(name: String, model: Model, placing: Placing) -> PyResult<Self> {
         let (units, scale, turn, centre, stand, height) = placing;
-        let placement = Placement { units: units.map(|unit| unit_of(&unit)).transpose()?, scale, turn: turn.into(), centre };
+        let placement =
+            Placement { units: units.map(|unit| unit_of(&unit)).transpose()?, scale, turn: turn.into(), centre };
         let guessed = guessed_size(&model, &placement);
         // No bead is known yet: the guess is judged when the part is planned.
         let place = |model: Model, placement: &Placement| model.place(placement, height, 0.0).refuse(Some(&name));
@@ -84,7 +85,14 @@ fn guessed_size(model: &Model, placement: &Placement) -> Option<DVec3> {
 impl Part {
     /// A part from the bytes of a file.
     #[staticmethod]
-    fn read(py: Python<'_>, name: String, place: &str, bytes: &[u8], damaged: bool, placing: Placing) -> PyResult<Self> {
+    fn read(
+        py: Python<'_>,
+        name: String,
+        place: &str,
+        bytes: &[u8],
+        damaged: bool,
+        placing: Placing,
+    ) -> PyResult<Self> {
         let read = if damaged { Model::read_damaged } else { Model::read };
         let model = Running::new(Some(1), None).run(py, Some(place), |task| read(bytes, task))?;
         Self::of(name, model, placing)

@@ -80,11 +80,7 @@ impl<'py> Running<'py> {
 }
 
 /// Waits for the worker; fails with Ctrl-C and with what the callable raises.
-fn watch<T>(
-    worker: &ScopedJoinHandle<'_, T>,
-    events: &Receiver<Event>,
-    progress: Option<&Py<PyAny>>,
-) -> PyResult<()> {
+fn watch<T>(worker: &ScopedJoinHandle<'_, T>, events: &Receiver<Event>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     loop {
         let step = match events.recv_timeout(ASKED) {
             Ok(Event::Step(stage, fraction)) => Some((stage.name(), fraction)),

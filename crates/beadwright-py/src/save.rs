@@ -24,7 +24,9 @@ pub(crate) struct Wanted<'a> {
 /// Why nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SaveError {
-    #[error("nothing was written, since the program should not be started: {0} allow_findings=True writes it all the same.")]
+    #[error(
+        "nothing was written, since the program should not be started: {0} allow_findings=True writes it all the same."
+    )]
     Refused(String),
     #[error(transparent)]
     Dialect(#[from] DialectError),

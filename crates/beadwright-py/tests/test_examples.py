@@ -16,7 +16,7 @@ def test_an_example_runs(
 ) -> None:
     pytest.importorskip(needs)
     monkeypatch.chdir(tmp_path)
-    # As a module: processes that a study starts import what it is made of.
+    # Not as __main__: the call is below that guard, as in any script that starts processes.
     example = runpy.run_path(str(EXAMPLES / f"{name}.py"))
     if "main" in example:
         example["main"]()
