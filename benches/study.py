@@ -50,9 +50,11 @@ def dask(workers: int) -> Iterator[object]:
 
 @contextmanager
 def ray(workers: int) -> Iterator[object]:
+    # Ray takes the machine's address otherwise.
+    os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"
     import ray as engine
 
-    engine.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, _node_ip_address="127.0.0.1")
+    engine.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
     executor = beadwright.RayExecutor()
     [future.result() for future in [executor.submit(load, number) for number in range(4 * workers)]]
     yield executor

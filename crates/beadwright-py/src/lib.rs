@@ -6,7 +6,7 @@
 //! | `running` | long calls: without the interpreter's lock, with progress, ended by Ctrl-C |
 //! | `error` | errors of the library as `BeadwrightError`, with place and remedy |
 //! | `part`, `profile` | what is planned, and how |
-//! | `plan`, `layer` | the plan, its layers and passes |
+//! | `plan`, `planned`, `layer` | the plan, what it holds, its layers and passes |
 //! | `save` | the files of a plan, byte for byte those of the command |
 //! | `program` | anyone's program, read back as layers |
 //! | `judge` | what layers would build: height fields, comparisons |
@@ -23,6 +23,7 @@ mod judge;
 mod layer;
 mod part;
 mod plan;
+mod planned;
 mod profile;
 mod program;
 mod reach;

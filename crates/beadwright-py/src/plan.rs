@@ -1,36 +1,22 @@
 //! A part and a profile become a plan.
 
 use crate::error::Refuse;
-use crate::layer::{Layer, Layers};
+use crate::layer::Layer;
 use crate::part::Part;
+use crate::planned::Planned;
 use crate::profile::Profile;
 use crate::running::Running;
 use crate::save;
 use beadwright::export::{self, Beads};
-use beadwright::files::{Post, posts};
 use beadwright::plan::choice::{self, Choice};
-use beadwright::plan::{self as library, Header, PlanError, Summary};
-use beadwright::{model, profile};
+use beadwright::plan::{self as library, PlanError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::convert::Infallible;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-
-/// What a plan holds.
-pub(crate) struct Planned {
-    pub(crate) header: Header,
-    pub(crate) layers: Layers,
-    pub(crate) summary: Summary,
-    /// Why the strategy is another than the profile's.
-    pub(crate) note: Option<String>,
-    pub(crate) profile: profile::Profile,
-    /// Where the profile's own dialects lie.
-    pub(crate) folder: PathBuf,
-    pub(crate) part: Arc<model::Part>,
-}
 
 /// A plan.
 #[pyclass(frozen, module = "beadwright._core")]
@@ -63,19 +49,6 @@ pub(crate) fn plan<'py>(
         folder: profile.folder.clone(),
         part: part.part.clone(),
     }))
-}
-
-impl Planned {
-    /// The profile with other posts, and the posts themselves; without any, the profile's.
-    pub(crate) fn posts(&self, names: Vec<String>) -> PyResult<(profile::Profile, Vec<Post>)> {
-        let base = if names.is_empty() { &*self.folder } else { Path::new("") };
-        let mut profile = self.profile.clone();
-        if !names.is_empty() {
-            profile.posts = names;
-        }
-        let posts = posts(&profile.posts, base).refuse(None)?;
-        Ok((profile, posts))
-    }
 }
 
 #[pymethods]

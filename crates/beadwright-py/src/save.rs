@@ -1,6 +1,6 @@
 //! The files of a plan: the same bytes as the command writes.
 
-use crate::plan::Planned;
+use crate::planned::Planned;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::Judge;
 use beadwright::dialect::DialectError;
