@@ -4,13 +4,15 @@
     python benches/study.py [--plans 1000] [--workers 2] [--engines threads,local,dask,ray] [--kill]
 
 Needs the package (crates/beadwright-py), pyarrow, and for their engines distributed and ray. The reference is a loop in one
-process with one thread. Efficiency is its time over the engine's time times the workers, start not counted; overhead is what
-a plan costs more than there, its share of the workers counted. With --kill a worker is killed midway, except in the loop.
+process with one thread. Speed-up is its time over the engine's, start not counted. Busy is the share of the workers' time that
+went into plans, and overhead what is left of it for each plan: both are clear of whatever else the machine does meanwhile.
+With --kill a worker is killed midway, except in the loop.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import shutil
 import signal
@@ -108,7 +110,7 @@ def main() -> int:
     heights = [1.8 + 0.6 * k / count for k in range(count)]
     samples = [{"fill.strategy": name, "layers.height": height} for name in STRATEGIES for height in heights]
     print(f"{len(samples)} plans of {given.part}, {given.workers} workers, chunks of {given.chunk}; load {os.getloadavg()[0]:.1f}")
-    print(f"{'engine':8} {'start s':>8} {'study s':>8} {'plan ms':>8} {'overhead ms':>12} {'efficiency':>11}  bytes")
+    print(f"{'engine':8} {'start s':>8} {'study s':>8} {'plan ms':>8} {'overhead ms':>12} {'busy':>7} {'speed-up':>9}  bytes")
     folder, reference, alone = Path(tempfile.mkdtemp()), b"", 0.0
     for name in ["loop", *given.engines.split(",")]:
         workers, begin = 1 if name == "loop" else given.workers, time.perf_counter()
@@ -120,11 +122,11 @@ def main() -> int:
             took = time.perf_counter() - started
         content = done.path.read_bytes()
         alone, reference = alone or took, reference or content
-        each = 1e3 * took / len(samples)
-        overhead = each * workers - 1e3 * alone / len(samples)
+        seconds = [json.loads(line)["seconds"] for line in (folder / name / "done.jsonl").read_text().splitlines()]
+        each, spent = 1e3 * sum(seconds) / len(samples), 1e3 * took * workers / len(samples)
         same = "same" if content == reference else "DIFFERENT"
-        row = f"{name:8} {started - begin:8.1f} {took:8.1f} {each:8.1f} {overhead:12.1f}"
-        print(f"{row} {100 * alone / took / workers:9.0f} %  {same}", flush=True)
+        row = f"{name:8} {started - begin:8.1f} {took:8.1f} {each:8.1f} {spent - each:12.1f} {100 * each / spent:5.0f} %"
+        print(f"{row} {alone / took:9.2f}  {same}", flush=True)
     shutil.rmtree(folder)
     return 0
 
