@@ -37,6 +37,11 @@ def stl(corners: Array, faces: Faces) -> bytes:
     return bytes(80) + struct.pack("<I", len(faces)) + body
 
 
+def write_stl(part: Part, path: Path) -> None:
+    """Writes a part as binary STL."""
+    path.write_bytes(stl(part.vertices, part.faces.astype(np.int64)))
+
+
 def box(x: float, y: float, z: float, **placing: object) -> Part:
     """A box with a corner at the origin."""
     return Part.from_triangles(*prism([(0, 0), (x, 0), (x, y), (0, y)], z), name="box", **placing)  # type: ignore[arg-type]

@@ -1,13 +1,18 @@
-"""The examples run."""
+"""The examples run, and what docs/python.md says."""
 
 from __future__ import annotations
 
+import re
 import runpy
 from pathlib import Path
 
 import pytest
+from conftest import write_stl
+
+from beadwright import Part
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "python.md"
 
 
 @pytest.mark.parametrize(("name", "needs"), [("ten_lines", "numpy"), ("optimise", "optuna"), ("sweep", "pyarrow")])
@@ -21,3 +26,18 @@ def test_an_example_runs(
     if "main" in example:
         example["main"]()
     assert capsys.readouterr().out
+
+
+def test_the_page_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for needed in ["tqdm", "pyarrow", "matplotlib"]:
+        pytest.importorskip(needed)
+    monkeypatch.chdir(tmp_path)
+    for name in ["propeller", "cross"]:
+        write_stl(Part.example(name), tmp_path / f"{name}.stl")
+    known: dict[str, object] = {}
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    for block in blocks:
+        exec(compile(block, str(PAGE), "exec"), known)
+    assert len(blocks) == 2
+    assert (tmp_path / "out" / "PROPELLER.src").exists()
+    assert (tmp_path / "study" / "study.parquet").exists()

@@ -38,6 +38,11 @@ def dying(plan: Plan) -> float:
     return 1.0
 
 
+def failing(plan: Plan) -> float:
+    """A measure with a fault of its own."""
+    raise ZeroDivisionError(plan.part)
+
+
 class Counting(Executor):
     """Counts what it is given, and may lose some of it."""
 
@@ -142,6 +147,24 @@ def test_what_is_lost_is_handed_out_again(reference: Study, tmp_path: Path) -> N
 def test_what_is_lost_too_often_is_raised(tmp_path: Path) -> None:
     with pytest.raises(Exception, match="a worker was lost"):
         study(parts(), GRID, folder=tmp_path, executor=Counting(lost=100))
+
+
+def test_a_fault_of_a_measure_is_raised_and_not_tried_again(tmp_path: Path) -> None:
+    with LocalExecutor(1) as executor, pytest.raises(ZeroDivisionError, match="box"):
+        study(parts(), GRID, measures=[failing], folder=tmp_path, executor=executor)
+    assert not (tmp_path / "study.parquet").exists()
+
+
+def test_a_stopped_study_goes_on(reference: Study, tmp_path: Path) -> None:
+    def stop(stage: str, fraction: float) -> None:
+        if fraction > 0.3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        study(parts(), GRID, folder=tmp_path, executor=Counting(), progress=stop)
+    rest = study(parts(), GRID, folder=tmp_path, executor=Counting())
+    assert rest.planned == 8, "the first four are known"
+    assert rest.path.read_bytes() == reference.path.read_bytes()
 
 
 def test_a_sample_that_cannot_be_has_its_sentence(tmp_path: Path) -> None:

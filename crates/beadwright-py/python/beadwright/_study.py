@@ -7,9 +7,9 @@ import itertools
 import json
 import os
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from queue import SimpleQueue
@@ -77,10 +77,13 @@ def study(
     # An executor that was brought goes on after the study.
     own: AbstractContextManager[Executor] = LocalExecutor() if executor is None else nullcontext(executor_of(executor))
     with steps(progress) as step, own as workers:
-        for outcomes in _outcomes(workers, _chunks(left.values(), chunk), base, wanted, retries):
-            journal.add(outcomes)
-            if step is not None:
-                step("study", 1 - sum(key not in journal.done for key in left) / len(left))
+        came = _outcomes(workers, _chunks(left.values(), chunk), base, wanted, retries)
+        # Closed before the workers are, so that a study that is stopped waits for the plans in flight only.
+        with closing(came):
+            for outcomes in came:
+                journal.add(outcomes)
+                if step is not None:
+                    step("study", 1 - sum(key not in journal.done for key in left) / len(left))
     rows = [_row(job, journal.done[job.key], wanted) for job in jobs]
     result = Study(rows, Path(folder) / TABLE, planned=len(left))
     result._write()
@@ -199,7 +202,7 @@ def _chunks(jobs: Iterable[_Job], size: int) -> Iterator[list[_Job]]:
 
 def _outcomes(
     workers: Executor, chunks: Iterable[list[_Job]], base: Profile, measures: dict[str, Measure], retries: int
-) -> Iterator[list[dict[str, Any]]]:
+) -> Generator[list[dict[str, Any]], None, None]:
     """Hands the chunks out, and yields what comes back, as it comes; what was lost with its worker is handed out again."""
     ended: SimpleQueue[Future[list[dict[str, Any]]]] = SimpleQueue()
     running: dict[Future[list[dict[str, Any]]], tuple[list[_Job], int]] = {}
