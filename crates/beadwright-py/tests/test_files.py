@@ -119,7 +119,7 @@ def test_what_should_not_be_started_is_not_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet", "vtp", "3mf", "stl", "glb"])
-def test_exports_are_the_commands(ending: str, command: Command, tmp_path: Path) -> None:
+def test_exports_are_as_large_as_the_commands(ending: str, command: Command, tmp_path: Path) -> None:
     plan = beadwright.plan(Part.example("cross"), strategy="contour")
     plan.save(tmp_path / "out", deposit=False)
     done = command("export", tmp_path / "out" / "plan.json", "-o", tmp_path / f"theirs.{ending}")
