@@ -77,10 +77,9 @@ fn what_a_profile_lacks_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
-    said(&beadwright(
-        at,
-        &["plan", "cross.stl", "--no-deposit", "--profile", "fdm-abs-0.4", "-o", "plan", "--set", "bead.width=4"],
-    ));
+    let wide = ["--set", "bead.width=4", "--set", "fill.stepover=3"];
+    let plan = ["plan", "cross.stl", "--no-deposit", "--profile", "fdm-abs-0.4", "-o", "plan"];
+    said(&beadwright(at, &[&plan[..], &wide].concat()));
     let refused = beadwright(at, &["heat", "plan/plan.json"]);
     let text = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert!(refused.status.code() == Some(1) && text.contains("[heat]") && !at.join("heat.html").exists(), "{text}");

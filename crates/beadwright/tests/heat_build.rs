@@ -21,7 +21,7 @@ fn wall(profile: &Profile, length: f64, degrees: f64, count: usize, wait: f64) -
     let layer = |index: usize| {
         let z = (index + 1) as f64 * height;
         let ends = [dvec2(-length / 2.0, 0.0), dvec2(length / 2.0, 0.0)].map(turn);
-        let points = if index % 2 == 0 { ends.to_vec() } else { vec![ends[1], ends[0]] };
+        let points = if index.is_multiple_of(2) { ends.to_vec() } else { vec![ends[1], ends[0]] };
         let half = dvec2(length, width) / 2.0;
         let outline = [dvec2(-half.x, -half.y), dvec2(half.x, -half.y), half, dvec2(-half.x, half.y)].map(turn);
         let pass = Pass {

@@ -2,6 +2,7 @@
 //! dialect, and counted by the totals.
 #![allow(clippy::unwrap_used)]
 
+mod common;
 mod readers;
 
 use beadwright::check;
@@ -9,7 +10,7 @@ use beadwright::deposit::Judge;
 use beadwright::dialect;
 use beadwright::dialect::fanuc::FanucSpeed;
 use beadwright::dialect::rapid::RapidArc;
-use beadwright::dialect::reading::{ArcCodes, Options, ReadProgram, read};
+use beadwright::dialect::reading::{Options, ReadProgram, read};
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::pass::{Along, Pass, PassKind};
@@ -339,13 +340,7 @@ fn totals_are_those_of_the_program() {
 }
 
 fn back(files: &Files, main: &str) -> ReadProgram {
-    let arc = ArcCodes { on: vec!["$OUT[2] = TRUE".to_owned()], off: vec!["$OUT[2] = FALSE".to_owned()] };
-    let options = Options { arc, ..Options::default() };
-    let mut find = |name: &str| {
-        let endings = ["", ".src", ".mod", ".ls", ".jbi"].map(|ending| format!("{name}{ending}"));
-        endings.iter().find_map(|n| files.get(n)).cloned()
-    };
-    read(&files[main], &mut find, &options).unwrap()
+    common::read_back(files, main).unwrap()
 }
 
 #[test]

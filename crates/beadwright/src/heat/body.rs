@@ -6,7 +6,8 @@
 //! Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
 
 use super::grid::Grid;
-use super::sweep::{self, Deep};
+use super::sweep::{self, Lags};
+use std::ops::Range;
 
 /// Stefan-Boltzmann constant, W/(mm²·K⁴).
 pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374e-14;
@@ -71,10 +72,15 @@ pub struct Body {
     supplied: f64,
     lost: f64,
     pub(super) reverse: bool,
-    /// What lies deep.
-    pub(super) deep: Deep,
+    /// Time that has passed, s, and what has not seen all of it.
+    pub(super) clock: f64,
+    pub(super) lags: Lags,
     /// Number of voxels of each level that are bare across each axis.
     pub(super) exposed: [Vec<usize>; 3],
+    /// Where each level has metal, along x and y: nothing beyond it is swept.
+    pub(super) extents: Vec<[Range<usize>; 2]>,
+    /// Number of levels up to the highest metal, of every tile of columns.
+    pub(super) tops: Vec<usize>,
 }
 
 impl Body {
@@ -98,8 +104,11 @@ impl Body {
             supplied: 0.0,
             lost: 0.0,
             reverse: false,
-            deep: Deep::default(),
+            clock: 0.0,
+            lags: Lags::new(&grid),
             exposed: [0; 3].map(|none| vec![none; grid.counts()[2]]),
+            extents: vec![[0..0, 0..0]; grid.counts()[2]],
+            tops: vec![0; sweep::tiles(&grid) * grid.counts()[1]],
             grid,
         }
     }
@@ -119,7 +128,7 @@ impl Body {
     /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is all that the voxel's metal then covers seen
     /// from above. [`Self::refresh`] must follow.
     pub(super) fn add(&mut self, voxel: usize, volume: f64, area: f64) {
-        let [_, _, level] = self.grid.place(voxel);
+        let [x, y, level] = self.grid.place(voxel);
         let capacity = volume * self.stuff[level].capacity;
         let size = self.grid.size(voxel);
         self.theta[voxel] *= self.capacity[voxel] / (self.capacity[voxel] + capacity).max(f64::MIN_POSITIVE);
@@ -127,6 +136,11 @@ impl Body {
         self.metal[voxel] += volume;
         self.area[voxel] = self.area[voxel].max(area).min(size.x * size.y);
         self.levels = self.levels.max(level + 1);
+        for (extent, at) in self.extents[level].iter_mut().zip([x, y]) {
+            *extent = if extent.end == 0 { at..at + 1 } else { extent.start.min(at)..extent.end.max(at + 1) };
+        }
+        let top = &mut self.tops[y * sweep::tiles(&self.grid) + x / sweep::TILE];
+        *top = (*top).max(level + 1);
     }
 
     /// Heats a voxel, J. One without metal takes nothing.
@@ -134,7 +148,18 @@ impl Body {
         if self.capacity[voxel] > 0.0 {
             self.theta[voxel] += joules / self.capacity[voxel];
             self.supplied += joules;
+            self.wake(voxel);
         }
+    }
+
+    /// Lets every place see all the time that has passed.
+    pub(super) fn settle(&mut self) {
+        self.lost += sweep::settle(self);
+    }
+
+    /// What lies around a voxel takes part in the next steps, and so sees all the time that has passed.
+    pub(super) fn wake(&mut self, voxel: usize) {
+        sweep::wake(self, voxel);
     }
 
     /// Computes anew what conducts and what lies bare, at these voxels and beside them.

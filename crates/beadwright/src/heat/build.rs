@@ -26,7 +26,7 @@ const FIRST_STEP: f64 = 1.0;
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
-/// Longest steps of what lies deep below the torch, over the same time.
+/// Longest steps of what lies far from the torch, over the same time.
 const PATIENCE: f64 = 2.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
@@ -84,11 +84,11 @@ impl LayerHeat {
 /// A part being built, up to the pass that was laid last.
 #[derive(Debug, Clone)]
 pub struct Build {
-    settings: HeatSettings,
+    pub(super) settings: HeatSettings,
     nominal: Process,
     process: Process,
-    torch: Torch,
-    body: Body,
+    pub(super) torch: Torch,
+    pub(super) body: Body,
     /// Level of voxels of every layer.
     levels: Vec<usize>,
     /// Side area of the layers in every level, mm².
@@ -97,8 +97,8 @@ pub struct Build {
     covered: Vec<f64>,
     touched: Vec<usize>,
     /// Time since the beginning, s, and the end of it that the body has not seen.
-    now: f64,
-    pending: f64,
+    pub(super) now: f64,
+    pub(super) pending: f64,
 }
 
 impl Build {
@@ -140,9 +140,9 @@ impl Build {
         build
     }
 
-    /// Sets the longest steps of what lies deep, over the time in which heat crosses a voxel.
+    /// Sets the longest steps of what lies far from the torch, over the time in which heat crosses a voxel.
     fn be_patient(&mut self, steps: f64) {
-        self.body.deep.patience = steps * self.crossing();
+        self.body.lags.patience = steps * self.crossing();
     }
 
     /// The limits between passes.
@@ -183,7 +183,8 @@ impl Build {
         self.process = self.nominal.at_layer(layer.index);
         let pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
-        self.catch_up();
+        self.catch_up(None);
+        self.body.settle();
         // The layer before may lie in the same level of voxels; an empty one left nothing.
         let under = layer.index.checked_sub(1).map_or(self.level(0).saturating_sub(1), |before| self.level(before));
         let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
@@ -208,16 +209,20 @@ impl Build {
     }
 
     /// Time passes; the body sees it before its temperatures are next asked for.
-    fn spend(&mut self, seconds: f64) {
+    pub(super) fn spend(&mut self, seconds: f64) {
         self.now += seconds;
         self.pending += seconds;
     }
 
-    /// Lets the body see the time that has passed.
-    pub(super) fn catch_up(&mut self) {
+    /// Lets the body see the time that has passed; all of it where a temperature is to be read, at a place of a layer.
+    pub(super) fn catch_up(&mut self, at: Option<(usize, DVec2)>) {
         let (mut step, whole) = (FIRST_STEP * self.crossing(), self.pending);
+        let place = at.map(|(layer, at)| self.body.grid().column(at.x, at.y, self.level(layer)));
         while self.pending > 0.0 {
             let next = if self.pending < 1.5 * step { self.pending } else { step };
+            if let Some(place) = place {
+                self.body.wake(place);
+            }
             self.body.step(next);
             self.pending = if next == self.pending { 0.0 } else { self.pending - next };
             step = (step * GROWTH).min(self.longest_step(whole - self.pending));
@@ -259,69 +264,6 @@ impl Build {
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
     }
 
-    /// Where the torch stands, mm.
-    pub(super) fn torch_at(&self) -> Option<DVec3> {
-        self.torch.at()
-    }
-
-    /// How long the torch takes to the start of a pass, s.
-    pub(super) fn way(&self, start: DVec3) -> f64 {
-        self.torch.clone().approach(start).moving
-    }
-
-    /// How many whole seconds to wait until the metal under a place is no hotter than `limit` °C after another `way`
-    /// seconds; `None` where it never cools so far.
-    pub(super) fn wait_for(&mut self, layer: usize, at: DVec2, limit: f64, way: f64) -> Option<f64> {
-        self.catch_up();
-        // What is as cool as this does not get too hot on the way.
-        if self.surface(layer, at) <= limit.midpoint(self.settings.heat.ambient) {
-            return Some(0.0);
-        }
-        let (today, now) = (self.body.clone(), self.now);
-        self.spend(way);
-        self.catch_up();
-        let mut wait = self.cool(layer, at, limit);
-        // The real wait takes other steps than the search, and may end a little hotter.
-        while let Some(seconds) = wait.filter(|seconds| *seconds > 0.0) {
-            self.body.clone_from(&today);
-            self.spend(way + seconds);
-            self.catch_up();
-            let over = self.surface(layer, at) - limit;
-            if over <= 0.0 || seconds >= LONGEST_WAIT {
-                break;
-            }
-            // Metal that cools freely loses about this much in that time, or more.
-            let more = over * seconds / (limit - self.settings.heat.ambient).max(1.0);
-            wait = Some(seconds + more.floor().max(1.0));
-        }
-        (self.body, self.now) = (today, now);
-        wait
-    }
-
-    /// Lets the metal under a place cool to `limit` °C; the time that this takes, in whole seconds.
-    fn cool(&mut self, layer: usize, at: DVec2, limit: f64) -> Option<f64> {
-        let (mut waited, mut step) = (0.0, 1.0_f64);
-        while self.surface(layer, at) > limit {
-            if waited >= LONGEST_WAIT {
-                return None;
-            }
-            let before = (step > 1.0).then(|| self.body.clone());
-            self.body.step(step);
-            match before {
-                // Too far: back, and on by smaller steps.
-                Some(before) if self.surface(layer, at) <= limit => {
-                    self.body = before;
-                    step = (step / 4.0).floor().max(1.0);
-                }
-                _ => {
-                    waited += step;
-                    step = (step * GROWTH).ceil().min(self.longest_step(waited).floor().max(1.0));
-                }
-            }
-        }
-        Some(waited)
-    }
-
     /// Builds a pass of the layer with the index `layer`, after the wait that it has; `None` if it has no points.
     pub(super) fn pass(&mut self, layer: usize, pass: &Pass) -> Option<PassHeat> {
         let start = pass.start()?;
@@ -329,12 +271,11 @@ impl Build {
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
         let approach = self.torch.approach(start);
         self.spend(approach.moving);
-        self.catch_up();
+        self.catch_up(Some((layer, start.truncate())));
         let moves = path(pass, self.torch.ends());
         let temperature = self.surface(layer, start.truncate());
         let welded = self.torch.weld(&moves);
         self.spend(welded.before);
-        self.catch_up();
         let at = self.now;
         let wait = pause.map_or(0.0, |pause| pause.seconds);
         let mut heat = PassHeat { at, wait, start: temperature, along: vec![temperature] };
@@ -349,7 +290,8 @@ impl Build {
     fn weld(&mut self, layer: usize, moves: &[(DVec3, f64)], pass: &Pass, moving: f64) -> Vec<f64> {
         let pieces = || moves.windows(2).map(|w| (w[0].0.truncate(), w[1].0.truncate(), w[1].1));
         let steady: f64 = pieces().map(|(a, b, pace)| a.distance(b) / self.process.speed_at(pace)).sum();
-        let (slower, length) = (moving / steady.max(1e-9), self.spacing());
+        let (slower, spacing) = (moving / steady.max(1e-9), self.spacing());
+        let mut left: f64 = pieces().map(|(a, b, _)| a.distance(b)).sum();
         let width = pass.segments().map(|s| s.length() * s.width).sum::<f64>() / pass.length().max(1e-9);
         let (mut chunk, mut along) = (Chunk::default(), Vec::new());
         // The arc burns before the torch leaves.
@@ -359,6 +301,8 @@ impl Build {
         for (a, b, pace) in pieces() {
             let (whole, mut done) = (a.distance(b), 0.0);
             while done < whole {
+                // A short rest is laid with the chunk before it.
+                let length = if left + chunk.length < 1.5 * spacing { f64::INFINITY } else { spacing };
                 let part = (length - chunk.length).min(whole - done);
                 let [from, to] = [done, done + part].map(|along| a.lerp(b, along / whole));
                 let seconds = part / self.process.speed_at(pace) * slower;
@@ -368,13 +312,16 @@ impl Build {
                 chunk.length += part;
                 self.cover([from, to], width, area * part, layer, &mut chunk);
                 done += part;
+                left -= part;
                 if chunk.length >= length * (1.0 - 1e-9) {
                     along.push(self.finish(layer, &mut chunk, to));
                 }
             }
         }
         if let Some((end, _)) = moves.last() {
-            self.finish(layer, &mut chunk, end.truncate());
+            let whole = chunk.length >= spacing;
+            let ahead = self.finish(layer, &mut chunk, end.truncate());
+            along.extend(whole.then_some(ahead));
         }
         along
     }
@@ -480,7 +427,7 @@ mod tests {
     use crate::{Task, example};
 
     #[test]
-    fn longer_steps_below_change_next_to_nothing() {
+    fn longer_steps_far_from_the_torch_change_next_to_nothing() {
         let profile = Profile::built_in("cmt-steel-robots").unwrap();
         let plan = crate::plan("vase", &example::find("vase").unwrap().mesh(), &profile, &Task::new()).unwrap();
         let points = plan.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
@@ -496,7 +443,7 @@ mod tests {
         let (eager, patient) = (run(0.0), run(PATIENCE));
         assert!(eager.len() > 50);
         let worst = eager.iter().zip(&patient).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
-        println!("longer steps below change starts by {:.2} % at most", 100.0 * worst);
+        println!("longer steps far away change starts by {:.2} % at most", 100.0 * worst);
         assert!(worst < 0.03, "{worst}");
     }
 }

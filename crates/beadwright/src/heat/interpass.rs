@@ -1,6 +1,6 @@
 //! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and at which end to begin.
 
-use super::build::{Build, LayerHeat};
+use super::build::{Build, LONGEST_WAIT, LayerHeat};
 use super::settings::Interpass;
 use crate::layer::Layer;
 use crate::pass::Pass;
@@ -13,6 +13,10 @@ const STARTS: usize = 16;
 /// A pass that begins so close to the end of the last one goes on with its bead, mm.
 const GOES_ON_MM: f64 = 0.5;
 
+/// The first wait that is tried, s, and by how much the next ones are longer while the metal is too hot after them.
+const FIRST_WAIT: f64 = 16.0;
+const FURTHER: f64 = 1.5;
+
 /// A start must be cooler than the planned one by this to be taken instead, K.
 const WORTH_MOVING: f64 = 2.0;
 
@@ -23,15 +27,14 @@ impl Build {
         let Some(limits) = self.limits() else { return self.layer(layer) };
         let mut heat = self.begin(layer);
         let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
-        let mut current = 0;
+        let (mut current, mut end) = (0, None);
         while queues.iter().any(|queue| !queue.is_empty()) {
-            self.catch_up();
-            current = self.next(layer.index, &mut queues, current, &limits);
+            self.catch_up(None);
+            current = self.next(layer.index, &mut queues, current, end, &limits);
             let Some(mut pass) = queues[current].pop_front() else { break };
             let Some(start) = pass.start() else { continue };
-            let (limit, way) = (limits.max_temperature, self.way(start));
-            let wait = self.wait_for(layer.index, start.truncate(), limit, way);
-            pass.wait += wait.unwrap_or(super::LONGEST_WAIT);
+            pass.wait += self.wait_for(layer.index, start, limits.max_temperature);
+            end = pass.end();
             heat.passes.extend(self.pass(layer.index, &pass));
             layer.passes.push(pass);
         }
@@ -40,17 +43,22 @@ impl Build {
     }
 
     /// The queue whose first pass comes next: that of the present island while its metal is cool enough, or where a pass goes
-    /// on from the end of the last one; then the first one in the planned order that is cool, then the one that waits least.
+    /// on from the `end` of the last one; then the first one in the planned order that is cool, then the one that waits least.
     /// Its pass begins where it is coolest if it must wait.
-    fn next(&self, layer: usize, queues: &mut [VecDeque<Pass>], current: usize, limits: &Interpass) -> usize {
+    fn next(
+        &self,
+        layer: usize,
+        queues: &mut [VecDeque<Pass>],
+        current: usize,
+        end: Option<DVec3>,
+        limits: &Interpass,
+    ) -> usize {
         let hot = |at: DVec3| self.surface(layer, at.truncate()) - limits.max_temperature;
         let open: Vec<(usize, DVec3)> =
             queues.iter().enumerate().filter_map(|(q, queue)| Some((q, queue.front()?.start()?))).collect();
         let Some(&(first, _)) = open.first() else { return current };
         let cool = |&&(_, start): &&(usize, DVec3)| hot(start) <= 0.0;
-        let goes_on = |&(_, start): &(usize, DVec3)| {
-            self.torch_at().is_some_and(|at| at.truncate().distance(start.truncate()) < GOES_ON_MM)
-        };
+        let goes_on = |&(_, start): &(usize, DVec3)| end.is_some_and(|end| end.distance(start) < GOES_ON_MM);
         let here = open.iter().filter(|(q, _)| *q == current).find(|head| cool(head) || goes_on(head));
         if let Some(&(queue, _)) = here.or_else(|| open.iter().find(cool)) {
             return queue;
@@ -66,6 +74,35 @@ impl Build {
             _ => {}
         }
         queue
+    }
+
+    /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
+    /// gets there; [`LONGEST_WAIT`] where it never cools so far.
+    fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> f64 {
+        let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
+        // What is as cool as this does not get too hot on the way.
+        if self.surface(layer, at) <= limit.midpoint(ambient) {
+            return 0.0;
+        }
+        let (today, now) = (self.body.clone(), self.now);
+        // How much too hot the metal is after a wait, K.
+        let after = |build: &mut Self, wait: f64| {
+            (build.now, build.pending) = (now, 0.0);
+            build.body.clone_from(&today);
+            build.spend(build.until(wait, start));
+            build.catch_up(Some((layer, at)));
+            build.surface(layer, at) - limit
+        };
+        let wait = shortest(limit - ambient, |wait| after(self, wait));
+        (self.body, self.now, self.pending) = (today, now, 0.0);
+        wait
+    }
+
+    /// Seconds from now until the torch stands at a start, a wait before it included.
+    fn until(&self, wait: f64, start: DVec3) -> f64 {
+        let mut torch = self.torch.clone();
+        let pause = torch.wait(wait).map_or(0.0, |pause| pause.moving + pause.seconds);
+        pause + torch.approach(start).moving
     }
 }
 
@@ -104,4 +141,28 @@ fn by_island(layer: &mut Layer) -> Vec<VecDeque<Pass>> {
         }
     }
     queues.into_iter().map(|(_, queue)| queue).collect()
+}
+
+/// The shortest wait in whole seconds after which the metal is no hotter than it may be, at most [`LONGEST_WAIT`].
+/// `after(wait)` says by how much it is hotter (K), `rise` (K) how far the limit lies above the surroundings.
+fn shortest(rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
+    let (mut short, mut long, mut guess) = (-1.0, f64::INFINITY, 0.0);
+    while long - short > 1.0 && guess < LONGEST_WAIT {
+        let over = after(guess);
+        if over > 0.0 {
+            short = guess;
+        } else {
+            long = guess;
+        }
+        // What cools freely loses about this much a second, or more.
+        let next = (guess + over * guess / rise.max(1.0)).round();
+        guess = if next > short && next < long && long.is_finite() {
+            next
+        } else if long.is_finite() {
+            short.midpoint(long).floor()
+        } else {
+            next.max(FIRST_WAIT + FURTHER * guess)
+        };
+    }
+    long.min(LONGEST_WAIT)
 }

@@ -4,60 +4,107 @@
 //! step, which cancels most of the error of splitting.
 
 use super::body::{Air, Body, KELVIN, STEFAN_BOLTZMANN};
+use super::grid::Grid;
 use rayon::prelude::*;
-use std::ops::Range;
 
-/// Strips into which planes are cut for sweeps along z; the same for any number of threads.
-const STRIPS: usize = 4;
+/// Voxels along x in a tile: columns that are swept along z side by side.
+pub(super) const TILE: usize = 16;
 
-/// Bodies with fewer voxels are not worth a second thread.
-const WORTH_SHARING: usize = 8_000;
+/// Tiles that are worth handing to a thread.
+const TILES_A_TURN: usize = 8;
+
+/// Sweeps over fewer voxels are not worth a second thread.
+const WORTH_SHARING: usize = 16_000;
 
 /// No face radiates as if it were hotter than melting steel, K: what the arc and its pool lose is left out of the arc's
 /// efficiency already.
 const HOTTEST: f64 = 1800.0;
 
-/// Levels below the highest one that spread their heat sideways in every step.
+/// So many voxels around the torch, sideways and below, take part in every step.
 const NEAR: usize = 5;
 
 /// Lines along x that are solved side by side.
 const LANES: usize = 8;
 
-/// What lies deep below the torch: its heat spreads sideways slowly, so that takes longer steps. Upward and downward nothing
-/// may wait: a level that heat crosses in a longer step holds it back.
+/// The longest step of what the torch left behind, over the time since it was near.
+const PART_OF_REST: f64 = 0.08;
+
+/// A level (swept along x and y) or a tile of columns (swept along z) that may take longer steps than the torch: the longer
+/// ago it was heated, the slower its temperatures change.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Deep {
-    /// It holds the levels below this one.
-    level: usize,
-    /// Its longest step, s; 0 where it takes the same steps as the rest.
-    pub(super) patience: f64,
-    /// Time that has passed since its last step, s.
+pub(super) struct Lag {
+    /// Time that it has not seen yet, s.
     owed: f64,
+    /// The body's clock when the torch was last near, s.
+    heated: f64,
 }
 
-/// One step of `seconds`; gives the heat lost, J.
-pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
-    let levels = body.deep.level..body.levels;
-    body.deep.owed += seconds;
-    let late = body.deep.owed >= body.deep.patience;
-    let mut lost = 0.0;
-    let sideways = |body: &mut Body| {
-        let mut lost = level(body, seconds, levels.clone());
-        if late {
-            lost += level(body, body.deep.owed, 0..levels.start);
-            // Only now, when nobody is behind, may the deep part grow.
-            let grown = if body.deep.patience > 0.0 { body.levels.saturating_sub(NEAR) } else { 0 };
-            body.deep = Deep { level: grown, owed: 0.0, ..body.deep };
-        }
-        lost
-    };
-    if body.reverse {
-        lost += vertical(body, seconds);
-        lost += sideways(body);
-    } else {
-        lost += sideways(body);
-        lost += vertical(body, seconds);
+impl Lag {
+    /// The step to take when the body's clock has come to `now` after `seconds`; 0 where it is put off.
+    fn step(&mut self, seconds: f64, now: f64, patience: f64) -> f64 {
+        self.owed += seconds;
+        let longest = (PART_OF_REST * (now - self.heated)).min(patience);
+        if self.owed >= longest { std::mem::take(&mut self.owed) } else { 0.0 }
     }
+}
+
+/// Levels and tiles near a voxel take part in the next steps.
+pub(super) fn wake(body: &mut Body, voxel: usize) {
+    let ([x, y, level], [nx, ny, _]) = (body.grid.place(voxel), body.grid.counts());
+    let (tiles, now) = (tiles(&body.grid), body.clock);
+    for k in level.saturating_sub(NEAR)..level + 1 {
+        body.lags.levels[k].heated = now;
+    }
+    for j in y.saturating_sub(NEAR)..(y + NEAR + 1).min(ny) {
+        for t in x.saturating_sub(NEAR) / TILE..(x + NEAR).min(nx - 1) / TILE + 1 {
+            body.lags.tiles[j * tiles + t].heated = now;
+        }
+    }
+}
+
+/// What every level and tile is behind.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lags {
+    pub(super) levels: Vec<Lag>,
+    pub(super) tiles: Vec<Lag>,
+    /// The longest step, s: longer ones let too little heat turn the corner from wall to plate. 0 makes all take part in every
+    /// step.
+    pub(super) patience: f64,
+}
+
+impl Lags {
+    pub(super) fn new(grid: &Grid) -> Self {
+        let [_, ny, nz] = grid.counts();
+        Self { levels: vec![Lag::default(); nz], tiles: vec![Lag::default(); tiles(grid) * ny], patience: 0.0 }
+    }
+}
+
+/// One step of `seconds`; gives the heat lost, J. Every sweep takes whole lines, so that none of them holds back the heat of
+/// another, however long its step.
+pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
+    body.clock += seconds;
+    let (now, patience) = (body.clock, body.lags.patience);
+    let steps = |lags: &mut [Lag]| lags.iter_mut().map(|lag| lag.step(seconds, now, patience)).collect();
+    let (levels, tiles): (Vec<f64>, Vec<f64>) = (steps(&mut body.lags.levels), steps(&mut body.lags.tiles));
+    sweep(body, &levels, &tiles)
+}
+
+/// Lets all see the time that has passed; gives the heat lost, J.
+pub(super) fn settle(body: &mut Body) -> f64 {
+    let steps = |lags: &mut [Lag]| lags.iter_mut().map(|lag| std::mem::take(&mut lag.owed)).collect();
+    let (levels, tiles): (Vec<f64>, Vec<f64>) = (steps(&mut body.lags.levels), steps(&mut body.lags.tiles));
+    sweep(body, &levels, &tiles)
+}
+
+/// Sweeps every level and tile by its own step.
+fn sweep(body: &mut Body, levels: &[f64], tiles: &[f64]) -> f64 {
+    let lost = if body.reverse {
+        let lost = vertical(body, tiles);
+        lost + level(body, levels)
+    } else {
+        let lost = level(body, levels);
+        lost + vertical(body, tiles)
+    };
     body.reverse = !body.reverse;
     lost
 }
@@ -97,24 +144,29 @@ impl Row<'_> {
     }
 }
 
-/// Heat stored a second and kelvin, W/K; an empty voxel stores something, so that it keeps its own temperature.
-fn stored(capacity: f64, seconds: f64) -> f64 {
-    if capacity > 0.0 { capacity / seconds } else { 1.0 }
+/// Heat stored a second and kelvin, W/K, `often` a second; an empty voxel stores something, so that it keeps its own
+/// temperature.
+fn stored(capacity: f64, often: f64) -> f64 {
+    if capacity > 0.0 { capacity * often } else { 1.0 }
 }
 
-/// The sweeps along x and y, level by level.
-fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
+/// The sweeps along x and y, level by level, each with its step.
+fn level(body: &mut Body, steps: &[f64]) -> f64 {
     let axes = if body.reverse { [1, 0] } else { [0, 1] };
     let ([nx, ..], plane) = (body.grid.counts(), body.grid.strides()[2]);
-    let Body { air, theta, capacity, across, bare, sides, exposed, .. } = body;
-    let first = levels.start;
-    let sweep = |(k, theta): (usize, &mut [f64])| {
-        let (k, mut lost) = (first + k, 0.0);
+    let Body { air, theta, capacity, across, bare, sides, exposed, extents, .. } = body;
+    let swept: usize = extents.iter().zip(steps).filter(|(_, s)| **s > 0.0).map(|([x, y], _)| x.len() * y.len()).sum();
+    let sweep = |(k, (theta, &seconds)): (usize, (&mut [f64], &f64))| {
+        if seconds <= 0.0 {
+            return 0.0;
+        }
+        let mut lost = 0.0;
         let mut scratch = Scratch::default();
         for axis in axes {
-            let rows = theta.chunks_mut(nx).enumerate().map(|(j, theta)| {
+            let [x, y] = &extents[k];
+            let rows = theta.chunks_mut(nx).enumerate().take(y.end).skip(y.start).map(|(j, theta)| {
                 let from = k * plane + j * nx;
-                let part = from..from + nx;
+                let (theta, part) = (&mut theta[x.clone()], from + x.start..from + x.end);
                 let [capacity, across, bare] =
                     [&capacity[..], &across[axis], &bare[axis]].map(|all| &all[part.clone()]);
                 let bare = if exposed[axis][k] > 0 { bare } else { &[] };
@@ -128,37 +180,43 @@ fn level(body: &mut Body, seconds: f64, levels: Range<usize>) -> f64 {
         }
         lost
     };
-    let theta = &mut theta[plane * levels.start..plane * levels.end];
-    if theta.len() > WORTH_SHARING {
-        let lost: Vec<f64> = theta.par_chunks_mut(plane).enumerate().map(sweep).collect();
+    if swept > WORTH_SHARING {
+        let lost: Vec<f64> = theta.par_chunks_mut(plane).zip(steps).enumerate().map(sweep).collect();
         lost.iter().sum()
     } else {
-        theta.chunks_mut(plane).enumerate().map(sweep).sum()
+        theta.chunks_mut(plane).zip(steps).enumerate().map(sweep).sum()
     }
 }
 
-/// The sweep along z, in strips.
-fn vertical(body: &mut Body, seconds: f64) -> f64 {
-    let plane = body.grid.strides()[2];
-    let Body { air, theta, capacity, across, bare, table, levels, exposed, .. } = body;
-    let width = plane.div_ceil(STRIPS);
-    let shared = plane * *levels > WORTH_SHARING;
-    let mut strips: Vec<Vec<Row<'_>>> = (0..plane.div_ceil(width)).map(|_| Vec::with_capacity(*levels)).collect();
+/// Tiles side by side along x.
+pub(super) fn tiles(grid: &Grid) -> usize {
+    grid.counts()[0].div_ceil(TILE)
+}
+
+/// The sweep along z, tile by tile, each with its step.
+fn vertical(body: &mut Body, steps: &[f64]) -> f64 {
+    let (tiles, [nx, ..], plane) = (tiles(&body.grid), body.grid.counts(), body.grid.strides()[2]);
+    let Body { air, theta, capacity, across, bare, table, levels, exposed, tops, .. } = body;
+    let heights: Vec<usize> = tops.iter().zip(steps).map(|(top, step)| if *step > 0.0 { *top } else { 0 }).collect();
+    let mut columns: Vec<Vec<Row<'_>>> = heights.iter().map(|height| Vec::with_capacity(*height)).collect();
     for (k, theta) in theta[..plane * *levels].chunks_mut(plane).enumerate() {
-        for (s, theta) in theta.chunks_mut(width).enumerate() {
-            let within = s * width..s * width + theta.len();
-            let part = k * plane + within.start..k * plane + within.end;
-            let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
-            let bare = if exposed[2][k] > 0 { bare } else { &[] };
-            let table = if k == 0 { &table[within] } else { &[] };
-            strips[s].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
+        for (j, theta) in theta.chunks_mut(nx).enumerate() {
+            for (t, theta) in theta.chunks_mut(TILE).enumerate().filter(|(t, _)| k < heights[j * tiles + t]) {
+                let within = j * nx + t * TILE..j * nx + t * TILE + theta.len();
+                let part = k * plane + within.start..k * plane + within.end;
+                let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
+                let bare = if exposed[2][k] > 0 { bare } else { &[] };
+                let table = if k == 0 { &table[within] } else { &[] };
+                columns[j * tiles + t].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
+            }
         }
     }
-    if shared {
-        let lost: Vec<f64> = strips.par_iter_mut().map(|rows| between(rows, air, seconds)).collect();
-        lost.iter().sum()
+    let sweep = |(rows, &seconds): (&mut Vec<Row<'_>>, &f64)| between(rows, air, seconds);
+    if heights.iter().sum::<usize>() * TILE > WORTH_SHARING {
+        let columns = columns.par_iter_mut().zip(steps).with_min_len(TILES_A_TURN);
+        columns.map(sweep).collect::<Vec<f64>>().iter().sum()
     } else {
-        strips.iter_mut().map(|rows| between(rows, air, seconds)).sum()
+        columns.iter_mut().zip(steps).map(sweep).sum()
     }
 }
 
@@ -178,6 +236,7 @@ fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -
     for (row, leaks) in rows.iter().zip(leaks.chunks_mut(length)) {
         row.leaks(air, leaks);
     }
+    let often = 1.0 / seconds;
     let [mut before, mut ratio, mut solved] = [[0.0; LANES]; 3];
     for v in 0..length {
         // Lanes without a row hold empty voxels.
@@ -187,7 +246,7 @@ fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -
             (leak[lane], theta[lane]) = (leaks[lane * length + v], row.theta[v]);
         }
         for lane in 0..LANES {
-            let stored = stored(capacity[lane], seconds);
+            let stored = stored(capacity[lane], often);
             let share = 1.0 / (stored + leak[lane] + after[lane] + before[lane] * (1.0 - ratio[lane]));
             solved[lane] = (stored * theta[lane] + before[lane] * solved[lane]) * share;
             ratio[lane] = after[lane] * share;
@@ -211,6 +270,7 @@ fn between(rows: &mut [Row<'_>], air: &Air, seconds: f64) -> f64 {
     let width = rows.first().map_or(0, |row| row.theta.len());
     let mut leaks = vec![0.0; rows.len() * width];
     let mut ratios = vec![0.0; rows.len() * width];
+    let often = 1.0 / seconds;
     // Of the row before the first.
     let none = vec![0.0; width];
     for n in 0..rows.len() {
@@ -224,7 +284,7 @@ fn between(rows: &mut [Row<'_>], air: &Air, seconds: f64) -> f64 {
         let (capacity, across) = (&row.capacity[..width], &row.across[..width]);
         let (before, solved, ratio_before) = (&before[..width], &solved[..width], &ratio_before[..width]);
         for v in 0..width {
-            let stored = stored(capacity[v], seconds);
+            let stored = stored(capacity[v], often);
             let share = 1.0 / (stored + leaks[v] + across[v] + before[v] * (1.0 - ratio_before[v]));
             theta[v] = (stored * theta[v] + before[v] * solved[v]) * share;
             ratios[v] = across[v] * share;
