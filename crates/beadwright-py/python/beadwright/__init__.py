@@ -1,0 +1,59 @@
+"""Plans weld deposition: a part becomes a robot program, and what it would build is told beforehand.
+
+>>> import beadwright
+>>> plan = beadwright.plan(beadwright.Part.read("propeller.stl"), "cmt-al2319-kuka")  # doctest: +SKIP
+>>> plan.save("out")  # doctest: +SKIP
+
+Lengths are in mm, times in s, areas in mm², unless a name says otherwise. What goes wrong is a :class:`BeadwrightError`.
+"""
+
+from beadwright._core import VERSION as __version__
+from beadwright._errors import BeadwrightError
+from beadwright._progress import Progress
+from beadwright._bead import Bead, BeadLibrary, demonstration_csv
+from beadwright._executors import LocalExecutor, RayExecutor
+from beadwright._heat import Heat, heat
+from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
+from beadwright._layer import Island, Layer, LayerWarning, Pass
+from beadwright._part import Part, examples
+from beadwright._plan import Plan, plan
+from beadwright._profile import Profile, profiles, strategies
+from beadwright._robot import Reach, ReachFinding, Trajectory, cells, reach
+from beadwright._study import Study, study
+
+__all__ = [
+    "Bead",
+    "BeadLibrary",
+    "BeadwrightError",
+    "Comparison",
+    "Heat",
+    "HeightField",
+    "Island",
+    "Judged",
+    "Layer",
+    "LayerWarning",
+    "LocalExecutor",
+    "Part",
+    "Pass",
+    "Plan",
+    "Profile",
+    "Progress",
+    "RayExecutor",
+    "Reach",
+    "ReachFinding",
+    "Study",
+    "Trajectory",
+    "__version__",
+    "cells",
+    "compare",
+    "demonstration_csv",
+    "examples",
+    "heat",
+    "height_field",
+    "plan",
+    "profiles",
+    "reach",
+    "simulate",
+    "strategies",
+    "study",
+]

@@ -1,0 +1,71 @@
+//! Errors of the library become `beadwright.BeadwrightError`, with the place and, where Python has one, the remedy.
+
+use beadwright::bead::library::LibraryError;
+use beadwright::dialect::own::OwnError;
+use beadwright::model::{ImportError, PartError};
+use beadwright::profile::ProfileError;
+use pyo3::prelude::*;
+use std::error::Error;
+
+/// Turns the error of a result into a Python exception.
+pub(crate) trait Refuse<T> {
+    /// The value, or the exception; `place` is what the user gave, such as a path.
+    fn refuse(self, place: Option<&str>) -> PyResult<T>;
+}
+
+impl<T, E: Error + 'static> Refuse<T> for Result<T, E> {
+    fn refuse(self, place: Option<&str>) -> PyResult<T> {
+        self.map_err(|error| exception(&error, place))
+    }
+}
+
+/// The exception for an error of the library.
+pub(crate) fn exception(error: &(dyn Error + 'static), place: Option<&str>) -> PyErr {
+    let places: Vec<String> = place.map(str::to_owned).into_iter().chain(place_in(error)).collect();
+    let message = place.map_or_else(|| error.to_string(), |place| format!("{place}: {error}"));
+    let place = (!places.is_empty()).then(|| places.join(", "));
+    raise(&message, place.as_deref(), remedy(error))
+}
+
+/// A `BeadwrightError` with these words.
+pub(crate) fn raise(message: &str, place: Option<&str>, remedy: Option<&str>) -> PyErr {
+    let made = |py: Python<'_>| {
+        let class = py.import("beadwright._errors")?.getattr("BeadwrightError")?;
+        Ok(PyErr::from_value(class.call1((message, place, remedy))?))
+    };
+    Python::attach(made).unwrap_or_else(|error: PyErr| error)
+}
+
+/// Where in the file or text it went wrong.
+fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
+    if let Some(error) = error.downcast_ref() {
+        return match error {
+            ProfileError::Text { line, .. } => Some(format!("line {line}")),
+            ProfileError::Value { key, .. } | ProfileError::Key { key } => Some(key.clone()),
+            ProfileError::UnknownName { .. } | ProfileError::File { .. } => None,
+        };
+    }
+    if let Some(OwnError { file, line, .. }) = error.downcast_ref() {
+        return Some(line.map_or_else(|| file.clone(), |line| format!("{file}, line {line}")));
+    }
+    match error.downcast_ref()? {
+        PartError::Import(ImportError::Line { line, .. }) => Some(format!("line {line}")),
+        PartError::Import(ImportError::NotFinite { triangle, .. }) => Some(format!("triangle {triangle}")),
+        _ => None,
+    }
+}
+
+/// Which argument helps; the library knows of none.
+fn remedy(error: &(dyn Error + 'static)) -> Option<&'static str> {
+    if let Some(LibraryError::Inputs { .. } | LibraryError::TooFew { .. }) = error.downcast_ref() {
+        return Some("inputs=[…] names those that are fitted.");
+    }
+    Some(match error.downcast_ref()? {
+        PartError::Units(_) => "units=\"in\", \"cm\", \"m\" or \"mm\" tells it; scale=… enlarges the part.",
+        PartError::NoHeight => "height=… tells it, in mm.",
+        PartError::HeightOfSolid => "Leave height out.",
+        PartError::Import(ImportError::TooFar { .. }) => "units=… tells the unit.",
+        PartError::Import(ImportError::Damaged { .. }) => "accept_damaged=True takes what there is of it.",
+        _ => return None,
+    })
+}

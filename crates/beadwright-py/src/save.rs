@@ -1,0 +1,78 @@
+//! The files of a plan: the same bytes as the command writes.
+
+use crate::planned::Planned;
+use beadwright::compare::MAP_PIXELS;
+use beadwright::deposit::Judge;
+use beadwright::dialect::DialectError;
+use beadwright::files::{Folder, FolderError, METRICS, PLAN, PlanFiles, Post, Programs, REPORT, Start};
+use beadwright::plan;
+use beadwright::profile::Profile;
+use beadwright::task::{Cancelled, Stage, Task};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What is to be written, and where.
+pub(crate) struct Wanted<'a> {
+    pub(crate) folder: &'a Path,
+    pub(crate) profile: &'a Profile,
+    pub(crate) posts: &'a [Post],
+    /// Whether the deposit model judges the layers, for the report.
+    pub(crate) deposit: bool,
+    pub(crate) allow_findings: bool,
+}
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SaveError {
+    #[error(
+        "nothing was written, since the program should not be started: {0} allow_findings=True writes it all the same."
+    )]
+    Refused(String),
+    #[error(transparent)]
+    Dialect(#[from] DialectError),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Writes the files into the folder, all of them or none, and returns their names.
+pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Result<Vec<String>, SaveError> {
+    let &Wanted { profile, .. } = wanted;
+    if !planned.summary.forbidden.is_empty() && !wanted.allow_findings {
+        return Err(SaveError::Refused(planned.summary.forbidden.join(" ")));
+    }
+    let programs = Programs::of(wanted.posts, &profile.job(&planned.header.part))?;
+    let settings = plan::deposit_settings_over(profile, planned.part.bounds());
+    let mut judge = wanted.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let mut folder = Folder::new(wanted.folder)?;
+    let (mut files, chunks) = PlanFiles::begin(&planned.header, profile, programs, Start::default());
+    folder.extend(chunks)?;
+    for (done, layer) in planned.layers.iter().enumerate() {
+        task.step(Stage::Deposit, done as f64 / planned.layers.len() as f64)?;
+        let judgement = judge.as_mut().map(|judge| judge.layer(&plan::welded(layer, profile)));
+        folder.extend(files.layer(layer, judgement.as_ref()))?;
+    }
+    let mut summary = planned.summary.clone();
+    let notes: Vec<String> = planned.note.iter().cloned().chain(files.notes()).collect();
+    summary.notes.splice(0..0, notes);
+    folder.extend(files.end(&summary, &planned.part.repair(), judge.as_ref().map(Judge::total))?)?;
+    Ok(folder.commit()?.files)
+}
+
+/// The programs alone: the text of each file by its name.
+pub(crate) fn programs(
+    planned: &Planned,
+    profile: &Profile,
+    posts: &[Post],
+) -> Result<BTreeMap<String, String>, DialectError> {
+    let programs = Programs::of(posts, &profile.job(&planned.header.part))?;
+    let (mut files, mut chunks) = PlanFiles::begin(&planned.header, profile, programs, Start::default());
+    planned.layers.iter().for_each(|layer| chunks.extend(files.layer(layer, None)));
+    chunks.extend(files.end(&planned.summary, &planned.part.repair(), None)?);
+    let mut texts = BTreeMap::<String, String>::new();
+    for chunk in chunks.into_iter().filter(|chunk| ![PLAN, METRICS, REPORT].contains(&&*chunk.file)) {
+        texts.entry(chunk.file).or_default().push_str(&chunk.text);
+    }
+    Ok(texts)
+}
