@@ -229,9 +229,26 @@ fn zooming_keeps_the_place_under_the_pointer() {
 fn colours_of_a_map_are_all_different_and_grow_brighter() {
     let brightness = |[r, g, b]: [u8; 3]| 0.21 * f64::from(r) + 0.72 * f64::from(g) + 0.07 * f64::from(b);
     for dark in [false, true] {
-        let map = palette::map(Colour::Order, dark);
-        assert!(map.windows(8).step_by(8).all(|w| brightness(w[7]) > brightness(w[0])));
+        for colour in [Colour::Order, Colour::Temperature] {
+            let map = palette::map(colour, dark);
+            assert!(map.windows(8).step_by(8).all(|w| brightness(w[7]) > brightness(w[0])));
+        }
         assert_eq!(palette::map(Colour::Kind, dark)[1], palette::kind(palette::KINDS[1]));
+    }
+}
+
+#[test]
+fn beads_tell_how_warm_the_metal_was_where_a_limit_holds() {
+    let mut limited = profile();
+    let limits = beadwright::heat::Interpass { max_temperature: 120.0, min_temperature: None, reorder: true };
+    assert_eq!(planned("cross", &limited).1.value_range(Colour::Temperature), None);
+    limited.interpass = Some(limits);
+    let (plan, scene) = planned("cross", &limited);
+    let (low, high) = scene.value_range(Colour::Temperature).unwrap();
+    assert!((19.0..25.0).contains(&low) && (60.0..121.5).contains(&high), "{low} to {high} °C");
+    for (layer, beads) in plan.layers.iter().zip(scene.layers().iter().flatten()) {
+        let told: Vec<f32> = beads.passes().iter().filter_map(|pass| pass.temperature).collect();
+        assert_eq!(told, layer.temperatures.iter().map(|t| *t as f32).collect::<Vec<_>>());
     }
 }
 

@@ -55,7 +55,7 @@ fn bend(count: usize, z: f64) -> Pass {
 fn part(count: usize) -> Vec<Layer> {
     let (islands, warnings) = (Vec::new(), Vec::new());
     let passes = vec![bend(count, 2.0)];
-    vec![Layer { index: 0, z: 2.0, height: 2.0, islands, passes, slice_area: 0.0, planned_area: 0.0, warnings }]
+    vec![Layer { z: 2.0, height: 2.0, islands, passes, warnings, ..Layer::default() }]
 }
 
 fn set(words: &str) -> Profile {

@@ -58,7 +58,7 @@ fn job() -> Vec<Layer> {
             pass(PassKind::Infill, false, line, Along::Each(speeds)),
         ];
         let (islands, warnings) = (Vec::new(), Vec::new());
-        Layer { index, z, height: 1.4187, islands, passes, slice_area: 0.0, planned_area: 0.0, warnings }
+        Layer { index, z, height: 1.4187, islands, passes, warnings, ..Layer::default() }
     };
     vec![layer(0), layer(1)]
 }

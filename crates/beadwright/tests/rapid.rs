@@ -48,16 +48,7 @@ fn job() -> Vec<Layer> {
             pace: Along::Each(vec![8.0, 7.95, 7.55, 7.14, 6.13, 6.13]),
             wait: 0.0,
         };
-        Layer {
-            index,
-            z,
-            height: 1.4187,
-            islands: Vec::new(),
-            passes: vec![frame, line],
-            slice_area: 0.0,
-            planned_area: 0.0,
-            warnings: Vec::new(),
-        }
+        Layer { index, z, height: 1.4187, passes: vec![frame, line], ..Layer::default() }
     };
     vec![layer(0), layer(1)]
 }

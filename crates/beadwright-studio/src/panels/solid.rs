@@ -6,12 +6,13 @@ use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
 /// What the colours can show, with their texts.
-const COLOURS: [(Colour, &str); 5] = [
+const COLOURS: [(Colour, &str); 6] = [
     (Colour::Kind, "colour-kind"),
     (Colour::Order, "colour-order"),
     (Colour::Speed, "colour-speed"),
     (Colour::HeightError, "colour-height"),
     (Colour::Time, "colour-time"),
+    (Colour::Temperature, "colour-temperature"),
 ];
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -65,6 +66,7 @@ fn legend(studio: &Studio, ui: &mut Ui) {
     let unit = match studio.view.colour {
         Colour::Speed => " mm/s",
         Colour::Time => " s",
+        Colour::Temperature => " °C",
         Colour::HeightError => studio.t("unit-bead-heights"),
         _ => "",
     };

@@ -71,6 +71,8 @@ pub(super) struct Cap {
 pub struct PassSpan {
     /// What it is for.
     pub kind: PassKind,
+    /// Temperature of the metal where it begins, °C, where the plan has it.
+    pub temperature: Option<f32>,
     /// Its segments.
     pub segments: Range<usize>,
     /// When the travel to it begins.
@@ -133,8 +135,11 @@ impl LayerBeads {
         if let Some(pause) = (!layer.passes.is_empty()).then(|| torch.begin_layer(layer.index)).flatten() {
             beads.seconds = pause.moving + pause.seconds;
         }
-        for pass in &layer.passes {
+        for (i, pass) in layer.passes.iter().enumerate() {
             beads.add(pass, layer.height, torch);
+            if let (Some(span), Some(temperature)) = (beads.passes.last_mut(), layer.temperatures.get(i)) {
+                span.temperature = Some(*temperature as f32);
+            }
         }
         beads.boxes = beads.beads.chunks(BLOCK).map(box_of).collect();
         beads
@@ -174,7 +179,8 @@ impl LayerBeads {
         self.join(segments.clone());
         self.roughen(segments.clone());
         let kind = pass.kind;
-        self.passes.push(PassSpan { kind, segments, travel_start, arrival, arc_start, end: self.seconds, travel });
+        let (temperature, end) = (None, self.seconds);
+        self.passes.push(PassSpan { kind, temperature, segments, travel_start, arrival, arc_start, end, travel });
     }
 
     /// Mitres the gentle bends of a pass and rounds its ends and sharp corners.

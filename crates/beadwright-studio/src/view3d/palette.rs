@@ -32,6 +32,7 @@ pub fn at(colour: Colour, part: f64, dark: bool) -> Rgb {
     match colour {
         Colour::Kind => kind(KINDS[((part * STEPS as f64) as usize).min(KINDS.len() - 1)]),
         Colour::HeightError => diverging(part),
+        Colour::Temperature => ember(if dark { 0.15 + 0.85 * part } else { part }),
         // The dark end would vanish on a dark background, the bright end on a bright one.
         Colour::Order | Colour::Speed | Colour::Time => viridis(if dark { 0.12 + 0.88 * part } else { 0.95 * part }),
     }
@@ -61,14 +62,22 @@ fn viridis(part: f64) -> Rgb {
     [0, 1, 2].map(|c| byte(COEFFICIENTS.iter().rev().fold(0.0, |sum, k| sum * t + k[c])))
 }
 
+/// Dark violet to yellow, as in the report (after matplotlib's "inferno").
+fn ember(part: f64) -> Rgb {
+    stepped([[0.16, 0.04, 0.33], [0.47, 0.11, 0.43], [0.74, 0.22, 0.33], [0.93, 0.41, 0.15], [0.98, 0.71, 0.10]], part)
+}
+
 /// Blue below, near white in the middle, red above.
 fn diverging(part: f64) -> Rgb {
-    const STOPS: [[f64; 3]; 5] =
-        [[0.10, 0.30, 0.75], [0.45, 0.68, 0.92], [0.93, 0.93, 0.93], [0.96, 0.60, 0.47], [0.76, 0.10, 0.16]];
-    let place = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let low = (place as usize).min(STOPS.len() - 2);
+    stepped([[0.10, 0.30, 0.75], [0.45, 0.68, 0.92], [0.93, 0.93, 0.93], [0.96, 0.60, 0.47], [0.76, 0.10, 0.16]], part)
+}
+
+/// A map through five colours at equal distances.
+fn stepped(stops: [[f64; 3]; 5], part: f64) -> Rgb {
+    let place = part.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+    let low = (place as usize).min(stops.len() - 2);
     let t = place - low as f64;
-    [0, 1, 2].map(|c| byte(STOPS[low][c] * (1.0 - t) + STOPS[low + 1][c] * t))
+    [0, 1, 2].map(|c| byte(stops[low][c] * (1.0 - t) + stops[low + 1][c] * t))
 }
 
 fn byte(value: f64) -> u8 {

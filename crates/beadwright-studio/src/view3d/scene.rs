@@ -181,6 +181,11 @@ impl Scene {
                 let range = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
                 range.map(|(low, high)| (f64::from(low), f64::from(high)))
             }
+            Colour::Temperature => {
+                let all = self.present().flat_map(|(_, layer)| layer.passes()).filter_map(|pass| pass.temperature);
+                let range = all.map(f64::from).map(|t| (t, t)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
+                range.map(|(low, high)| (low, high.max(low + 1.0)))
+            }
             Colour::HeightError => {
                 let values = self.values.iter().flatten().flat_map(|values| values.of.iter());
                 let most = values.filter(|v| v.is_finite()).fold(0.0_f32, |most, v| most.max(v.abs()));

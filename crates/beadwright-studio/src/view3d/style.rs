@@ -18,6 +18,8 @@ pub enum Colour {
     HeightError,
     /// The time since the start of the program, s.
     Time,
+    /// The temperature of the metal where the pass begins, °C.
+    Temperature,
 }
 
 /// What is shown and how. A picture is rendered again only when this, the camera, the size or the scene changed.

@@ -83,6 +83,11 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
             let value = supplied.and_then(|values| values.get(i)).copied().unwrap_or(MISSING);
             if value.is_finite() { value } else { MISSING }
         })),
+        Colour::Temperature => {
+            for pass in layer.passes() {
+                out.extend(std::iter::repeat_n(pass.temperature.unwrap_or(MISSING), pass.segments.len()));
+            }
+        }
         Colour::Kind => {
             for pass in layer.passes() {
                 let kind = KINDS.iter().position(|k| *k == pass.kind).unwrap_or_default();
