@@ -4,7 +4,7 @@ use crate::profile;
 use anyhow::Context;
 use beadwright::bead::library::demonstration_csv;
 use beadwright::bead::library::{BeadLibrary, Columns, Layering, Limit, Measured, Prediction, Response, Wish};
-use beadwright::bead::{Overlap, wire_area};
+use beadwright::bead::{BeadByHeat, Overlap, wire_area};
 use beadwright::files::write_file;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallLaw};
 use beadwright::report::bead_window;
@@ -231,6 +231,17 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
             error(own.width, wall.width),
             if fitted(&wall) { "   fitted" } else { "" }
         )?;
+    }
+    let width = profile.bead.width;
+    match law.by_heat(width) {
+        Some(BeadByHeat { temperature, width, rise }) => writeln!(
+            out,
+            "\nfor the profile:\n\n[bead.by_heat]\ntemperature = {temperature:.0}\nwidth = {width:.5}\nrise = {rise:.5}"
+        )?,
+        None => writeln!(
+            out,
+            "\nno section [bead.by_heat]: at no temperature are the walls {width} mm wide, as bead.width says"
+        )?,
     }
     Ok(())
 }

@@ -2,8 +2,9 @@
 
 use crate::{adapt, model, profile, program, progress};
 use beadwright::adapt::Feedback;
-use beadwright::build::{self, Built, Errors, Settings, page};
+use beadwright::build::{self, Built, Errors, Heat, Settings, page};
 use beadwright::files::write_file;
+use beadwright::heat::plate;
 use beadwright::layer::Layer;
 use beadwright::plan::{self, choice};
 use beadwright::profile::Profile;
@@ -25,6 +26,9 @@ pub(crate) struct Arguments {
     feedback: Vec<Kind>,
     #[command(flatten)]
     limits: adapt::Limits,
+    /// Walls grow less on warm metal, as `bead.by_heat` says, though the plan was made without it.
+    #[arg(long)]
+    heat: bool,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -109,10 +113,11 @@ impl Noise {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
-    let (part, layers, profile) = layers(&arguments.file, &arguments.wanted, &task)?;
+    let (part, layers, profile) = layers(arguments, &task)?;
+    let heat = arguments.heat.then(|| heat(&layers, &profile)).transpose()?;
     let nominal = plan::deposit_settings(&profile).nominal;
     let rules = arguments.limits.rules(&profile);
-    let settings = |seed: u64| Settings { nominal, errors: arguments.noise.errors(seed), rules };
+    let settings = |seed: u64| Settings { nominal, errors: arguments.noise.errors(seed), rules, heat: heat.clone() };
     let mut runs = Vec::new();
     for seed in (0..u64::from(arguments.seeds)).map(|k| arguments.seed.wrapping_add(k)) {
         let mut builds = Vec::new();
@@ -142,19 +147,46 @@ impl Arguments {
 }
 
 /// Name, layers and profile of a plan, or of a model that is planned.
-fn layers(path: &Path, wanted: &profile::Wanted, task: &Task) -> anyhow::Result<(String, Vec<Layer>, Profile)> {
+fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Layer>, Profile)> {
+    let (path, wanted): (&Path, _) = (&arguments.file, &arguments.wanted);
     if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("json")) {
         let source = program::Source::open(path)?;
         let profile = source.profile(wanted)?;
         let plan = source.plan().ok_or_else(|| anyhow::anyhow!("{}: this is no plan.json", path.display()))?;
+        let known = source.profile(&profile::Wanted::default())?.bead.by_heat.is_some();
+        anyhow::ensure!(
+            !(known && arguments.heat),
+            "{}: the plan was made with bead.by_heat, so its beads have the widths that heat gives them. Build it without \
+             --heat.",
+            path.display()
+        );
         return Ok((plan.header.part.clone(), plan.layers.clone(), profile));
     }
     let profile = profile::load(wanted.profile.as_deref().unwrap_or(profile::USUAL), &wanted.set)?;
+    let law = profile.bead.by_heat;
+    let mut profile = profile;
+    if arguments.heat {
+        profile.bead.by_heat = None;
+    }
     let model = model::Model::of(path);
     let part = model.part_placed(profile.bead.width, None, task)?;
-    let profile = choice::choose(&part, &profile, false, task)?.profile;
+    let mut profile = choice::choose(&part, &profile, false, task)?.profile;
     let plan = plan::plan(&model.part(), &part, &profile, task)?;
+    profile.bead.by_heat = law;
     Ok((plan.header.part, plan.layers, profile))
+}
+
+/// The plate of a plan, and what heat does to its beads.
+fn heat(layers: &[Layer], profile: &Profile) -> anyhow::Result<Heat> {
+    let law = profile.bead.by_heat.ok_or_else(|| {
+        anyhow::anyhow!(
+            "--heat: the profile does not say how beads depend on heat (bead.by_heat). `beadwright bead walls` fits it to \
+             measured walls."
+        )
+    })?;
+    let plate = plate(layers, &profile.heat_settings()?, &profile.weld_settings());
+    let plate = plate.ok_or_else(|| anyhow::anyhow!("the plan has no passes."))?;
+    Ok(Heat { plate, law, rise: profile.single_wall()?.rise() })
 }
 
 /// The builds of all seeds by one kind of feedback.

@@ -5,6 +5,15 @@ use crate::warning::Warning;
 use glam::DVec2;
 use planar::{Join, Polygon, Region};
 
+/// How warm the metal is on which a pass is laid, °C.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Temperature {
+    /// Where the pass begins, just before.
+    pub start: f64,
+    /// Just ahead of the torch, mean along the pass.
+    pub mean: f64,
+}
+
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layer {
@@ -18,8 +27,8 @@ pub struct Layer {
     pub islands: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
-    /// Temperature of the metal below where each pass begins, °C; empty where it was not computed.
-    pub temperatures: Vec<f64>,
+    /// Temperatures of the metal below each pass; empty where they were not computed.
+    pub temperatures: Vec<Temperature>,
     /// Area of the slice, mm².
     pub slice_area: f64,
     /// Area that beads cover, mm².

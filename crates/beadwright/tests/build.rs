@@ -37,7 +37,7 @@ fn usual(seed: u64) -> Errors {
 
 fn built(layers: &[Layer], profile: &Profile, by: Feedback, errors: Errors) -> Built {
     let rules = Rules { window: (0.7, 1.3), spacing: profile.bead.width };
-    let settings = Settings { nominal: nominal(profile), errors, rules };
+    let settings = Settings { nominal: nominal(profile), errors, rules, heat: None };
     build(layers, by, &settings, &Task::new()).unwrap().unwrap()
 }
 

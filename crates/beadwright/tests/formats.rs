@@ -127,6 +127,43 @@ fn amf(mesh: &Mesh, unit: &str) -> String {
     text + "</volume></mesh></object></amf>"
 }
 
+/// Constellations turn about x, then y, then z, and place copies and each other; what they place stands nowhere else.
+#[test]
+fn constellations_place_copies() {
+    let mesh = cross();
+    let whole = amf(&mesh, "inch");
+    let object = whole.split_once("<object").unwrap().1.strip_suffix("</amf>").unwrap();
+    let file = |rest: &str| format!("<amf unit=\"inch\"><object{object}{rest}</amf>");
+    let placed = file(
+        "<constellation id=\"2\"><instance objectid=\"7\"><deltax>1</deltax><rx>90</rx><rz>90</rz></instance>\
+         <instance objectid=\"7\"><deltay>-3000</deltay></instance></constellation>\
+         <constellation id=\"3\"><instance objectid=\"2\"><deltaz>500</deltaz></instance></constellation>",
+    );
+    let import = read(placed.as_bytes()).unwrap();
+    let single = read(file("").as_bytes()).unwrap().mesh;
+    assert!((import.mesh.volume() / single.volume() - 2.0).abs() < 1e-4);
+    assert_eq!(import.objects.iter().map(|o| o.name.as_str()).collect::<Vec<_>>(), ["constellation 3"]);
+    // (x, y, z) turned about x by 90° is (x, −z, y), that about z by 90° (z, x, y); then moved, in inches.
+    let at = |v: DVec3| DVec3::new(v.z + 25.4, v.x, v.y + 500.0 * 25.4);
+    let turned: Vec<DVec3> = single.vertices.iter().map(|v| at(*v)).collect();
+    let (low, high) = import.mesh.bounds();
+    let highest = |axis: fn(&DVec3) -> f64| turned.iter().map(axis).fold(f64::MIN, f64::max);
+    let tops = [highest(|v| v.x), highest(|v| v.y), highest(|v| v.z)];
+    let own = single.bounds();
+    assert!((high.x - tops[0].max(own.1.x)).abs() < 0.01, "{high}");
+    assert!((high.z - tops[2].max(own.1.z + 12_700.0)).abs() < 0.01 && (high.y - tops[1]).abs() < 0.01, "{high}");
+    assert!((low.y - (own.0.y - 3000.0 * 25.4)).abs() < 0.1, "{low}");
+    let refused = |text: String, why: &str| {
+        let error = read(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(why), "{error}");
+    };
+    refused(file("<constellation id=\"2\"><instance objectid=\"9\"></instance></constellation>"), "object 9");
+    let own = "<constellation id=\"2\"><instance objectid=\"7\"></instance><instance objectid=\"3\"></instance></constellation>\
+               <constellation id=\"3\"><instance objectid=\"2\"></instance></constellation>\
+               <constellation id=\"4\"><instance objectid=\"3\"></instance></constellation>";
+    refused(file(own), "in themselves");
+}
+
 #[test]
 fn a_part_is_the_same_in_every_format() {
     let mesh = cross();

@@ -113,6 +113,12 @@ fn arms_for_arc_welding_stand_as_described() {
     let (sin, cos) = 30.0_f64.to_radians().sin_cos();
     stands(&fanuc, [0.0, 30.0, 0.0, 0.0, 0.0, 0.0], [850.0 + 640.0 * sin, 0.0, 645.0 + 640.0 * cos], DVec3::X);
     assert!((fanuc.arm().forward(&[0.0; 6]).rotation * DVec3::X).distance(DVec3::Z) < 1e-12);
+    let yaskawa = bare("yaskawa-ar2010");
+    stands(&yaskawa, [0.0; 6], [1332.0, 0.0, 1465.0], DVec3::X);
+    stands(&yaskawa, [0.0, 0.0, 90.0, 0.0, 0.0, 0.0], [-50.0, 0.0, 2447.0], DVec3::Z);
+    stands(&yaskawa, [90.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1332.0, 1465.0], DVec3::Y);
+    stands(&yaskawa, [0.0, 0.0, 0.0, 0.0, -90.0, 0.0], [1232.0, 0.0, 1365.0], DVec3::NEG_Z);
+    assert!((yaskawa.arm().forward(&[0.0; 6]).rotation * DVec3::X).distance(DVec3::Z) < 1e-12);
     // Any pose, worked out from the descriptions by another program; J3 of the description is J3 + J2 on the pendant.
     for (cell, joints, at, x, z) in [
         (
@@ -129,6 +135,13 @@ fn arms_for_arc_welding_stand_as_described() {
             [0.447725, 0.876089, 0.178913],
             [0.627385, -0.16522, -0.76098],
         ),
+        (
+            &yaskawa,
+            [10.0, 20.0, -15.0, 25.0, -40.0, 35.0],
+            [1423.145, 223.354, 670.728],
+            [0.472765, 0.880504, -0.034713],
+            [0.336078, -0.216585, -0.916593],
+        ),
     ] {
         let flange = cell.arm().forward(&joints);
         assert!(flange.position.distance(at.into()) < 2e-3, "{}: {}", cell.name, flange.position);
@@ -136,7 +149,7 @@ fn arms_for_arc_welding_stand_as_described() {
         assert!((flange.rotation * DVec3::Z).distance(z.into()) < 2e-6, "{}", cell.name);
     }
     // Stretched out, the wrist is as far from axis 1 as the makers tell, mm.
-    for (cell, reach) in [(&abb, 1653.0), (&kuka, 1441.0), (&fanuc, 1441.0)] {
+    for (cell, reach) in [(&abb, 1653.0), (&kuka, 1441.0), (&fanuc, 1441.0), (&yaskawa, 2010.0)] {
         let Shape::Opw(arm) = &cell.arm.shape else { panic!("lengths") };
         assert!((arm.a1 + arm.c2 + arm.c3.hypot(arm.a2) - reach).abs() < 1.0, "{}", cell.name);
     }

@@ -138,7 +138,7 @@ impl LayerBeads {
         for (i, pass) in layer.passes.iter().enumerate() {
             beads.add(pass, layer.height, torch);
             if let (Some(span), Some(temperature)) = (beads.passes.last_mut(), layer.temperatures.get(i)) {
-                span.temperature = Some(*temperature as f32);
+                span.temperature = Some(temperature.start as f32);
             }
         }
         beads.boxes = beads.beads.chunks(BLOCK).map(box_of).collect();

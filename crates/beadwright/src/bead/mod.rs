@@ -5,13 +5,16 @@
 //! | [`law`] | how the height of a bead follows its width at a constant wire feed |
 //! | [`section`] | the shape of its cross-section |
 //! | [`wall`] | how high walls with one bead per layer grow |
+//! | [`by_heat`] | how it changes with the heat of the metal below |
 //! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
 
+pub mod by_heat;
 pub mod law;
 pub mod library;
 pub mod section;
 pub mod wall;
 
+pub use by_heat::BeadByHeat;
 pub use law::Law;
 pub use section::Section;
 

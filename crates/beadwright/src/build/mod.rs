@@ -1,7 +1,8 @@
 //! A plan welded in the model of height (`adapt::surface`), with errors and with what a scanner corrects after each layer.
 //!
 //! Every bead comes out with more or less metal than commanded ([`Errors`]); the surface takes it; after each layer a scan
-//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). All numbers are seeded.
+//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). Where beads depend on heat, the metal warms up as it is
+//! laid, and walls grow less. All numbers are seeded.
 
 mod errors;
 pub mod page;
@@ -11,12 +12,16 @@ pub use errors::Errors;
 use crate::adapt::area::core;
 use crate::adapt::page::relief;
 use crate::adapt::{Feedback, Levels, Rules, Spread, Surface, next};
+use crate::bead::BeadByHeat;
 use crate::deposit::{Nominal, Picture};
+use crate::heat;
 use crate::layer::Layer;
+use crate::pass::PassKind;
+use crate::plan::warm::along;
 use crate::task::{Cancelled, Stage, Task};
 
 /// How a plan is welded.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Settings {
     /// The bead that is promised.
     pub nominal: Nominal,
@@ -24,6 +29,30 @@ pub struct Settings {
     pub errors: Errors,
     /// How far corrections may go.
     pub rules: Rules,
+    /// Heat that the plan does not know of; `None` where it does, or beads do not depend on it.
+    pub heat: Option<Heat>,
+}
+
+/// Walls that grow less on warm metal.
+#[derive(Debug, Clone)]
+pub struct Heat {
+    /// The plate before the first layer.
+    pub plate: heat::Build,
+    /// How beads change.
+    pub law: BeadByHeat,
+    /// Thickness of a wall's layer at the temperature of the law, mm.
+    pub rise: f64,
+}
+
+impl Heat {
+    /// Welds a layer. What warm metal lets flow to the sides of a wall adds nothing to its height; between beads side by
+    /// side it stays where it is.
+    fn spread(&mut self, laid: &mut Layer) {
+        let (warm, Self { plate, law, rise }) = (self.plate.layer(laid), &*self);
+        for (pass, warm) in laid.passes.iter_mut().zip(&warm.passes).filter(|(pass, _)| pass.kind == PassKind::Wall) {
+            pass.pace = along(pass, warm, plate, |piece, ahead| piece.pace / law.lift(*rise, ahead));
+        }
+    }
 }
 
 /// A build that was welded in the model.
@@ -72,7 +101,8 @@ const PICTURES: usize = 50;
 /// [`Cancelled`].
 pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) -> Result<Option<Built>, Cancelled> {
     let Some(levels) = Levels::of(planned) else { return Ok(None) };
-    let Settings { nominal, errors, rules } = settings;
+    let Settings { nominal, errors, rules, heat } = settings;
+    let mut metal = heat.clone();
     let mut surface = Surface::plate(planned, *nominal);
     let mut measured = surface.clone();
     let layer_height = (levels.end() - surface.level()) / planned.len() as f64;
@@ -83,7 +113,11 @@ pub fn build(planned: &[Layer], by: Feedback, settings: &Settings, task: &Task) 
         let share = index as f64 / planned.len() as f64;
         task.step(Stage::Plan, share.min(1.0))?;
         let Some(next) = next(planned, &levels, &measured, index, by, rules) else { break };
-        surface.lay(&next.promised, &errors.layer(&next.layer, share, passes));
+        let mut laid = errors.layer(&next.layer, share, passes);
+        if let Some(heat) = &mut metal {
+            heat.spread(&mut laid);
+        }
+        surface.lay(&next.promised, &laid);
         let core = core(surface.grid(), &next.layer.islands, nominal.bead.width);
         let (z, error) = (surface.level(), surface.spread(&core));
         let shown = index % planned.len().div_ceil(PICTURES) == 0;

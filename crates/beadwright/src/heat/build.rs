@@ -9,6 +9,7 @@ use crate::process::Process;
 use crate::weld::{Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
+use std::ops::Range;
 
 /// Metal is laid in pieces of this length, in voxels.
 const CHUNK: f64 = 4.0;
@@ -52,6 +53,20 @@ pub struct PassHeat {
 }
 
 impl PassHeat {
+    /// Mean temperature just ahead of the torch, °C.
+    pub fn mean(&self) -> f64 {
+        self.along.iter().sum::<f64>() / self.along.len().max(1) as f64
+    }
+
+    /// Mean temperature just ahead of the torch on a stretch of the pass (mm), where temperatures are told every `spacing`
+    /// (mm); °C.
+    pub fn ahead(&self, stretch: Range<f64>, spacing: f64) -> f64 {
+        let [first, last] = [stretch.start, stretch.end].map(|way| (way / spacing).round() as usize);
+        let end = (last + 1).min(self.along.len());
+        let told = &self.along[first.min(end.saturating_sub(1))..end];
+        if told.is_empty() { self.start } else { told.iter().sum::<f64>() / told.len() as f64 }
+    }
+
     /// The hottest place ahead of the torch, °C.
     pub fn peak(&self) -> f64 {
         self.along.iter().copied().fold(self.start, f64::max)

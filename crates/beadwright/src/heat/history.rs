@@ -43,6 +43,17 @@ impl History {
     }
 }
 
+/// The plate before the first of these layers; `None` if there is nothing to build.
+pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> Option<Build> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
+    points.clone().next()?;
+    // The extent of the part, as planning has it; programs without outlines have that of their passes.
+    let bounds = Bounds::of(outlines).or_else(|| Bounds::of(points))?;
+    let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
+    Some(Build::new(settings, weld, &bounds, &tops))
+}
+
 /// Builds all layers; within the limits of the settings if they have some, which changes waits, order and starts of the
 /// layers, and else with the waits that they have. `None` if there is nothing to build.
 ///
@@ -54,15 +65,8 @@ pub fn history(
     weld: &WeldSettings,
     task: &Task,
 ) -> Result<Option<History>, Cancelled> {
-    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
-    if points.clone().next().is_none() {
-        return Ok(None);
-    }
-    // The extent of the part, as planning has it; programs without outlines have that of their passes.
-    let Some(bounds) = Bounds::of(outlines).or_else(|| Bounds::of(points)) else { return Ok(None) };
-    let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
-    let (mut build, count) = (Build::new(settings, weld, &bounds, &tops), layers.len());
+    let Some(mut build) = plate(layers, settings, weld) else { return Ok(None) };
+    let count = layers.len();
     let mut heats = Vec::with_capacity(count);
     for (i, layer) in layers.iter_mut().enumerate() {
         task.step(Stage::Heat, i as f64 / count as f64)?;

@@ -27,6 +27,6 @@ mod walls;
 pub use body::{Air, Body, Stuff};
 pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, PassHeat};
 pub use grid::Grid;
-pub use history::{History, history};
+pub use history::{History, history, plate};
 pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 pub use walls::{ByHeat, ForetoldWall, MeasuredWall, Wall, WallFitError, WallLaw};

@@ -6,6 +6,7 @@
 
 use super::build::Build;
 use super::settings::HeatSettings;
+use crate::bead::BeadByHeat;
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
 use crate::weld::WeldSettings;
@@ -111,6 +112,16 @@ impl WallLaw {
             ByHeat::fit(&points.collect::<Vec<_>>())
         };
         Ok(Self { layer: fit(&layer)?, width: fit(&|w| w.width)? })
+    }
+
+    /// The law for a profile whose bead has this width (mm): it holds at the temperature that gives it. `None` if no
+    /// temperature of solid metal does.
+    pub fn by_heat(&self, width: f64) -> Option<BeadByHeat> {
+        /// Coldest and hottest metal that is welded on, °C.
+        const SOLID: (f64, f64) = (-50.0, 1500.0);
+        let temperature = (width - self.width.cold) / self.width.slope;
+        let law = BeadByHeat { temperature, width: self.width.slope, rise: self.layer.slope };
+        (SOLID.0..=SOLID.1).contains(&temperature).then_some(law)
     }
 
     /// Foretells a wall. Its layers depend on its temperature and the other way round, so both are found in turns.

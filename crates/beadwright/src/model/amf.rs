@@ -1,9 +1,12 @@
-//! AMF: the meshes of all objects; constellations place them. Plain or in a ZIP archive.
+//! AMF: the meshes of all objects, placed by constellations.
 
-use super::formats::{self, Facet, Format};
-use super::xml::{Elements, Step};
-use super::{Import, ImportError, Object, Units};
+use super::formats::Format;
+use super::placed::{Id, Resource, Resources, Shape};
+use super::xml::{Element, Elements, Step};
+use super::{Import, ImportError};
 use crate::task::Task;
+use glam::{DAffine3, DMat3, DVec3};
+use std::collections::BTreeSet;
 use std::io::BufRead;
 
 pub(super) const FORMAT: Format = Format { is: looks_amf, read: |bytes, task| read(bytes, task) };
@@ -20,77 +23,128 @@ fn broken(reason: impl Into<String>) -> ImportError {
 /// Reads the text of an AMF file.
 fn read(text: impl BufRead, task: &Task) -> Result<Import, ImportError> {
     let mut elements = Elements::new(text, "AMF");
-    let (mut unit, mut facets, mut objects): (f64, Vec<Facet>, Vec<Object>) = (1.0, Vec::new(), Vec::new());
-    let (mut vertices, mut triangles): (Vec<[f32; 3]>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
-    let (mut at, mut corners, mut value) = ([f32::NAN; 3], [u32::MAX; 3], String::new());
-    let mut name = String::new();
-    let mut steps = 0_u64;
+    let mut file = File::new();
+    let (mut value, mut steps) = (String::new(), 0_u64);
     while let Some(step) = elements.next()? {
         steps += 1;
         if steps.is_multiple_of(65_536) {
             task.check()?;
         }
-        let ended = match step {
+        match step {
             Step::Begin(element) => {
                 value.clear();
-                match element.name() {
-                    "amf" => unit = in_mm(&element.attribute("unit").unwrap_or_default())?,
-                    "constellation" => {
-                        return Err(broken(
-                            "it places its objects in a constellation, which is not read; save it as 3MF",
-                        ));
-                    }
-                    "object" => {
-                        name = format!("object {}", element.attribute("id").unwrap_or_default());
-                        (vertices, triangles) = (Vec::new(), Vec::new());
-                    }
-                    _ => {}
-                }
-                continue;
+                file.begin(&element)?;
             }
-            Step::Text(text) => {
-                value.push_str(&text);
-                continue;
-            }
-            Step::End(ended) => ended,
+            Step::Text(text) => value.push_str(&text),
+            Step::End(name) => file.end(&name, value.trim())?,
+        }
+    }
+    file.finish().build(task)
+}
+
+/// What was read so far.
+struct File {
+    resources: Resources,
+    /// The object or constellation that is open.
+    open: Option<(u32, Resource)>,
+    /// Its present vertex, triangle or instance.
+    at: DVec3,
+    corners: [u32; 3],
+    instance: Instance,
+    /// What constellations place.
+    placed: BTreeSet<u32>,
+}
+
+/// An object placed by a constellation: turned about x, then y, then z (degrees), then moved.
+#[derive(Default)]
+struct Instance {
+    object: u32,
+    moved: DVec3,
+    turned: DVec3,
+}
+
+impl Instance {
+    fn transform(&self) -> DAffine3 {
+        let [x, y, z] = self.turned.to_array().map(f64::to_radians);
+        let turn = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        DAffine3 { matrix3: turn, translation: self.moved }
+    }
+}
+
+/// The key of an object; a file has only itself.
+fn id(number: u32) -> Id {
+    (String::new(), number)
+}
+
+impl File {
+    fn new() -> Self {
+        let (resources, placed) = (Resources::of("AMF"), BTreeSet::new());
+        Self { resources, open: None, at: DVec3::NAN, corners: [u32::MAX; 3], instance: Instance::default(), placed }
+    }
+
+    fn begin(&mut self, element: &Element) -> Result<(), ImportError> {
+        let open = |name: &str, shape: Shape| -> Result<(u32, Resource), ImportError> {
+            let number = element.number("id").map_err(broken)?;
+            Ok((number, Resource { name: format!("{name} {number}"), solid: true, shape }))
         };
-        let number = || {
-            value
-                .trim()
-                .parse::<f64>()
-                .map_err(|_| broken(format!("\"{}\" in <{ended}> is not a number", value.trim())))
-        };
-        let index = || {
-            value
-                .trim()
-                .parse::<u32>()
-                .map_err(|_| broken(format!("\"{}\" in <{ended}> is not a number", value.trim())))
-        };
-        match ended.as_str() {
-            "x" => at[0] = (number()? * unit) as f32,
-            "y" => at[1] = (number()? * unit) as f32,
-            "z" => at[2] = (number()? * unit) as f32,
-            "coordinates" => vertices.push(std::mem::replace(&mut at, [f32::NAN; 3])),
-            "v1" => corners[0] = index()?,
-            "v2" => corners[1] = index()?,
-            "v3" => corners[2] = index()?,
-            "triangle" => triangles.push(std::mem::replace(&mut corners, [u32::MAX; 3])),
+        match element.name() {
+            "amf" => self.resources.unit = in_mm(&element.attribute("unit").unwrap_or_default())?,
             "object" => {
-                for triangle in &triangles {
-                    let facet = formats::indexed(&vertices, *triangle);
-                    facets.push(
-                        facet
-                            .ok_or_else(|| broken(format!("a triangle of {name} names a vertex that is not there")))?,
-                    );
-                }
-                objects.push(Object { name: std::mem::take(&mut name), triangles: triangles.len() });
+                self.open = Some(open("object", Shape::Mesh { vertices: Vec::new(), triangles: Vec::new() })?);
+            }
+            "constellation" => self.open = Some(open("constellation", Shape::Components(Vec::new()))?),
+            "coordinates" => self.at = DVec3::NAN,
+            "triangle" => self.corners = [u32::MAX; 3],
+            "instance" => {
+                let object = element.number("objectid").map_err(broken)?;
+                self.instance = Instance { object, ..Instance::default() };
             }
             _ => {}
         }
+        Ok(())
     }
-    let count = facets.len();
-    let import = formats::of_facets(facets.into_iter(), count, "AMF", |i| format!("triangle {}", i + 1), task)?;
-    Ok(Import { units: Some(Units::Millimetre), objects, ..import })
+
+    fn end(&mut self, name: &str, value: &str) -> Result<(), ImportError> {
+        let number = || value.parse::<f64>().map_err(|_| broken(format!("\"{value}\" in <{name}> is not a number")));
+        let index = || value.parse::<u32>().map_err(|_| broken(format!("\"{value}\" in <{name}> is not a number")));
+        match (name, self.open.as_mut().map(|(_, resource)| &mut resource.shape)) {
+            ("x", _) => self.at.x = number()?,
+            ("y", _) => self.at.y = number()?,
+            ("z", _) => self.at.z = number()?,
+            ("v1", _) => self.corners[0] = index()?,
+            ("v2", _) => self.corners[1] = index()?,
+            ("v3", _) => self.corners[2] = index()?,
+            ("deltax", _) => self.instance.moved.x = number()?,
+            ("deltay", _) => self.instance.moved.y = number()?,
+            ("deltaz", _) => self.instance.moved.z = number()?,
+            ("rx", _) => self.instance.turned.x = number()?,
+            ("ry", _) => self.instance.turned.y = number()?,
+            ("rz", _) => self.instance.turned.z = number()?,
+            ("coordinates", Some(Shape::Mesh { vertices, .. })) => vertices.push(self.at),
+            ("triangle", Some(Shape::Mesh { triangles, .. })) => {
+                triangles.push(self.corners);
+                self.resources.count_triangle()?;
+            }
+            ("instance", Some(Shape::Components(parts))) => {
+                self.placed.insert(self.instance.object);
+                parts.push((id(self.instance.object), self.instance.transform()));
+            }
+            ("object" | "constellation", Some(_)) => {
+                if let Some((number, resource)) = self.open.take() {
+                    self.resources.objects.insert(id(number), resource);
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What no constellation places stands where it is.
+    fn finish(mut self) -> Resources {
+        let free = self.resources.objects.keys().filter(|(_, number)| !self.placed.contains(number));
+        self.resources.items = free.map(|id| (id.clone(), DAffine3::IDENTITY)).collect();
+        self.resources
+    }
 }
 
 /// Millimetres in a unit of AMF.

@@ -5,6 +5,7 @@
 //! | `formats` | the formats of solids, and how loose triangles become a mesh |
 //! | [`stl`] | binary and ASCII STL, told apart by content |
 //! | `threemf`, `amf`, `obj`, `ply` | one other format each |
+//! | `placed` | objects that a file places, copies and assemblies |
 //! | [`outline`] | drawings in DXF and SVG, whose outlines become solids |
 //! | `package` | a 3MF file as an archive of files |
 //! | `xml` | elements of XML files, one after another |
@@ -29,6 +30,7 @@ mod obj;
 pub mod outline;
 pub(crate) mod package;
 mod part;
+mod placed;
 mod ply;
 pub mod repair;
 pub(crate) mod solid;

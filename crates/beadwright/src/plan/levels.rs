@@ -9,6 +9,7 @@ use crate::bead::wall::WallBead;
 use crate::model::Mesh;
 use crate::model::wall_curves::WallCurves;
 use crate::plan::MAX_LAYERS;
+use crate::plan::warm::Warmth;
 use crate::profile::Profile;
 use crate::slice::{self, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Task};
@@ -26,7 +27,13 @@ const POINTS: usize = 64;
 const ASIDE: usize = 20;
 
 /// The layers of a mesh wall that stands on z = 0.
-pub(super) fn of_mesh(mesh: &Mesh, wall: &WallBead, profile: &Profile, task: &Task) -> Result<Vec<Slab>, Cancelled> {
+pub(super) fn of_mesh(
+    mesh: &Mesh,
+    wall: &WallBead,
+    warmth: &Warmth,
+    profile: &Profile,
+    task: &Task,
+) -> Result<Vec<Slab>, Cancelled> {
     let (step, top) = (wall.rise(), mesh.bounds().1.z.max(0.0));
     let slabs = slice::even_slabs(mesh, step);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
@@ -46,7 +53,7 @@ pub(super) fn of_mesh(mesh: &Mesh, wall: &WallBead, profile: &Profile, task: &Ta
         let pair = (z / step - 0.5).max(0.0) as usize;
         rises.get(pair.min(rises.len().saturating_sub(1))).copied().unwrap_or(step)
     };
-    Ok(stacked(top, wall, rise))
+    Ok(stacked(top, wall, warmth, rise))
 }
 
 /// What a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them, a few
@@ -76,9 +83,9 @@ fn to_nearest(p: DVec2, edges: &[(DVec2, DVec2)]) -> f64 {
 }
 
 /// The layers of a wall of centre-lines.
-pub(super) fn of_curves(curves: &WallCurves, height: f64, wall: &WallBead) -> Vec<Slab> {
+pub(super) fn of_curves(curves: &WallCurves, height: f64, wall: &WallBead, warmth: &Warmth) -> Vec<Slab> {
     let half = wall.rise() / 2.0;
-    stacked(height, wall, |z| rise(wall, curves.leans(z - half, z + half).into_iter().map(|(_, lean)| lean)))
+    stacked(height, wall, warmth, |z| rise(wall, curves.leans(z - half, z + half).into_iter().map(|(_, lean)| lean)))
 }
 
 /// How centre-lines lean within a layer: places, and the angle from the build direction there, radians.
@@ -92,13 +99,13 @@ pub(super) fn lean_at(leans: &[(DVec2, f64)], at: DVec2) -> f64 {
     nearest.map_or(0.0, |(_, lean)| lean.min(MOST_LEAN))
 }
 
-/// The first layer is as high as the first bead; each further one rises as `rise` says of its middle, mm, until the top
-/// is nearest.
-fn stacked(top: f64, wall: &WallBead, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
+/// The first layer is as high as the first bead; each further one rises as `rise` says of its middle, mm, and less where it
+/// is warm, until the top is nearest.
+fn stacked(top: f64, wall: &WallBead, warmth: &Warmth, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let mut slabs = vec![Slab { z: wall.height(), height: wall.height() }];
     let mut z = wall.height();
     while slabs.len() < MAX_LAYERS {
-        let height = rise(z + wall.rise() / 2.0);
+        let height = rise(z + wall.rise() / 2.0) * warmth.lift(z);
         if z + height / 2.0 >= top {
             break;
         }

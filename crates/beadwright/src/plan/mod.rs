@@ -12,6 +12,7 @@
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
+//! | `warm` | what heat does to the width of beads and to the layers of a wall |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 pub mod choice;
@@ -22,6 +23,7 @@ mod parts;
 mod preview;
 mod relight;
 mod scan_lines;
+pub mod warm;
 
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
@@ -31,8 +33,8 @@ use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, Path, Strategy, coverage};
-use crate::heat::{Build, LONGEST_WAIT};
-use crate::layer::{Layer, overhang};
+use crate::heat::{LONGEST_WAIT, PassHeat};
+use crate::layer::{Layer, Temperature, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
@@ -51,6 +53,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::convert::Infallible;
+use warm::{Heat, Warmth};
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
 /// profile has them.
@@ -235,9 +238,22 @@ pub fn plan_into<'a, S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    match part.into() {
-        PartRef::Mesh(mesh) => plan_with(name, mesh, strategy_of(profile)?, profile, task, sink),
-        PartRef::Curves(curves, height) => plan_curves(name, curves, height, profile, task, sink),
+    let part = part.into();
+    plan_at(&warm::foretold(part, profile, task)?, name, part, profile, task, sink)
+}
+
+/// Plans a part whose layers follow a known warmth.
+fn plan_at<S: Sink + Send>(
+    warmth: &Warmth,
+    name: &str,
+    part: PartRef,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    match part {
+        PartRef::Mesh(mesh) => plan_mesh(warmth, name, mesh, strategy_of(profile)?, profile, task, sink),
+        PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
     }
 }
 
@@ -253,10 +269,23 @@ pub fn plan_with<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let slabs = slabs_of(mesh, profile, task)?;
+    let warmth = warm::foretold(PartRef::Mesh(mesh), profile, task)?;
+    plan_mesh(&warmth, name, mesh, strategy, profile, task, sink)
+}
+
+fn plan_mesh<S: Sink + Send>(
+    warmth: &Warmth,
+    name: &str,
+    mesh: &Mesh,
+    strategy: &dyn Strategy,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    let slabs = slabs_at(warmth, mesh, profile, task)?;
     let left = left_over(mesh, &slabs, profile);
     let (low, high) = mesh.bounds();
-    let heat = heated(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs);
+    let heat = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
@@ -371,23 +400,26 @@ pub fn slabs<'a>(
     profile: &Profile,
     task: &Task,
 ) -> Result<Vec<Slab>, PlanError<Infallible>> {
-    match part.into() {
-        PartRef::Mesh(mesh) => slabs_of(mesh, profile, task),
-        PartRef::Curves(curves, height) => Ok(levels::of_curves(curves, height, &profile.single_wall()?)),
+    let part = part.into();
+    let warmth = warm::foretold(part, profile, task)?;
+    match part {
+        PartRef::Mesh(mesh) => slabs_at(&warmth, mesh, profile, task),
+        PartRef::Curves(curves, height) => Ok(levels::of_curves(curves, height, &profile.single_wall()?, &warmth)),
     }
 }
 
-/// Where the layers of a mesh lie.
-fn slabs_of<E>(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
+/// Where the layers of a mesh lie that is so warm.
+fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
-        Some(wall) => levels::of_mesh(mesh, &wall, profile, task)?,
+        Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
         None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }
 
 /// Plans a wall one bead thick along curves, up to `height` (mm).
 fn plan_curves<S: Sink + Send>(
+    warmth: &Warmth,
     name: &str,
     curves: &WallCurves,
     height: f64,
@@ -395,8 +427,9 @@ fn plan_curves<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let slabs = levels::of_curves(curves, height, &profile.single_wall()?);
-    let heat = curves.bounds(height).and_then(|bounds| heated(profile, &bounds, &slabs));
+    let slabs = levels::of_curves(curves, height, &profile.single_wall()?, warmth);
+    let bounds = curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+    let heat = Heat::of(profile, &bounds, &slabs, warmth);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
         let fill = |index: usize| {
@@ -420,7 +453,7 @@ fn plan_curves<S: Sink + Send>(
 fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
     layers: usize,
-    heat: Option<Build>,
+    heat: Heat,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
@@ -458,13 +491,6 @@ fn run<S: Sink + Send>(
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; {most} are the most (check.max_plan_points)."));
     Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
-}
-
-/// The plate for a part whose passes have a limit of temperature; `None` where they have none.
-fn heated(profile: &Profile, bounds: &Bounds, slabs: &[Slab]) -> Option<Build> {
-    let settings = profile.heat_settings().ok().filter(|settings| settings.interpass.is_some())?;
-    let layers: Vec<(f64, f64)> = slabs.iter().map(|slab| (slab.z, slab.height)).collect();
-    Some(Build::new(&settings, &profile.weld_settings(), bounds, &layers))
 }
 
 /// The centre-lines of a layer as passes; the area they cover stands in for the slice.
@@ -517,8 +543,7 @@ struct Emitter<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
     torch: Option<DVec2>,
-    /// The part as it warms up, where a limit holds for it.
-    heat: Option<Build>,
+    heat: Heat,
     memory: order::Memory,
     /// Outlines of the layer below, of the islands that are welded.
     below: Vec<Polygon>,
@@ -541,11 +566,11 @@ impl<S: Sink> Emitter<'_, S> {
         }
         let order = self.profile.order_settings(index);
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
-        let passes = lifted(paths, index, (z, height), self.profile);
+        let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
         let mut layer =
             Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
         relight::relight(&mut layer, self.profile);
-        self.cool(&mut layer);
+        self.warm(&mut layer);
         self.doubts(&mut layer);
         self.below = laid;
         layer.warnings.iter().for_each(|w| self.warnings.add(*w));
@@ -553,13 +578,19 @@ impl<S: Sink> Emitter<'_, S> {
         self.sink.layer(layer)
     }
 
-    /// Keeps the limits of `[interpass]`, and warns where that cannot be.
-    fn cool(&mut self, layer: &mut Layer) {
-        let (Some(build), Some(limits)) = (&mut self.heat, self.profile.interpass) else { return };
+    /// Keeps the limits of `[interpass]`, warns where that cannot be, and widens beads by the heat that they find.
+    fn warm(&mut self, layer: &mut Layer) {
+        let Some(build) = &mut self.heat.build else { return };
         let heat = build.layer_within_limits(layer);
         // The next layer is ordered from where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
-        layer.temperatures = heat.passes.iter().map(|pass| pass.start).collect();
+        let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
+        layer.temperatures = heat.passes.iter().map(temperature).collect();
+        let bead = &self.profile.bead;
+        if let Some(law) = &bead.by_heat {
+            warm::widen(layer, &heat, build, law, bead.width);
+        }
+        let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let kind = if pass.wait >= LONGEST_WAIT {
                 WarningKind::NeverCools

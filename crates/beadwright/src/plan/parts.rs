@@ -1,10 +1,10 @@
 //! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
 
 use super::clearance::{Clearance, Close, Watch};
-use super::{Header, PlanError, Sink, Summary, plan_into, slabs_of, strategy_of};
+use super::{Header, PlanError, Sink, Summary, plan_into, slabs_at, strategy_of, warm};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
-use crate::model::Mesh;
+use crate::model::{Mesh, PartRef};
 use crate::process::TorchShape;
 use crate::profile::Profile;
 use crate::task::Task;
@@ -29,9 +29,11 @@ pub fn parts_into<S: Sink + Send>(
             "process.layers: layers are numbered by the part, so it is not clear which are meant",
         ));
     }
-    let counts: Result<Vec<usize>, _> =
-        parts.iter().map(|(_, mesh)| slabs_of(mesh, profile, task).map(|slabs| slabs.len())).collect();
-    let counts = counts?;
+    let count = |(_, mesh): &(String, &Mesh)| -> Result<usize, PlanError<S::Error>> {
+        let warmth = warm::foretold(PartRef::Mesh(mesh), profile, task)?;
+        Ok(slabs_at(&warmth, mesh, profile, task)?.len())
+    };
+    let counts: Vec<usize> = parts.iter().map(count).collect::<Result<_, _>>()?;
     let (layers, strategy) = (counts.iter().sum(), strategy_of(profile)?.name().to_owned());
     let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, layers };
     sink.begin(&header).map_err(PlanError::Sink)?;

@@ -1,7 +1,8 @@
 //! One layer ahead of the others, to look at while the rest is planned.
 
 use super::filled::{Filled, fill_planned};
-use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_of, strategy_of, weld_curves};
+use super::warm::{Heat, Warmth};
+use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_at, strategy_of, weld_curves};
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
 use crate::order::Memory;
@@ -12,7 +13,7 @@ use crate::warning::Warnings;
 use std::convert::Infallible;
 
 /// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. Only
-/// start points and order may differ from those in the whole plan.
+/// start points and order may differ from those in the whole plan, and what heat changes there.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -25,7 +26,7 @@ pub fn preview(
     let filled = match part {
         Part::Mesh(import) => of_mesh(&import.mesh, profile, index, task)?,
         Part::Curves { curves, height, .. } => {
-            let slabs = levels::of_curves(curves, *height, &profile.single_wall()?);
+            let slabs = levels::of_curves(curves, *height, &profile.single_wall()?, &Warmth::default());
             let index = index.min(slabs.len().saturating_sub(1));
             slabs.get(index).map(|slab| weld_curves(curves, index, *slab, profile))
         }
@@ -38,7 +39,7 @@ pub fn preview(
         profile,
         sink: &mut last,
         torch: None,
-        heat: None,
+        heat: Heat::default(),
         memory: Memory::default(),
         below: Vec::new(),
         built,
@@ -51,7 +52,7 @@ pub fn preview(
 }
 
 fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<Option<Filled>, PlanError<Infallible>> {
-    let (strategy, slabs) = (strategy_of(profile)?, slabs_of(mesh, profile, task)?);
+    let (strategy, slabs) = (strategy_of(profile)?, slabs_at(&Warmth::default(), mesh, profile, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
     let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;

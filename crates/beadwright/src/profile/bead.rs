@@ -1,6 +1,6 @@
 //! The section `[bead]`.
 
-use crate::bead::{Law, Section};
+use crate::bead::{BeadByHeat, Law, Section};
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -20,15 +20,19 @@ pub struct BeadSection {
     /// measured beads as `{ library = [[width, height], …] }` in mm; default constant-height.
     #[serde(default)]
     pub law: Law,
+    /// How the bead changes with the heat of the metal below; optional, default not at all.
+    pub by_heat: Option<BeadByHeat>,
 }
 
 impl BeadSection {
     /// The limits of the numbers.
     pub(super) fn limits(&self) -> Vec<Limit> {
-        limits! {
+        let general = limits! {
             "bead.width": self.width, 0.05, 100.0, "mm",
                 "this covers everything from a printer's line to the widest weave";
             "bead.height": self.height, 0.01, 50.0, "mm", "a bead that is higher than it is wide falls over";
-        }
+        };
+        let by_heat = self.by_heat.iter().flat_map(BeadByHeat::limits);
+        general.into_iter().chain(by_heat).collect()
     }
 }

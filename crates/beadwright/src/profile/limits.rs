@@ -63,6 +63,10 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         (None, None) => return Some(Broken::text("fill.overlap", "free", "fill.stepover must then be given, mm.")),
         _ => {}
     }
+    if let (Some(_), Err(lacks)) = (&p.bead.by_heat, p.heat_settings()) {
+        let reason = lacks.to_string();
+        return Some(Broken { key: "bead.by_heat".to_owned(), value: "a law".to_owned(), reason });
+    }
     if let (Some(_), Err(lacks)) = (&p.interpass, p.heat_settings()) {
         let reason = lacks.to_string();
         return Some(Broken { key: "interpass".to_owned(), value: "a limit".to_owned(), reason });

@@ -72,7 +72,7 @@ impl Report {
         }
         self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
         let waits = layer.passes.iter().map(|pass| pass.wait).sum();
-        self.warmth.push((layer.temperatures.clone(), waits));
+        self.warmth.push((layer.temperatures.iter().map(|t| t.start).collect(), waits));
         if let Some(judgement) = judgement {
             self.figures.get_or_insert_default().add(&judgement.figures);
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());

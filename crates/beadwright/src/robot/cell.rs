@@ -10,12 +10,13 @@ use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 
 /// The built-in cells as (name, TOML text).
-pub const BUILT_IN: [(&str, &str); 7] = [
+pub const BUILT_IN: [(&str, &str); 8] = [
     ("kuka-kr20-r1810", include_str!("../../cells/kuka-kr20-r1810.toml")),
     ("abb-irb1410", include_str!("../../cells/abb-irb1410.toml")),
     ("abb-irb2600-12-165", include_str!("../../cells/abb-irb2600-12-165.toml")),
     ("kuka-kr8-r1440-arc", include_str!("../../cells/kuka-kr8-r1440-arc.toml")),
     ("fanuc-arc-mate-100id", include_str!("../../cells/fanuc-arc-mate-100id.toml")),
+    ("yaskawa-ar2010", include_str!("../../cells/yaskawa-ar2010.toml")),
     ("ur5e", include_str!("../../cells/ur5e.toml")),
     ("ur10e", include_str!("../../cells/ur10e.toml")),
 ];

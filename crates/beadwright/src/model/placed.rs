@@ -1,0 +1,137 @@
+//! Objects that a file places: meshes, and assemblies of other objects, each with a transform (3MF, AMF).
+//!
+//! What a file may unfold to is bounded: triangles with all copies, assemblies in assemblies.
+
+use super::formats::{self, Facet, MOST_TRIANGLES};
+use super::{Import, ImportError, Object, Units};
+use crate::task::Task;
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// Assemblies lie no deeper in each other.
+const DEEPEST: usize = 32;
+
+/// A file of an archive and a number in it.
+pub(super) type Id = (String, u32);
+
+/// What an object consists of.
+pub(super) enum Shape {
+    Mesh { vertices: Vec<DVec3>, triangles: Vec<[u32; 3]> },
+    Components(Vec<(Id, DAffine3)>),
+}
+
+/// An object of the file.
+pub(super) struct Resource {
+    pub(super) name: String,
+    /// Whether it is part of what is to be built: supports are not.
+    pub(super) solid: bool,
+    pub(super) shape: Shape,
+}
+
+/// All objects, and those that are built.
+pub(super) struct Resources {
+    pub(super) objects: BTreeMap<Id, Resource>,
+    /// What is built.
+    pub(super) items: Vec<(Id, DAffine3)>,
+    /// mm.
+    pub(super) unit: f64,
+    format: &'static str,
+    triangles: usize,
+}
+
+impl Resources {
+    pub(super) fn of(format: &'static str) -> Self {
+        Self { objects: BTreeMap::new(), items: Vec::new(), unit: 1.0, format, triangles: 0 }
+    }
+
+    /// One more triangle was read.
+    pub(super) fn count_triangle(&mut self) -> Result<(), ImportError> {
+        self.triangles += 1;
+        if self.triangles > MOST_TRIANGLES { Err(self.too_many()) } else { Ok(()) }
+    }
+
+    /// Puts the items together.
+    pub(super) fn build(&self, task: &Task) -> Result<Import, ImportError> {
+        let (mut counts, mut sum) = (BTreeMap::new(), 0_usize);
+        for (id, _) in &self.items {
+            sum = sum.saturating_add(self.count(id, 0, &mut counts)?);
+        }
+        if sum > MOST_TRIANGLES {
+            return Err(self.too_many());
+        }
+        let (mut facets, mut objects): (Vec<Facet>, Vec<Object>) = (Vec::with_capacity(sum), Vec::new());
+        for (id, at) in &self.items {
+            let first = facets.len();
+            self.lay(id, &(DAffine3::from_scale(DVec3::splat(self.unit)) * *at), &mut facets)?;
+            task.check()?;
+            if let (Some(object), true) = (self.objects.get(id), facets.len() > first) {
+                objects.push(Object { name: object.name.clone(), triangles: facets.len() - first });
+            }
+        }
+        if facets.is_empty() {
+            return Err(self.broken("its build holds no object with triangles"));
+        }
+        let count = facets.len();
+        let place = |i| format!("triangle {}", i + 1);
+        let import = formats::of_facets(facets.into_iter(), count, self.format, place, task)?;
+        Ok(Import { units: Some(Units::Millimetre), objects, ..import })
+    }
+
+    fn broken(&self, reason: impl Into<String>) -> ImportError {
+        ImportError::Broken { format: self.format, reason: reason.into() }
+    }
+
+    fn too_many(&self) -> ImportError {
+        self.broken(format!("it has more than {MOST_TRIANGLES} triangles, with all copies"))
+    }
+
+    /// The triangles of an object with all its parts, each object counted once.
+    fn count(&self, id: &Id, depth: usize, counts: &mut BTreeMap<Id, usize>) -> Result<usize, ImportError> {
+        if let Some(known) = counts.get(id) {
+            return Ok(*known);
+        }
+        if depth > DEEPEST {
+            return Err(self.broken(format!("components lie more than {DEEPEST} deep in each other, or in themselves")));
+        }
+        let missing = || match &id.0 {
+            file if file.is_empty() => self.broken(format!("object {} is not there", id.1)),
+            file => self.broken(format!("object {} of {file} is not there", id.1)),
+        };
+        let object = self.objects.get(id).ok_or_else(missing)?;
+        let mut sum = 0_usize;
+        match &object.shape {
+            _ if !object.solid => {}
+            Shape::Mesh { triangles, .. } => sum = triangles.len(),
+            Shape::Components(parts) => {
+                for (part, _) in parts {
+                    sum = sum.saturating_add(self.count(part, depth + 1, counts)?);
+                }
+            }
+        }
+        counts.insert(id.clone(), sum);
+        Ok(sum)
+    }
+
+    /// Adds the triangles of an object and of its parts, which [`Self::count`] has looked at.
+    fn lay(&self, id: &Id, at: &DAffine3, facets: &mut Vec<Facet>) -> Result<(), ImportError> {
+        let Some(object) = self.objects.get(id).filter(|object| object.solid) else { return Ok(()) };
+        match &object.shape {
+            Shape::Components(parts) => {
+                parts.iter().try_for_each(|(part, place)| self.lay(part, &(*at * *place), facets))
+            }
+            Shape::Mesh { vertices, triangles } => {
+                let placed: Vec<[f32; 3]> =
+                    vertices.iter().map(|v| at.transform_point3(*v).as_vec3().to_array()).collect();
+                let mirrored = at.matrix3.determinant() < 0.0;
+                for &[a, b, c] in triangles {
+                    let corners = if mirrored { [a, c, b] } else { [a, b, c] };
+                    let facet = formats::indexed(&placed, corners);
+                    let missing =
+                        || self.broken(format!("a triangle of \"{}\" names a vertex that is not there", object.name));
+                    facets.push(facet.ok_or_else(missing)?);
+                }
+                Ok(())
+            }
+        }
+    }
+}

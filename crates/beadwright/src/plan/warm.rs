@@ -1,0 +1,110 @@
+//! What heat does to beads: on warm metal they spread, and the layers of a wall rise less.
+
+use super::{Collect, PlanError, plan_at};
+use crate::bead::BeadByHeat;
+use crate::heat::{Build, LayerHeat, PassHeat};
+use crate::layer::Layer;
+use crate::model::PartRef;
+use crate::pass::{Along, Pass, Segment};
+use crate::profile::Profile;
+use crate::slice::Slab;
+use crate::task::Task;
+use planar::Bounds;
+
+/// Plans of a wall until its layers lie where its own heat lets them rise; each brings them closer by a factor of ten.
+const ROUNDS: usize = 3;
+
+/// How warm the metal ahead of the torch is at each height of a wall, and what that does to its layers.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Warmth {
+    /// Tops of layers, mm, and by how much each rises less or more than at the temperature of the profile.
+    lifts: Vec<(f64, f64)>,
+}
+
+impl Warmth {
+    /// Thickness of a layer on metal of a height (mm), as a multiple of what it is at the temperature of the profile.
+    pub(super) fn lift(&self, z: f64) -> f64 {
+        let next = self.lifts.partition_point(|(top, _)| *top <= z);
+        self.lifts.get(next).or(self.lifts.last()).map_or(1.0, |(_, lift)| *lift)
+    }
+}
+
+/// The part as it warms up while its layers are planned.
+#[derive(Debug, Default)]
+pub(super) struct Heat {
+    /// Its metal; `None` where the profile neither limits its temperature nor says what that does.
+    pub(super) build: Option<Build>,
+    warmth: Warmth,
+}
+
+impl Heat {
+    /// The plate before the first layer.
+    pub(super) fn of(profile: &Profile, bounds: &Bounds, slabs: &[Slab], warmth: &Warmth) -> Self {
+        let matters = profile.interpass.is_some() || profile.bead.by_heat.is_some();
+        let settings = profile.heat_settings().ok().filter(|_| matters);
+        let layers: Vec<(f64, f64)> = slabs.iter().map(|slab| (slab.z, slab.height)).collect();
+        let build = settings.map(|settings| Build::new(&settings, &profile.weld_settings(), bounds, &layers));
+        Self { build, warmth: warmth.clone() }
+    }
+
+    /// How thick a layer on metal of a height (mm) is, as a multiple of what it is at the temperature of the profile.
+    pub(super) fn lift(&self, index: usize, below: f64) -> f64 {
+        // The first bead of a wall is a cap on the cold plate.
+        if index == 0 { 1.0 } else { self.warmth.lift(below) }
+    }
+}
+
+/// The warmth of a wall, if its profile says what heat does to its layers, and they follow its height.
+pub(super) fn foretold<E>(part: PartRef, profile: &Profile, task: &Task) -> Result<Warmth, PlanError<E>> {
+    let mut warmth = Warmth::default();
+    let Some(law) = profile.bead.by_heat else { return Ok(warmth) };
+    let wall = match part {
+        PartRef::Mesh(_) => profile.wall_bead()?,
+        PartRef::Curves(..) => Some(profile.single_wall()?),
+    };
+    let Some(wall) = wall else { return Ok(warmth) };
+    for _ in 0..ROUNDS {
+        let mut planned = Collect::default();
+        match plan_at(&warmth, "", part, profile, task, &mut planned) {
+            Ok(_) => {}
+            Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            // The plan itself tells what is wrong.
+            Err(_) => return Ok(warmth),
+        }
+        let lift = |layer: &Layer| Some((layer.z, law.lift(wall.rise(), ahead(layer)?)));
+        warmth = Warmth { lifts: planned.layers.iter().filter_map(lift).collect() };
+    }
+    Ok(warmth)
+}
+
+/// Mean temperature of the metal ahead of the torch in a layer, °C.
+fn ahead(layer: &Layer) -> Option<f64> {
+    let (mut sum, mut whole) = (0.0, 0.0);
+    for (pass, temperature) in layer.passes.iter().zip(&layer.temperatures) {
+        sum += pass.length() * temperature.mean;
+        whole += pass.length();
+    }
+    (whole > 0.0).then(|| sum / whole)
+}
+
+/// Makes the passes of a layer as wide as their beads become on the metal that they find, `nominal` (mm) being the width of
+/// the profile's bead. Their paces stay: the metal is the same, and lies lower.
+pub(super) fn widen(layer: &mut Layer, heat: &LayerHeat, build: &Build, law: &BeadByHeat, nominal: f64) {
+    for (pass, heat) in layer.passes.iter_mut().zip(&heat.passes) {
+        pass.width = along(pass, heat, build, |piece, ahead| piece.width * law.widening(nominal, ahead));
+    }
+}
+
+/// A value for every piece of a pass, by the temperature ahead of the torch on it (°C).
+pub fn along(pass: &Pass, heat: &PassHeat, build: &Build, value: impl Fn(&Segment, f64) -> f64) -> Along {
+    let mut way = 0.0;
+    let mut of = |piece: Segment| {
+        let from = way;
+        way += piece.length();
+        value(&piece, heat.ahead(from..way, build.spacing()))
+    };
+    let mut values: Vec<f64> = pass.segments().map(&mut of).collect();
+    // The last point of an open pass.
+    values.extend(values.last().copied().filter(|_| !pass.closed));
+    Along::Each(values)
+}
