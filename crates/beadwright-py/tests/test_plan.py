@@ -110,9 +110,11 @@ def test_a_quarter_turn_and_a_mirror_change_nothing(strategy: str) -> None:
     as_is = beadwright.plan(Part.from_triangles(corners, faces), strategy=strategy)
     quarter = Part.from_triangles(corners, faces, turn=(0, 0, 90))
     mirrored = Part.from_triangles(corners * (-1, 1, 1), faces[:, ::-1])
+    # `loop` searches on a lattice that is the same for all parts, and does not turn with them.
+    near = 1e-2 if strategy == "loop" else 1e-3
     for other in [beadwright.plan(part, strategy=strategy) for part in (quarter, mirrored)]:
         for name in ["arc_starts", "deposited_length_mm", "part_volume_mm3"]:
-            assert other.metrics[name] == pytest.approx(as_is.metrics[name], rel=1e-3), name
+            assert other.metrics[name] == pytest.approx(as_is.metrics[name], rel=near), name
 
 
 def test_thin_walls_are_told_with_their_place() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -37,8 +38,13 @@ def test_what_progress_raises_ends_the_call() -> None:
 
 
 def test_ctrl_c_ends_the_call() -> None:
-    with pytest.raises(KeyboardInterrupt):
-        beadwright.plan(Part.example("propeller"), progress=lambda *_: _thread.interrupt_main())
+    # Jobs in the background of a shell ignore it.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            beadwright.plan(Part.example("propeller"), progress=lambda *_: _thread.interrupt_main())
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_a_bar_is_drawn(capsys: pytest.CaptureFixture[str]) -> None:
