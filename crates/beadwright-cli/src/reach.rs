@@ -3,7 +3,7 @@
 use crate::{file, profile, program};
 use anyhow::{Context, bail};
 use beadwright::files::write_file;
-use beadwright::robot::{self, Cell, PartPlace, Reach, Suggestion, TableAngle, Track, Trajectory, cell};
+use beadwright::robot::{self, Cell, External, PartPlace, Reach, Suggestion, TableAngle, Track, Trajectory, cell};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -67,8 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         bail!("{}: the plan has no passes.", path.display());
     }
     let place = arguments.at.unwrap_or(cell.part);
-    let table = robot::turn_table(&cell, place, &track);
-    let place = table.map_or(place, |table| table.place);
+    let External { cell, place, station, table } = robot::external_axes(&cell, place, &track);
     let start = Instant::now();
     let reach = robot::reach(&cell, place, &track);
     let seconds = start.elapsed().as_secs_f64();
@@ -85,9 +84,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         write_file(path, text.as_bytes())?;
     }
     if arguments.json {
-        writeln!(out, "{:#}", json(&cell, &reach, table, suggestion))?;
+        writeln!(out, "{:#}", json(&cell, &reach, (station, table), suggestion))?;
     } else {
-        print(&mut out, &plan.header.part, &cell, &track, &reach, table)?;
+        print(&mut out, &plan.header.part, &cell, &track, &reach, (station, table))?;
         if reach.reached().next().is_some() {
             let rate = reach.computed as f64 / seconds.max(1e-9);
             writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
@@ -122,7 +121,7 @@ fn print(
     cell: &Cell,
     track: &Track,
     reach: &Reach,
-    table: Option<TableAngle>,
+    (station, table): (Option<Station>, Option<TableAngle>),
 ) -> std::io::Result<()> {
     writeln!(out, "{part} on {}: {}", cell.name, cell.description)?;
     writeln!(out, "origin of the part at {}\n", reach.place.sentence())?;
@@ -168,6 +167,13 @@ fn print(
     ];
     writeln!(out)?;
     rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))?;
+    if let Some(Station { position, margin, at_zero, .. }) = station {
+        let at_zero = at_zero.map_or("out of reach".to_owned(), |margin| format!("{margin:.1}°"));
+        writeln!(
+            out,
+            "  linear axis            {position:.0} mm, margin of the outermost points {margin:.1}° (at 0 mm {at_zero})"
+        )?;
+    }
     if let Some(table) = table {
         let unturned = table.unturned.map_or("out of reach".to_owned(), |margin| format!("{margin:.1}°"));
         let (angle, margin) = (table.angle, table.margin);
@@ -178,14 +184,15 @@ fn print(
     }
     let torch = t.program_angle().map(|angle| format!("--set program.torch_angle={angle:.0}"));
     let table = table.map(|table| format!("--set program.table_angle={:.0}", table.angle));
-    let settings: Vec<String> = torch.into_iter().chain(table).collect();
+    let station = station.map(|station| format!("--set program.linear_axis={:.0}", station.position));
+    let settings: Vec<String> = torch.into_iter().chain(station).chain(table).collect();
     if settings.is_empty() { Ok(()) } else { writeln!(out, "  plan with              {}", settings.join(" ")) }
 }
 
 fn json(
     cell: &Cell,
     reach: &Reach,
-    table: Option<TableAngle>,
+    (station, table): (Option<Station>, Option<TableAngle>),
     suggestion: Option<Option<Suggestion>>,
 ) -> serde_json::Value {
     let findings: Vec<_> = reach
@@ -198,7 +205,7 @@ fn json(
     let points = reach.poses.len();
     let value = serde_json::json!({
         "cell": cell.name, "place": reach.place, "reachable": reach.is_reachable(), "least_margin": least,
-        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "torch_angle": reach.turning.program_angle(), "table": table, "points": points,
+        "posture": reach.branch.name(), "joints": joints, "turning": reach.turning, "torch_angle": reach.turning.program_angle(), "linear_axis": station, "table": table, "points": points,
         "findings": findings,
     });
     match (value, suggestion) {

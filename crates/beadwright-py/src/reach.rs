@@ -55,21 +55,20 @@ pub(crate) fn reach(
 
 /// What `beadwright reach --json` prints, and the trajectory where there is one.
 fn walked(name: &str, cell: &Cell, place: PartPlace, track: &Track, suggest: bool) -> Reach {
-    let table = library::turn_table(cell, place, track);
-    let place = table.map_or(place, |table| table.place);
-    let reach = library::reach(cell, place, track);
-    let better = suggest.then(|| library::suggest(cell, place, track)).flatten();
+    let library::External { cell, place, station, table } = library::external_axes(cell, place, track);
+    let reach = library::reach(&cell, place, track);
+    let better = suggest.then(|| library::suggest(&cell, place, track)).flatten();
     let finding = |f: &library::ReachFinding| serde_json::json!({ "fatal": f.trouble.is_fatal(), "sentence": f.sentence(), "finding": f });
     let findings: Vec<_> = reach.findings.iter().map(finding).collect();
     let joints: Vec<_> = (0..6).map(|joint| reach.joint(joint)).collect();
     let values = serde_json::json!({
         "cell": cell.name, "place": reach.place, "reachable": reach.is_reachable(), "least_margin": reach.least_margin(),
         "posture": reach.branch.name(), "joints": joints, "turning": reach.turning,
-        "torch_angle": reach.turning.program_angle(), "table": table, "points": reach.poses.len(), "findings": findings,
+        "torch_angle": reach.turning.program_angle(), "linear_axis": station, "table": table, "points": reach.poses.len(), "findings": findings,
         "suggestion": better,
     });
-    let html = library::page::page(name, cell, &reach, better.as_ref()).html();
-    Reach { values, trajectory: Trajectory::of(cell, &reach), html }
+    let html = library::page::page(name, &cell, &reach, better.as_ref()).html();
+    Reach { values, trajectory: Trajectory::of(&cell, &reach), html }
 }
 
 #[pymethods]

@@ -486,6 +486,46 @@ fn a_suggested_place_is_better() {
     assert_eq!(robot::suggest(&cell, cell.part, &long), None);
 }
 
+/// A part far along a track brings the robot to it; the table beside it is seen from there.
+#[test]
+fn a_linear_axis_brings_the_robot_near() {
+    let with = |sections: &str| Cell::parse(&format!("{}\n{sections}", BUILT_IN[0].1)).unwrap();
+    let axis = "[linear_axis]\ndirection = [0.0, 2.0, 0.0]\nlimits = [-500.0, 6000.0]\n";
+    let part = square();
+    let near = place(1200.0, 0.0, 500.0, 0.0);
+    let own = robot::reach(&kuka(), near, &part).least_margin().unwrap();
+    for (y, turn) in [(3000.0, 0.0), (4520.0, 30.0)] {
+        let far = place(1200.0, y, 500.0, turn);
+        assert!(!robot::reach(&kuka(), far, &part).is_reachable());
+        let found = robot::external_axes(&with(axis), far, &part);
+        let station = found.station.unwrap();
+        assert!(station.at_zero.is_none() && (station.position - y).abs() < 900.0, "{station:?}");
+        // The part is seen as far nearer as the robot has gone.
+        assert!((found.place.position[1] - (y - station.position)).abs() < 1e-9 && found.place.rotation == turn);
+        let reach = robot::reach(&found.cell, found.place, &part);
+        assert!(reach.is_reachable() && reach.least_margin().unwrap() > own - 10.0, "{:?}", reach.least_margin());
+        // Walked anew where the part really lies near: the same joints.
+        let bare = robot::reach(&kuka(), found.place, &part);
+        let joints = |reach: &robot::Reach| reach.reached().map(|(_, pose)| pose.joints).collect::<Vec<_>>();
+        assert_eq!(joints(&reach), joints(&bare));
+    }
+    // A part that lies well leaves the robot where it is; without an axis it stays, too.
+    let found = robot::external_axes(&with(axis), near, &part);
+    assert!(found.station.unwrap().position.abs() < 1e-9 && found.place == near);
+    assert_eq!(robot::external_axes(&kuka(), near, &part).station, None);
+    let table = "[table]\naxis = [1600.0, 3000.0]\ndirection = 1\nlimits = [-180.0, 180.0]\n";
+    let found = robot::external_axes(&with(&format!("{axis}{table}")), place(1600.0, 3000.0, 500.0, 0.0), &part);
+    let moved = found.station.unwrap().position;
+    assert_eq!(found.cell.table.unwrap().axis, [1600.0, 3000.0 - moved]);
+    for (keys, word) in [
+        ("direction = [0.0, 0.0, 0.0]\nlimits = [0.0, 1.0]", "linear_axis.direction"),
+        ("direction = [0.0, 1.0, 0.0]\nlimits = [1.0, 1.0]", "linear_axis.limits"),
+    ] {
+        let error = Cell::parse(&format!("{}\n[linear_axis]\n{keys}\n", BUILT_IN[0].1)).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
+}
+
 /// A part that sticks out on the far side of a table is turned towards the robot.
 #[test]
 fn a_table_brings_the_part_near() {

@@ -141,6 +141,16 @@ fn the_table_stands_in_every_pose_or_the_post_refuses() {
         let error = dialect::write(post, &job(), &profile.job("part")).unwrap_err().to_string();
         assert!(error.contains("program.table_angle") && error.contains(post), "{error}");
     }
+    // A robot on a track has that as its first external axis.
+    profile.program.linear_axis = Some(1250.0);
+    let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();
+    assert_eq!(poses(&krl["PART_L001.src"], ",C 180.0000,E1 1250.0000,E2 -35.0000}"), 5);
+    let rapid = dialect::write("rapid", &job(), &profile.job("part")).unwrap();
+    assert_eq!(poses(&rapid["part_L001.mod"], ",[1250.0000,-35.0000,9E+09,9E+09,9E+09,9E+09]]"), 5);
     profile.program.table_angle = None;
+    let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();
+    assert_eq!(poses(&krl["PART_L001.src"], ",C 180.0000,E1 1250.0000}"), 5);
+    assert!(dialect::write("inform", &job(), &profile.job("part")).unwrap_err().to_string().contains("linear_axis"));
+    profile.program.linear_axis = None;
     assert!(dialect::write("krl", &job(), &profile.job("part")).unwrap().values().all(|text| !text.contains(",E1 ")));
 }

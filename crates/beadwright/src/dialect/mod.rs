@@ -34,8 +34,8 @@ pub struct Dialect {
     pub name: &'static str,
     /// The language as people write it; dialects of one language are read alike.
     pub language: &'static str,
-    /// Whether it can write programs for a turn table.
-    pub turns_table: bool,
+    /// Whether it can write the axes of a turn table and of a track under the robot.
+    pub external_axes: bool,
     /// Whether a trimmed line can occur only in a program of this dialect; always false if another dialect reads its
     /// programs.
     typical: fn(&str) -> bool,

@@ -24,6 +24,10 @@ pub struct ProgramSettings {
     /// counter-clockwise as seen from behind the torch. Robots only; `beadwright reach` finds the best angle. Default
     /// 0.
     pub torch_angle: f64,
+    /// Where the robot stands on its linear axis (track), the same for the whole program, mm; `beadwright reach` finds the best
+    /// place. The controller must count the axis into its kinematics. KRL writes it as E1, RAPID as the first external axis,
+    /// and a turn table then as the second; other posts refuse it. Leave it out if there is no such axis.
+    pub linear_axis: Option<f64>,
     /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` finds the best
     /// angle. The part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other
     /// posts refuse it. Leave it out if there is no turn table.
@@ -61,6 +65,7 @@ impl Default for ProgramSettings {
             speed_tolerance: 0.0,
             min_point_time: 0.0,
             torch_angle: 0.0,
+            linear_axis: None,
             table_angle: None,
             table_side: None,
             follow_wall: 0.0,
@@ -74,9 +79,9 @@ impl Default for ProgramSettings {
 }
 
 impl ProgramSettings {
-    /// Whether there is a turn table.
-    pub(crate) fn turns_table(&self) -> bool {
-        self.table_angle.is_some() || self.table_side.is_some()
+    /// Whether there are axes beside the robot's.
+    pub(crate) fn external_axes(&self) -> bool {
+        self.linear_axis.is_some() || self.table_angle.is_some() || self.table_side.is_some()
     }
 
     /// Whether the torch leans other than the robot's section says.
@@ -94,6 +99,7 @@ impl ProgramSettings {
             "program.min_point_time": self.min_point_time, 0.0, 1.0, "s", "values outside this range make no sense";
             "program.measure_every": self.measure_every as f64, 1.0, 1e6, "layers", "values outside this range make no sense";
             "program.torch_angle": self.torch_angle, -360.0, 360.0, "°", "values outside this range make no sense";
+            "program.linear_axis": self.linear_axis.unwrap_or(0.0), -1e5, 1e5, "mm", "no track is longer";
             "program.table_angle": self.table_angle.unwrap_or(0.0), -7200.0, 7200.0, "°",
                 "values outside this range make no sense";
             "program.table_side": self.table_side.unwrap_or(0.0), -360.0, 360.0, "°", "values outside this range make no sense";

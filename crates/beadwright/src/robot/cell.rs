@@ -35,6 +35,9 @@ pub struct Cell<A = ArmTable> {
     pub torch: Torch,
     /// Frame of the part in the robot's; on a turn table, while that stands at 0°.
     pub part: PartPlace,
+    /// Linear axis on which the robot stands; optional.
+    #[serde(default)]
+    pub linear_axis: Option<LinearAxis>,
     /// Turn table that carries the part; optional.
     #[serde(default)]
     pub table: Option<Table>,
@@ -64,6 +67,16 @@ pub struct PartPlace {
     pub position: [f64; 3],
     /// Turn about the vertical, °.
     pub rotation: f64,
+}
+
+/// A linear axis (track, carriage) on which the robot stands.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinearAxis {
+    /// The way of the robot's foot as the axis shows more, in the robot's own x, y and z; of any length.
+    pub direction: [f64; 3],
+    /// Least and greatest position, mm. What the cell tells of part and table holds where the axis shows 0.
+    pub limits: [f64; 2],
 }
 
 /// A turn table with a vertical axis.
@@ -165,8 +178,8 @@ impl Cell {
             CellError::Text { line, reason: explain(e.message()) }
         })?;
         let arm = cell.arm.clone().table(read).map_err(|wrong| wrong.at(text))?;
-        let Cell { name, description, torch, part, table, home, body, .. } = cell;
-        let cell = Self { name, description, arm, torch, part, table, home, body };
+        let Cell { name, description, torch, part, linear_axis, table, home, body, .. } = cell;
+        let cell = Self { name, description, arm, torch, part, linear_axis, table, home, body };
         match cell.first_broken() {
             None => Ok(cell),
             Some((key, value, reason)) => Err(CellError::Value { line: line_of_key(text, key), key, value, reason }),
@@ -198,6 +211,10 @@ impl Cell {
         ranges.extend(self.torch.position.map(|v| ("torch.position", v, -5e3, 5e3, "mm")));
         ranges.extend(self.torch.rotation.map(|v| ("torch.rotation", v, -360.0, 360.0, "°")));
         ranges.extend(self.part.position.map(|v| ("part.position", v, -1e5, 1e5, "mm")));
+        if let Some(axis) = &self.linear_axis {
+            ranges.extend(axis.direction.map(|v| ("linear_axis.direction", v, -1e3, 1e3, "(of any length)")));
+            ranges.extend(axis.limits.map(|v| ("linear_axis.limits", v, -1e5, 1e5, "mm")));
+        }
         if let Some(table) = &self.table {
             ranges.extend(table.axis.map(|v| ("table.axis", v, -1e5, 1e5, "mm")));
             ranges.extend(table.limits.map(|v| ("table.limits", v, -7200.0, 7200.0, "°")));
@@ -222,6 +239,16 @@ impl Cell {
             ranges.into_iter().find(|&(_, v, low, high, _)| !(v >= low && v <= high))
         {
             return Some((key, format!("{value}"), format!("it must lie between {low} and {high} {unit}.")));
+        }
+        if let Some(axis) = &self.linear_axis {
+            if axis.direction == [0.0; 3] {
+                let reason = "it must point somewhere.".to_owned();
+                return Some(("linear_axis.direction", format!("{:?}", axis.direction), reason));
+            }
+            if axis.limits[0] >= axis.limits[1] {
+                let reason = "the least position comes first, then the greatest.".to_owned();
+                return Some(("linear_axis.limits", format!("{:?}", axis.limits), reason));
+            }
         }
         if let Some(table) = self.table.as_ref().filter(|t| t.direction.abs() != 1) {
             return Some(("table.direction", table.direction.to_string(), "it is 1 or -1.".to_owned()));

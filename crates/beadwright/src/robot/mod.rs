@@ -12,8 +12,8 @@
 //! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and with the metal
 //!    laid so far (`body.rs`), where the cell tells how thick they are.
 //!
-//! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`turn_table`] for the angle of a table under
-//! it.
+//! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`external_axes`]
+//! for the place of the robot on a linear axis and for the angle of a table under the part.
 //!
 //! Not checked: cables, fixtures and anything else beside the table, and the load's dynamics.
 
@@ -22,8 +22,10 @@ pub mod arm_table;
 pub mod body;
 pub mod cell;
 pub mod chain;
+mod external;
 pub mod finding;
 pub mod home;
+pub mod linear_axis;
 mod opw;
 pub mod page;
 pub mod suggest;
@@ -37,10 +39,12 @@ mod walk;
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
 pub use arm_table::{ArmTable, OpwTable, Shape};
 pub use body::{Body, Solid};
-pub use cell::{Cell, CellError, PartPlace, Table};
+pub use cell::{Cell, CellError, LinearAxis, PartPlace, Table};
 pub use chain::{Chain, ChainError};
+pub use external::{External, external_axes};
 pub use finding::{ReachFinding, Trouble};
 pub use home::{Home, Way};
+pub use linear_axis::Station;
 pub use suggest::{Suggestion, suggest};
 pub use table::{TableAngle, turn_table};
 pub use track::{Leg, Stop, Track};

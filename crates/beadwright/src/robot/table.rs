@@ -4,9 +4,8 @@
 //! as they are. Angles are judged like places of the part (`suggest`): by the outermost points of a few layers.
 
 use super::cell::{Cell, PartPlace};
-use super::suggest::{WORTH_MOVING, outermost, rate};
+use super::external::best;
 use super::track::Track;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Angles that are tried, °: whole multiples of this within the table's limits.
@@ -29,24 +28,10 @@ pub struct TableAngle {
 /// table, or where no angle brings all points within reach. Turning the table must gain enough to be worth it.
 pub fn turn_table(cell: &Cell, place: PartPlace, track: &Track) -> Option<TableAngle> {
     let table = cell.table.as_ref()?;
-    let points = outermost(track);
-    let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
-    let margin = |angle: f64| {
-        let turned = place.turned_about(table, angle);
-        rate(&arm, &tool_from_flange, turned, &points, super::turn::ANGLES).map(|found| (angle, found.margin))
-    };
     let [low, high] = table.limits;
     let steps = (180.0 / STEP) as i32;
-    // The smallest turn wins among equals.
-    let mut angles: Vec<f64> = (1 - steps..=steps).map(|k| f64::from(k) * STEP).collect();
-    angles.sort_by(|a, b| a.abs().total_cmp(&b.abs()).then(b.total_cmp(a)));
-    angles.retain(|angle| (low..=high).contains(angle));
-    let judged: Vec<Option<(f64, f64)>> = angles.into_par_iter().map(margin).collect();
-    let unturned = judged.iter().flatten().find(|(angle, _)| *angle == 0.0).map(|(_, margin)| *margin);
-    let best = judged.into_iter().flatten().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (angle, margin) = match unturned {
-        Some(now) if best.1 - now < WORTH_MOVING => (0.0, now),
-        _ => best,
-    };
-    Some(TableAngle { angle, place: place.turned_about(table, angle), margin, unturned })
+    let angles = (1 - steps..=steps).map(|k| f64::from(k) * STEP).filter(|angle| (low..=high).contains(angle));
+    let turned = |angle: f64| place.turned_about(table, angle);
+    let (angle, margin, unturned) = best(cell, track, angles, turned)?;
+    Some(TableAngle { angle, place: turned(angle), margin, unturned })
 }

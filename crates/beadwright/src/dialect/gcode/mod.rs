@@ -15,7 +15,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "gcode",
     language: "G-code",
-    turns_table: false,
+    external_axes: false,
     typical: read::typical,
     read: read::read,
 };

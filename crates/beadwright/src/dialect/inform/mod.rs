@@ -12,7 +12,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "inform",
     language: "INFORM",
-    turns_table: false,
+    external_axes: false,
     typical: read::typical,
     read: read::read,
 };

@@ -35,7 +35,7 @@ pub(super) struct KukaKrl {
     process: Process,
     values: Values,
     travel_speed: f64,
-    /// Angle of the turn table, E1, °.
+    /// Angle of the turn table, °: E1, or E2 where the robot stands on a linear axis.
     table: Option<f64>,
     /// A, B, C of the torch, °.
     orientation: [f64; 3],
@@ -244,9 +244,10 @@ impl KukaKrl {
             text.push_str(axis);
             push_fixed(text, angle, 4);
         }
-        if let Some(angle) = self.table {
-            text.push_str(",E1 ");
-            push_fixed(text, angle, 4);
+        let external = [self.program.linear_axis, self.table].into_iter().flatten();
+        for (axis, value) in [",E1 ", ",E2 "].into_iter().zip(external) {
+            text.push_str(axis);
+            push_fixed(text, value, 4);
         }
         text.push('}');
     }

@@ -11,7 +11,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "marlin",
     language: "G-code",
-    turns_table: false,
+    external_axes: false,
     // A printer's file is recognised as G-code.
     typical: |_| false,
     read: super::gcode::DIALECT.read,

@@ -15,9 +15,9 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     let refuse = |file: &str, reason: String| {
         Err(DialectError::Own(OwnError { folder: own.folder.clone(), file: file.to_owned(), line: None, reason }))
     };
-    if job.program.turns_table() {
-        let reason = "a dialect of one's own does not write the turn table of program.table_angle or program.table_side. \
-                      Take the key out, and turn the table by hand.";
+    if job.program.external_axes() {
+        let reason = "a dialect of one's own writes no external axes (program.linear_axis, program.table_angle, \
+                      program.table_side). Take the key out, and move the axis by hand.";
         return refuse(SETTINGS, reason.to_owned());
     }
     if job.program.tilts() {

@@ -9,9 +9,10 @@ use glam::DVec3;
 /// Six external axes that are not there.
 const NO_AXES: &str = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]";
 
-/// The external axes of a target: the angle of a turn table (°) in the first place, if there is one.
-pub(super) fn external_axes(table: Option<f64>) -> String {
-    table.map_or(NO_AXES.to_owned(), |angle| NO_AXES.replacen("9E+09", &fixed(angle, 4), 1))
+/// The external axes of a target: a linear axis (mm), then a turn table (°), as far as they are there.
+pub(super) fn external_axes(linear: Option<f64>, table: Option<f64>) -> String {
+    let there = linear.into_iter().chain(table);
+    there.fold(NO_AXES.to_owned(), |axes, value| axes.replacen("9E+09", &fixed(value, 4), 1))
 }
 
 /// Numbers in brackets, with `decimals` decimal places.

@@ -15,7 +15,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "rapid",
     language: "RAPID",
-    turns_table: true,
+    external_axes: true,
     typical: read::typical,
     read: read::read,
 };

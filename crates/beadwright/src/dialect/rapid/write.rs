@@ -54,7 +54,7 @@ impl AbbRapid {
         let values = Values::new(&name, job);
         let rapid = with_ends(rapid, job);
         let orientation = data::quaternion(&rapid.orientation);
-        let axes = data::external_axes(job.program.table_angle);
+        let axes = data::external_axes(job.program.linear_axis, job.program.table_angle);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
         Self { name, comment, supplies, rapid, program, weave, process, values, travel_speed, orientation, axes, digits: 3 }
@@ -244,7 +244,9 @@ impl AbbRapid {
         for (i, &instruction) in all.iter().enumerate() {
             if let Some(attitude) = instruction.attitude() {
                 self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
-                self.axes = attitude.table.map_or(self.axes.clone(), |angle| data::external_axes(Some(angle)));
+                if let Some(angle) = attitude.table {
+                    self.axes = data::external_axes(self.program.linear_axis, Some(angle));
+                }
             }
             match (instruction, all.get(i + 1)) {
                 // ArcLStart itself moves there.

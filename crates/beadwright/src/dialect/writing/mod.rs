@@ -160,19 +160,19 @@ pub enum DialectError {
         /// The other one, or the same again.
         second: String,
     },
-    /// The profile has a turn table that the dialect does not write.
+    /// The profile has external axes that the dialect does not write.
     #[error(
-        "the post \"{0}\" does not write the turn table of program.table_angle or program.table_side; {others} do. Take the key out, and turn the table by hand.",
-        others = with_table().join(" and ")
+        "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. Take the key out, and move the axis by hand.",
+        others = with_axes().join(" and ")
     )]
-    NoTable(&'static str),
+    NoExternalAxes(&'static str),
     /// Templates of one's own are broken, or write less than the job asks for.
     #[error(transparent)]
     Own(#[from] OwnError),
 }
 
-fn with_table() -> Vec<&'static str> {
-    ALL.iter().filter(|dialect| dialect.turns_table).map(|dialect| dialect.name).collect()
+fn with_axes() -> Vec<&'static str> {
+    ALL.iter().filter(|dialect| dialect.external_axes).map(|dialect| dialect.name).collect()
 }
 
 /// Begins a program in the dialect of that name.
@@ -184,8 +184,8 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
     let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
     let section = job.sections.get(name).ok_or_else(missing)?;
-    if job.program.turns_table() && !dialect.turns_table {
-        return Err(DialectError::NoTable(dialect.name));
+    if job.program.external_axes() && !dialect.external_axes {
+        return Err(DialectError::NoExternalAxes(dialect.name));
     }
     extra::check(dialect.name, section, job)?;
     section.writer(job)
