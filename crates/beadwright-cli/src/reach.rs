@@ -3,7 +3,9 @@
 use crate::{file, profile, program};
 use anyhow::{Context, bail};
 use beadwright::files::write_file;
-use beadwright::robot::{self, Cell, External, PartPlace, Reach, Suggestion, TableAngle, Track, Trajectory, cell};
+use beadwright::robot::{
+    self, Cell, External, PartPlace, Reach, Station, Suggestion, TableAngle, Track, Trajectory, cell,
+};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
