@@ -4,9 +4,9 @@
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
 fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
@@ -146,7 +146,10 @@ fn all_formats_are_the_same_with_any_number_of_threads() {
         }
     }
     // The page: a head, a row and a picture for each plan.
-    assert_eq!((html.matches("<tr>").count(), html.matches("<svg ").count(), html.matches("<h2>").count()), (5, 4, 4));
+    assert_eq!(
+        (html.matches("<tr>").count(), html.matches("<svg ").count(), html.matches("<figcaption>").count()),
+        (5, 4, 4)
+    );
     assert!(html.contains("<th>time min</th>") && html.contains("sortBy"));
 }
 
@@ -202,18 +205,35 @@ fn wrong_usage_is_told_before_anything_is_planned() {
     }
 }
 
+/// Runs a batch with a model from standard input; gives it when it has read more than a pipe holds.
+fn fed(folder: &Path, arguments: &[&str], model: &[u8]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_beadwright"));
+    command.current_dir(folder).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(model).unwrap();
+    child
+}
+
+#[test]
+fn a_model_from_standard_input_is_read_once_for_all() {
+    let folder = folder_with(&["propeller"]);
+    let model = fs::read(folder.path().join("propeller.stl")).unwrap();
+    let rest =
+        ["-s", "zigzag", "-s", "raster", "--sweep", "layers.height=4:5:4", "--no-deposit", "--json", "--threads", "8"];
+    let piped = fed(folder.path(), &[&["batch", "-"], &rest[..]].concat(), &model).wait_with_output().unwrap();
+    assert!(piped.status.success(), "{piped:?}");
+    let named = ok(folder.path(), &[&["batch", "propeller.stl"], &rest[..]].concat());
+    assert_eq!(String::from_utf8(piped.stdout).unwrap(), named.replace("\"propeller.stl\"", "\"-\""));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_batch_that_is_stopped_writes_nothing() {
     let folder = folder_with(&["propeller"]);
-    let child = Command::new(env!("CARGO_BIN_EXE_beadwright"))
-        .current_dir(folder.path())
-        .args(["batch", "propeller.stl", "--sweep", "layers.height=1.5:2:500", "-o", "rows.csv"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // Long before 500 plans are done, and after the handler is set.
-    std::thread::sleep(Duration::from_secs(2));
+    let model = fs::read(folder.path().join("propeller.stl")).unwrap();
+    assert!(model.len() > 300_000, "it must not fit into a pipe");
+    // It reads after it has begun to listen to Ctrl-C, and 500 plans take long.
+    let child = fed(folder.path(), &["batch", "-", "--sweep", "layers.height=1.5:2:500", "-o", "rows.csv"], &model);
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1));

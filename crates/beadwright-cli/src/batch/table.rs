@@ -211,12 +211,8 @@ impl Table {
             sheet.text(&format!("Pages of more than {MOST_PICTURES} plans have no pictures of layers."));
             return;
         }
-        for row in &self.rows {
-            let picture = row.planned.as_ref().ok().and_then(|planned| planned.picture.as_ref());
-            if let Some(picture) = picture {
-                sheet.heading(&row.names().join(", ")).svg(picture);
-            }
-        }
+        let picture = |row: &Row| Some((row.names().join(", "), row.planned.as_ref().ok()?.picture.clone()?));
+        sheet.svgs(&self.rows.iter().filter_map(picture).collect::<Vec<_>>());
     }
 }
 
