@@ -173,8 +173,9 @@ fn prose(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let blocks = blocks(&lines);
     let outside = |i: &usize| !blocks.iter().any(|block| (block.from - 1..=block.to).contains(i));
-    let plain = |line: &str| line.split('`').step_by(2).collect::<Vec<_>>().join("`");
-    (0..lines.len()).filter(outside).map(|i| plain(lines[i]) + "\n").collect()
+    let outside: Vec<&str> = (0..lines.len()).filter(outside).map(|i| lines[i]).collect();
+    let plain = |paragraph: &str| paragraph.split('`').step_by(2).collect::<Vec<_>>().join("`");
+    outside.join("\n").split("\n\n").map(|paragraph| plain(paragraph) + "\n\n").collect()
 }
 
 /// Targets of links and pictures.
