@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// A plan with findings.
 #[derive(Debug, thiserror::Error)]
-#[error("{count} findings in {}", plan.display())]
+#[error("{count} {} in {}", if *count == 1 { "finding" } else { "findings" }, plan.display())]
 pub(crate) struct Findings {
     count: usize,
     plan: PathBuf,

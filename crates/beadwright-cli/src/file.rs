@@ -42,11 +42,13 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// All of standard input.
 fn standard_input() -> anyhow::Result<Vec<u8>> {
+    // Who comes while another one reads waits for what that one keeps.
+    let mut input = std::io::stdin().lock();
     if let Some(bytes) = STANDARD_INPUT.get() {
         return Ok(bytes.clone());
     }
     let (limit, mut bytes) = (memory::limit(), Vec::new());
-    std::io::stdin().lock().take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    input.by_ref().take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     anyhow::ensure!(bytes.len() as u64 <= limit, "there is more than may be used of memory (--max-memory)");
     Ok(STANDARD_INPUT.get_or_init(|| bytes).clone())
 }

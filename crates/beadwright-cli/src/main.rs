@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 refused with a clear error, 2 wrong usage, 3 the plan has faults that somebody should look at.
 
 mod adapt;
+mod batch;
 mod bead;
 mod build;
 mod check;
@@ -55,6 +56,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
+    /// Plan many models, with many profiles, strategies and values: one table.
+    Batch(batch::Arguments),
     /// Judge a plan, or a program from any source, by what it would build.
     Simulate(simulate::Arguments),
     /// Report what would go wrong if a plan were welded as it is; without a plan, list the checks.
@@ -96,6 +99,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Plan(arguments) => parts::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
@@ -123,7 +127,7 @@ fn main() -> ExitCode {
             let error = memory::exceeded().map_or(error, anyhow::Error::msg);
             let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));
             eprintln!("error: {error:#}{remedy}");
-            let doubtful = error.is::<plan::Refused>() || error.is::<check::Findings>();
+            let doubtful = error.is::<plan::Refused>() || error.is::<check::Findings>() || error.is::<batch::Unfit>();
             if doubtful { ExitCode::from(FINDINGS) } else { ExitCode::FAILURE }
         }
     }

@@ -14,27 +14,34 @@ pub(crate) struct Model {
     /// The model, or - for standard input: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
     /// centre-lines of walls, and DXF and SVG with outlines (--height).
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) placing: Placing,
+}
+
+/// How models are placed, and what is taken of them.
+#[derive(clap::Args, Clone)]
+pub(crate) struct Placing {
     /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]
     pub(crate) units: Option<Units>,
     /// Factor by which the part is enlarged.
     #[arg(long, default_value_t = 1.0, value_parser = parse_scale)]
-    pub(crate) scale: f64,
+    scale: f64,
     /// Turn the part about x, then y, then z, in degrees, such as --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
-    pub(crate) turn: DVec3,
+    turn: DVec3,
     /// Turn the part so that the largest flat face on which it can stand lies below.
     #[arg(long)]
-    pub(crate) lay_flat: bool,
+    lay_flat: bool,
     /// Turn the part onto that of its flat faces which leaves the least overhang, or the lowest part of those.
     #[arg(long, conflicts_with = "lay_flat")]
-    pub(crate) orient: bool,
+    orient: bool,
     /// Move the middle of the part to x = y = 0.
     #[arg(long)]
-    pub(crate) centre: bool,
+    centre: bool,
     /// Take what triangles there are of an STL file that ends too early or holds more than it says.
     #[arg(long)]
-    pub(crate) accept_damaged: bool,
+    accept_damaged: bool,
 }
 
 pub(crate) fn parse_units(text: &str) -> Result<Units, String> {
@@ -66,8 +73,7 @@ pub(crate) fn read_iges(path: &Path, bytes: &[u8]) -> anyhow::Result<Option<Iges
 impl Model {
     /// A model as it lies in its file.
     pub(crate) fn of(path: &Path) -> Self {
-        Self {
-            model: path.to_owned(),
+        let placing = Placing {
             units: None,
             scale: 1.0,
             lay_flat: false,
@@ -75,21 +81,27 @@ impl Model {
             turn: DVec3::ZERO,
             centre: false,
             accept_damaged: false,
-        }
+        };
+        Self::placed_so(path, &placing)
+    }
+
+    /// A model placed as asked for.
+    pub(crate) fn placed_so(path: &Path, placing: &Placing) -> Self {
+        Self { model: path.to_owned(), placing: placing.clone() }
     }
 
     /// The solid or the curves, placed. Curves that all lie at one height need a height to end at, mm.
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());
-        let read = if self.accept_damaged { model::Model::read_damaged } else { model::Model::read };
+        let read = if self.placing.accept_damaged { model::Model::read_damaged } else { model::Model::read };
         let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
         let model = read(&bytes, task).with_context(context)?;
-        let placement = self.placement();
+        let placement = self.placing.placement();
         let part = model.place(&placement, height, bead_width).with_context(context)?;
-        match part.mesh().filter(|_| self.turns()) {
+        match part.mesh().filter(|_| self.placing.turns()) {
             None => Ok(part),
             Some(mesh) => {
-                let turn = self.turn_for(&placement, mesh);
+                let turn = self.placing.turn_for(&placement, mesh);
                 let flat = read(&bytes, task)
                     .and_then(|model| model.place(&Placement { turn, ..placement }, height, bead_width));
                 flat.with_context(context)
@@ -97,6 +109,30 @@ impl Model {
         }
     }
 
+    /// The part's name: the file name without its extension.
+    pub(crate) fn part(&self) -> String {
+        file::stem(&self.model).unwrap_or_else(|| "part".to_owned())
+    }
+
+    /// The model, scaled to mm, turned, and placed on z = 0.
+    pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
+        let context = || format!("{}", self.model.display());
+        let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
+        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
+        let import = import(&bytes, task).with_context(context)?;
+        let placement = self.placing.placement();
+        let part = if self.placing.turns() {
+            let placed = placement.solid(import.clone(), bead_width).with_context(context)?.mesh;
+            let turn = self.placing.turn_for(&placement, &placed);
+            Placement { turn, ..placement }.solid(import, bead_width)
+        } else {
+            placement.solid(import, bead_width)
+        };
+        part.with_context(context)
+    }
+}
+
+impl Placing {
     /// Whether the part is turned by how it lies.
     fn turns(&self) -> bool {
         self.lay_flat || self.orient
@@ -109,27 +145,5 @@ impl Model {
 
     fn placement(&self) -> Placement {
         Placement { units: self.units, scale: self.scale, turn: self.turn, centre: self.centre }
-    }
-
-    /// The part's name: the file name without its extension.
-    pub(crate) fn part(&self) -> String {
-        file::stem(&self.model).unwrap_or_else(|| "part".to_owned())
-    }
-
-    /// The model, scaled to mm, turned, and placed on z = 0.
-    pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
-        let context = || format!("{}", self.model.display());
-        let import = if self.accept_damaged { model::import_damaged } else { model::import };
-        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
-        let import = import(&bytes, task).with_context(context)?;
-        let placement = self.placement();
-        let part = if self.turns() {
-            let placed = placement.solid(import.clone(), bead_width).with_context(context)?.mesh;
-            let turn = self.turn_for(&placement, &placed);
-            Placement { turn, ..placement }.solid(import, bead_width)
-        } else {
-            placement.solid(import, bead_width)
-        };
-        part.with_context(context)
     }
 }

@@ -95,7 +95,7 @@ fn post_help() -> String {
     )
 }
 
-fn parse_height(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_height(text: &str) -> Result<f64, String> {
     let height: f64 = text.parse().map_err(|_| "a height in mm is expected".to_owned())?;
     if (0.1..=20_000.0).contains(&height) {
         Ok(height)

@@ -287,7 +287,8 @@ pub(crate) fn part(
     task: &Task,
 ) -> anyhow::Result<Option<Import>> {
     let place = |path: &Path| {
-        let model = model::Model { units, ..model::Model::of(path) };
+        let mut model = model::Model::of(path);
+        model.placing.units = units;
         model.placed(profile.bead.width, task)
     };
     path.map(place).transpose()

@@ -24,8 +24,7 @@ pub(crate) struct Bar {
 /// A task that draws a bar when standard error is a terminal, and that Ctrl-C cancels.
 pub(crate) fn task() -> anyhow::Result<(Task, Bar)> {
     let quiet = loudness() == Loudness::Quiet;
-    let drawn = std::io::stderr().is_terminal() && !quiet;
-    let bar = if drawn { ProgressBar::new(1000) } else { ProgressBar::hidden() };
+    let bar = drawn(1000);
     bar.set_style(ProgressStyle::with_template("{msg:>8} {wide_bar} {percent:>3} %")?);
     let clock = Arc::new(Mutex::new(Clock::new(Instant::now())));
     let (shown, ticking) = (bar.clone(), clock.clone());
@@ -37,9 +36,27 @@ pub(crate) fn task() -> anyhow::Result<(Task, Bar)> {
             shown.suspend(|| eprintln!("{told}"));
         }
     });
-    _ = RUNNING.set(task.clone());
-    ctrlc::set_handler(stop)?;
+    stopped_by_ctrl_c(&task)?;
     Ok((task, Bar { bar, clock }))
+}
+
+/// A task for that many runs side by side, which Ctrl-C cancels, and a bar that counts them.
+pub(crate) fn counting(runs: usize) -> anyhow::Result<(Task, ProgressBar)> {
+    let (task, bar) = (Task::new(), drawn(runs as u64));
+    bar.set_style(ProgressStyle::with_template("{pos:>5} of {len} plans {wide_bar}")?);
+    stopped_by_ctrl_c(&task)?;
+    Ok((task, bar))
+}
+
+/// A bar that is seen only on a terminal, and not with `--quiet`.
+fn drawn(length: u64) -> ProgressBar {
+    let seen = std::io::stderr().is_terminal() && loudness() != Loudness::Quiet;
+    if seen { ProgressBar::new(length) } else { ProgressBar::hidden() }
+}
+
+fn stopped_by_ctrl_c(task: &Task) -> anyhow::Result<()> {
+    _ = RUNNING.set(task.clone());
+    Ok(ctrlc::set_handler(stop)?)
 }
 
 impl Bar {

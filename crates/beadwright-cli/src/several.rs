@@ -79,7 +79,7 @@ impl Several {
         }
         let mut parts = vec![(first.part(), solid(whole, &first.model)?)];
         for with in &self.with {
-            let model = model::Model { model: own_profile(with).0.to_owned(), ..first.clone() };
+            let model = model::Model::placed_so(own_profile(with).0, &first.placing);
             parts.push((model.part(), solid(place(&model)?, &model.model)?));
         }
         let (mut solids, places) = arrange(parts, self.arrangement())?;

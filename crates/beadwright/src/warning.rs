@@ -1,6 +1,10 @@
 //! Nothing is lost in silence: whatever is dropped, closed or cannot be built is a [`Warning`], and
 //! [`Warnings`] sums them up over the layers in sentences for people.
 
+mod about;
+
+pub use about::About;
+
 use glam::DVec2;
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -49,3 +49,19 @@ function showMaps(card) {
 }
 
 document.querySelectorAll(".maps").forEach(showMaps);
+
+// A click on a head sorts its table, once more the other way round; numbers by their size, all else as text.
+function sortBy(table, column) {
+  const down = table.dataset.sorted === `${column} up`;
+  table.dataset.sorted = `${column} ${down ? "down" : "up"}`;
+  const rows = [...table.rows].slice(1), text = row => row.cells[column].textContent.trim();
+  const number = row => text(row) === "" ? Infinity : Number(text(row));
+  const compare = (a, b) => {
+    const difference = number(a) - number(b);
+    return Number.isNaN(difference) ? text(a).localeCompare(text(b)) : difference;
+  };
+  rows.sort((a, b) => down ? compare(b, a) : compare(a, b)).forEach(row => table.tBodies[0].append(row));
+}
+
+document.querySelectorAll("table").forEach(table =>
+  [...table.rows[0].cells].forEach((head, column) => { head.onclick = () => sortBy(table, column); }));

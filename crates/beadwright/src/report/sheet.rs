@@ -47,6 +47,14 @@ impl Sheet {
         self.push(&format!("<div class=\"card\">{svg}</div>"))
     }
 
+    /// Finished SVGs side by side, each with what it shows.
+    pub fn svgs(&mut self, pictures: &[(String, String)]) -> &mut Self {
+        let figure = |(caption, svg): &(String, String)| {
+            format!("<figure>{svg}<figcaption>{}</figcaption></figure>", escape(caption))
+        };
+        self.push(&format!("<div class=\"card grid\">{}</div>", pictures.iter().map(figure).collect::<String>()))
+    }
+
     /// Height fields side by side under a slider; `labels` name the positions of the slider.
     pub fn maps(&mut self, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
         self.fields("null", labels, columns)

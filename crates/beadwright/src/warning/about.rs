@@ -1,0 +1,138 @@
+//! Where warnings come from and what helps, for the page of all warnings (`docs/book/checks.md`).
+
+use super::WarningKind;
+
+/// What a welder should know of a kind of warning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct About {
+    /// The word in `metrics.json`.
+    pub name: &'static str,
+    /// What it comes from, as part of a sentence.
+    pub cause: &'static str,
+    /// What to do, as part of a sentence.
+    pub remedy: &'static str,
+}
+
+impl WarningKind {
+    /// All kinds, in their order.
+    pub const ALL: [Self; 19] = [
+        Self::GapClosed,
+        Self::OpenContourDropped,
+        Self::ContoursUnited,
+        Self::ThinFeature,
+        Self::IslandTooSmall,
+        Self::ThinWall,
+        Self::Refilled,
+        Self::Bare,
+        Self::Unsound,
+        Self::NothingBelow,
+        Self::Overhang,
+        Self::ShortArc,
+        Self::Relit,
+        Self::ManyPoints,
+        Self::Sliver,
+        Self::PassTooShort,
+        Self::NeverCools,
+        Self::TooCold,
+        Self::EmptyLayer,
+    ];
+
+    /// Cause and remedy.
+    pub fn about(self) -> About {
+        let (name, cause, remedy) = match self {
+            Self::GapClosed => (
+                "gap-closed",
+                "the surface of the model has a gap, which was bridged",
+                "look whether the gap is wider than you trust; `inspect --repair` shows and mends the model",
+            ),
+            Self::OpenContourDropped => (
+                "open-contour-dropped",
+                "the surface has a hole or a slit, so a contour does not close and is left out",
+                "mend the model (`inspect --repair --fill-holes MM`), or bridge wider gaps with slice.close_gap",
+            ),
+            Self::ContoursUnited => (
+                "contours-united",
+                "solids of the model overlap, or a surface is wound the wrong way",
+                "look at the picture of the layer; unite the solids in CAD if it is wrong",
+            ),
+            Self::ThinFeature => (
+                "thin-feature",
+                "a place is narrower than a bead, and the strategy welds no such walls",
+                "take a strategy that does (all but raster), a narrower bead, or a thicker part",
+            ),
+            Self::IslandTooSmall => {
+                ("island-too-small", "a whole island is narrower than a bead", "take a narrower bead or a larger part")
+            }
+            Self::ThinWall => (
+                "thin-wall",
+                "a wall is thinner than the narrowest bead, so metal lies beside it",
+                "machine it off, or allow narrower beads if the process can weld them (`[loop]`, `[wall]`)",
+            ),
+            Self::Refilled => (
+                "refilled",
+                "the strategy would have left the outline or crossed itself there, so contours fill the island",
+                "nothing, if contours will do; else take another strategy",
+            ),
+            Self::Bare => {
+                ("bare", "beads do not reach part of an island", "compare strategies; hybrid and loop leave the least")
+            }
+            Self::Unsound => (
+                "unsound",
+                "passes leave the part or cross each other, and nothing could replace them",
+                "take another strategy or another bead.width; the program is not written unless you insist",
+            ),
+            Self::NothingBelow => (
+                "nothing-below",
+                "the first bead of a place would be laid in the air",
+                "stand the part on the plate (`--lay-flat`, `--from-z MM`), or turn it; the program is not written \
+                 unless you insist",
+            ),
+            Self::Overhang => (
+                "overhang",
+                "a layer reaches farther beyond the one below than check.max_overhang",
+                "turn the part (`--orient`), use a turn table, or add metal to be machined off below",
+            ),
+            Self::ShortArc => (
+                "short-arc",
+                "a pass is over before its arc burns steadily",
+                "raise fill.min_pass_length to leave it out, or take a strategy with longer passes",
+            ),
+            Self::Relit => (
+                "relit",
+                "a pass has more points than one program of the controller may hold, so it is cut",
+                "let arcs and long moves be fitted (program.chord_tolerance, program.arcs)",
+            ),
+            Self::ManyPoints => (
+                "many-points",
+                "a layer has more points than check.max_points",
+                "raise slice.simplify, or let arcs be fitted (program.arcs)",
+            ),
+            Self::Sliver => (
+                "sliver",
+                "shells of the model touch with a gap that is too thin to be meant, and it is left out",
+                "nothing, as a rule; unite the shells in CAD if the place matters",
+            ),
+            Self::PassTooShort => (
+                "pass-too-short",
+                "a pass would be shorter than fill.min_pass_length or over before the arc is steady, and is left out",
+                "lower fill.min_pass_length if your arc is steady sooner, or take another strategy",
+            ),
+            Self::NeverCools => (
+                "never-cools",
+                "metal stays above interpass.max_temperature for ten hours",
+                "raise the limit, preheat less (substrate.preheat), or take a thicker plate or better contact",
+            ),
+            Self::TooCold => (
+                "too-cold",
+                "metal is colder than interpass.min_temperature where a pass begins",
+                "heat the plate (substrate.preheat), or wait less",
+            ),
+            Self::EmptyLayer => (
+                "empty-layer",
+                "the part has a gap at this height, or all contours there were dropped",
+                "look at the layer's other warnings; join the two halves in CAD, or plan them as two parts",
+            ),
+        };
+        About { name, cause, remedy }
+    }
+}
