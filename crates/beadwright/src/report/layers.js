@@ -1,6 +1,7 @@
 // Reading layers: encode.rs tells the format. A layer is inflated when it is shown.
 
 const HEAD = 18, HEAD_CHARACTERS = 192, KEPT = 48;
+const $ = id => document.getElementById(id);
 
 function readHead(text) {
   const [z, height, slice, planned, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points, judged, empty, full] =
@@ -40,7 +41,7 @@ async function readLayer(text, head) {
   const passes = list(() => {
     const flags = next(), count = next(), closed = (flags & 256) > 0;
     const along = Array.from({ length: flags & 512 ? count : 1 }, () => [next() / 1e3, next() / 1e3]);
-    return { kind: Math.min(flags & 255, 2), along, count, closed };
+    return { kind: flags & 255, along, count, closed };
   }).map(({ kind, along, count, closed }) => ({ kind, along, xy: path(count, closed) }));
   let seconds = 0;
   for (const pass of passes) seconds = timePass(pass, seconds);
@@ -48,12 +49,22 @@ async function readLayer(text, head) {
   return { islands, passes, seconds, warnings };
 }
 
-// A layer with its height field, if it has one.
-async function readWhole(index) {
-  const [layer, map] = await Promise.all([readLayer(data.layers[index], heads[index]), readMap(data.maps[index])]);
+// A layer with its temperatures and its place in time.
+async function readPlaced(index) {
+  const layer = await readLayer(data.layers[index], heads[index]);
   layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
+  const { begins, lasts } = heads[index];
+  return { ...layer, begins, lasts };
+}
+
+// A layer with its height field too, if it has one.
+async function readWhole(index) {
+  const [layer, map] = await Promise.all([readPlaced(index), readMap(data.maps[index])]);
   return { ...layer, map };
 }
+
+// The time of the build at a time with the arc on in a layer, s; what a layer waits and travels is spread over it.
+const whenOf = (layer, t) => layer.begins + (layer.seconds > 0 ? t / layer.seconds : 0) * layer.lasts;
 
 // Width and speed from a point to the next.
 const after = ({ along }, i) => along[along.length > 1 ? i : 0];
@@ -70,8 +81,14 @@ function timePass(pass, start) {
   return pass.end = times.length ? times[times.length - 1] : start;
 }
 
-const data = JSON.parse(document.getElementById("data").textContent);
+const data = JSON.parse($("data").textContent);
 const heads = data.layers.map(readHead);
+// Arc, wait and the rest of every layer, s: when it begins, how long it lasts, and the time of the whole build.
+const total = data.times.reduce((begins, parts, i) => {
+  const lasts = parts.reduce((sum, part) => sum + part, 0);
+  Object.assign(heads[i], { begins, lasts });
+  return begins + lasts;
+}, 0);
 data.warmth.forEach(({ starts, wait }, i) => Object.assign(heads[i], { hottest: Math.max(0, ...starts), wait }));
 const kept = new Map();
 

@@ -20,7 +20,7 @@ function showMaps(card) {
   const key = make("div", card, { className: "key" });
   const [low, high] = data.key ?? ["0", "2 × bead height"];
   key.append(low);
-  drawHeatKey(make("canvas", key, { width: 160, height: 12 }));
+  drawKey(make("canvas", key, { width: 160, height: 12 }), part => heatAt(FULL_SCALE * part));
   key.append(high);
   if (!data.key) {
     make("i", key);

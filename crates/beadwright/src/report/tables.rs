@@ -1,6 +1,7 @@
 //! The words and tables of the page, as HTML.
 
 use super::escape;
+use super::words::hinted;
 use crate::bead::Overlap;
 use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
@@ -9,6 +10,7 @@ use crate::model::RepairReport;
 use crate::number::hours;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
+use crate::warning::Warning;
 
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
@@ -147,7 +149,9 @@ pub(super) fn files(files: &[String]) -> String {
 
 /// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
 pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
-    let item = |(source, text): &(&str, String)| format!("<li><b>{source}</b> {}</li>", escape(text));
+    let item = |(source, text, place): &Remark| {
+        format!("<li><b>{source}</b> {}{}</li>", escape(text), place.as_ref().map(link).unwrap_or_default())
+    };
     let items: Vec<String> = remarks(summary, repair).iter().map(item).collect();
     if items.is_empty() {
         return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
@@ -157,16 +161,30 @@ pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
-/// Where a remark comes from, and the remark.
-fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<(&'static str, String)> {
-    let model = repair.sentences().into_iter().map(|s| ("Model", s));
-    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence()));
-    let process = summary.notes.iter().map(|s| ("Process", s.clone()));
+/// Where a remark comes from, the remark, and the place that it tells of.
+type Remark = (&'static str, String, Option<Warning>);
+
+fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<Remark> {
+    let model = repair.sentences().into_iter().map(|s| ("Model", s, None));
+    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some(w.largest)));
+    let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
     model.chain(layers).chain(process).collect()
 }
 
+/// A button that shows the place of a warning.
+fn link(warning: &Warning) -> String {
+    let (layer, place) = (warning.layer, warning.place);
+    format!(
+        "<button data-layer=\"{layer}\" data-x=\"{:.2}\" data-y=\"{:.2}\">Show on layer {}</button>",
+        place.x,
+        place.y,
+        layer + 1
+    )
+}
+
 fn table(rows: &[(&str, String)]) -> String {
-    let row = |(name, value): &(&str, String)| format!("<tr><th>{name}</th><td>{}</td></tr>", escape(value));
+    let name = |name: &str| name.split(", ").map(hinted).collect::<Vec<_>>().join(", ");
+    let row = |(key, value): &(&str, String)| format!("<tr><th>{}</th><td>{}</td></tr>", name(key), escape(value));
     format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
 }
 

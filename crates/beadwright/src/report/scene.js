@@ -1,0 +1,174 @@
+// Beads in space: buffers of layers, drawn by the programs of shaders.js. Knows nothing of the page.
+
+function newScene(canvas) {
+  // Without a graphics card smooth edges cost more than they show.
+  const options = { alpha: false, preserveDrawingBuffer: true };
+  const gl = canvas.getContext("webgl2", { ...options, antialias: true, failIfMajorPerformanceCaveat: true })
+    ?? canvas.getContext("webgl2", { ...options, antialias: false });
+  if (!gl) return null;
+  const scene = {
+    gl, layers: [], meshes: [ROUND, PLAIN].map(profile => newMesh(gl, profile)),
+    lit: newProgram(gl, BEAD_SHADER, LIT_SHADER), pick: newProgram(gl, BEAD_SHADER, PICK_SHADER),
+    line: newProgram(gl, LINE_SHADER, PLAIN_SHADER), lines: gl.createBuffer(), target: newTarget(gl),
+  };
+  gl.enable(gl.DEPTH_TEST);
+  gl.enable(gl.CULL_FACE);
+  return scene;
+}
+
+function newProgram(gl, vertex, fragment) {
+  const program = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) || "the 3-D view cannot be linked");
+  const places = {}, count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+  for (let i = 0; i < count; i++) {
+    const { name } = gl.getActiveUniform(program, i);
+    places[name.replace("[0]", "")] = gl.getUniformLocation(program, name);
+  }
+  return { program, places };
+}
+
+function newMesh(gl, profile) {
+  const { corners, faces } = meshOf(profile), buffer = gl.createBuffer(), indices = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
+  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
+  return { buffer, indices, faces: faces.length };
+}
+
+// One pixel of whole numbers.
+function newTarget(gl) {
+  const frame = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+  for (const [format, place] of [[gl.RGBA32UI, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+    const buffer = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+    gl.renderbufferStorage(gl.RENDERBUFFER, format, 1, 1);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+  }
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  return frame;
+}
+
+// `about` is what the shader has to know of a layer: top, height, start, pace of time, seconds.
+function addLayer(scene, index, records, about) {
+  const { gl } = scene, count = records.byteLength / RECORD - 3;
+  if (count < 1) return;
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, records, gl.STATIC_DRAW);
+  scene.layers[index] = { ...about, count, arrays: scene.meshes.map(mesh => arrayOf(gl, mesh, buffer)) };
+}
+
+function arrayOf(gl, mesh, buffer) {
+  const array = gl.createVertexArray();
+  gl.bindVertexArray(array);
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+  gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffer);
+  for (const [place, size, offset] of [[0, 3, 0], [1, 2, 12]]) {
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, size, gl.FLOAT, false, 20, offset);
+  }
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  for (const [place, size, offset] of [[2, 2, 0], [3, 3, RECORD], [4, 3, 2 * RECORD], [5, 2, 3 * RECORD], [6, 3, RECORD + 12]]) {
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, size, gl.FLOAT, false, RECORD, offset);
+    gl.vertexAttribDivisor(place, 1);
+  }
+  for (const [place, size, kind, offset] of [[7, 2, gl.UNSIGNED_BYTE, 24], [8, 1, gl.UNSIGNED_SHORT, 26]]) {
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribIPointer(place, size, kind, RECORD, RECORD + offset);
+    gl.vertexAttribDivisor(place, 1);
+  }
+  gl.bindVertexArray(null);
+  return array;
+}
+
+// The layers to draw up to the highest one shown: in groups of `stride`, of which only the top one is drawn, as high as
+// all of them.
+function grouped(layers, highest, stride) {
+  const list = [];
+  for (let first = 0; first <= highest; first += stride) {
+    let layer = null, index = -1, bottom = Infinity;
+    for (let i = first; i < Math.min(first + stride, highest + 1); i++) {
+      if (!layers[i]) continue;
+      [layer, index] = [layers[i], i];
+      bottom = Math.min(bottom, layer.top - layer.height);
+    }
+    if (layer) list.push({ layer, index, height: layer.top - bottom });
+  }
+  return list;
+}
+
+// `look`: matrix, light, highest, until, field, range, ramp, kinds, picked { layer, pass }, stride, mesh (0 round, 1 plain).
+function drawBeads3(scene, { program, places }, look) {
+  const { gl } = scene, mesh = look.mesh;
+  gl.useProgram(program);
+  gl.uniformMatrix4fv(places.camera, false, look.matrix);
+  if (places.light) {
+    gl.uniform3fv(places.light, look.light);
+    gl.uniform1i(places.field, look.field);
+    gl.uniform2fv(places.range, look.range);
+    gl.uniform3fv(places.ramp, look.ramp);
+    gl.uniform3fv(places.kinds, look.kinds);
+  }
+  for (const { layer, index, height } of grouped(scene.layers, look.highest, look.stride)) {
+    gl.uniform4f(places.layer, layer.top, height, layer.start, layer.pace);
+    gl.uniform2f(places.span, index === look.highest ? Math.min(look.until, 1e30) : 1e30, layer.seconds);
+    gl.uniform1i(places.picked, look.picked?.layer === index ? look.picked.pass : -1);
+    if (places.number) gl.uniform1i(places.number, index);
+    gl.bindVertexArray(layer.arrays[mesh]);
+    gl.drawElementsInstanced(gl.TRIANGLES, scene.meshes[mesh].faces, gl.UNSIGNED_SHORT, 0, layer.count);
+  }
+  gl.bindVertexArray(null);
+}
+
+// Lines as [x, y, z, x, y, z, …] with a colour each.
+function drawLines3(scene, matrix, lines) {
+  const { gl } = scene, { program, places } = scene.line;
+  gl.useProgram(program);
+  gl.uniformMatrix4fv(places.camera, false, matrix);
+  gl.bindBuffer(gl.ARRAY_BUFFER, scene.lines);
+  gl.enableVertexAttribArray(0);
+  gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 12, 0);
+  for (const { points, colour } of lines) {
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points), gl.STREAM_DRAW);
+    gl.uniform4fv(places.paint, [...colour.map(v => v / 255), 1]);
+    gl.drawArrays(gl.LINES, 0, points.length / 3);
+  }
+  gl.disableVertexAttribArray(0);
+}
+
+function drawScene(scene, look) {
+  const { gl } = scene;
+  gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
+  gl.clearColor(...look.paper.map(v => v / 255), 1);
+  gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  drawLines3(scene, look.matrix, look.lines);
+  drawBeads3(scene, scene.lit, look);
+}
+
+// What lies at a place of the picture, -1 to 1: { layer, pass, seconds }, or null.
+function pickScene(scene, look, x, y) {
+  const { gl } = scene, m = look.matrix, { width, height } = gl.canvas, narrow = new Float32Array(m);
+  for (let i = 0; i < 16; i += 4) {
+    narrow[i] = (m[i] - x * m[i + 3]) * width;
+    narrow[i + 1] = (m[i + 1] - y * m[i + 3]) * height;
+  }
+  gl.bindFramebuffer(gl.FRAMEBUFFER, scene.target);
+  gl.viewport(0, 0, 1, 1);
+  gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
+  gl.clear(gl.DEPTH_BUFFER_BIT);
+  drawBeads3(scene, scene.pick, { ...look, matrix: narrow });
+  const found = new Uint32Array(4);
+  gl.readPixels(0, 0, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, found);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  return found[0] ? { layer: found[0] - 1, pass: found[1], seconds: new Float32Array(found.buffer, 8, 1)[0] } : null;
+}
