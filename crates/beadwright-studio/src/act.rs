@@ -66,6 +66,7 @@ impl Studio {
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.window.ctx.send_viewport_cmd(ViewportCommand::Close),
             Action::Ask(what) => self.ask(what),
+            Action::Answer(what, path) => self.answered(what, &path),
             Action::Export(what) => {
                 let folder = self.view.folder.trim().to_owned();
                 self.jobs.exporting = what;

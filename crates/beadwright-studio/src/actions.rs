@@ -56,6 +56,8 @@ pub enum Action {
     Quit,
     /// Asks for a file.
     Ask(Ask),
+    /// Goes on with a path that was typed.
+    Answer(Ask, PathBuf),
     /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),
     /// Opens a model or a project.

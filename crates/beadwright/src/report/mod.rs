@@ -117,7 +117,7 @@ impl Report {
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, repair)),
-            ("totals", tables::totals(summary, self.figures.as_ref())),
+            ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile)),
             ("model", tables::model(repair)),

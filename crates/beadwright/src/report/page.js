@@ -93,7 +93,7 @@ function drawBars() {
 function resize() {
   const both = $("stages").dataset.view === "both", width = Math.max($("stage").clientWidth, $("stage-solid").clientWidth);
   if (width < 50) return;
-  const height = Math.round(Math.max(300, Math.min(width * (both ? 0.85 : 0.62), window.innerHeight * 0.72)));
+  const height = Math.round(Math.max(300, Math.min(width * (both ? 0.85 : 0.62), window.innerHeight - 350)));
   Object.assign(view, { width, height });
   for (const canvas of [picture, solid]) resizeCanvas(canvas, width, height);
   resizeCanvas(bars, bars.clientWidth, 54);

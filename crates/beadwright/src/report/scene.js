@@ -1,19 +1,24 @@
 // Beads in space: buffers of layers, drawn by the programs of shaders.js. Knows nothing of the page.
 
 function newScene(canvas) {
-  // Without a graphics card smooth edges cost more than they show.
-  const options = { alpha: false, preserveDrawingBuffer: true };
-  const gl = canvas.getContext("webgl2", { ...options, antialias: true, failIfMajorPerformanceCaveat: true })
-    ?? canvas.getContext("webgl2", { ...options, antialias: false });
+  // Where the processor draws, smooth edges cost more than they show.
+  const gl = canvas.getContext("webgl2", { alpha: false, preserveDrawingBuffer: true, antialias: !drawnByProcessor() });
   if (!gl) return null;
   const scene = {
-    gl, layers: [], meshes: [ROUND, PLAIN].map(profile => newMesh(gl, profile)),
+    gl, layers: [], most: 0, meshes: [[ROUND, true], [PLAIN, true], [PLAIN, false]].map(([profile, closed]) => newMesh(gl, profile, closed)),
     lit: newProgram(gl, BEAD_SHADER, LIT_SHADER), pick: newProgram(gl, BEAD_SHADER, PICK_SHADER),
     line: newProgram(gl, LINE_SHADER, PLAIN_SHADER), lines: gl.createBuffer(), target: newTarget(gl),
   };
   gl.enable(gl.DEPTH_TEST);
   gl.enable(gl.CULL_FACE);
   return scene;
+}
+
+function drawnByProcessor() {
+  const gl = document.createElement("canvas").getContext("webgl2"), names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const renderer = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(renderer);
 }
 
 function newProgram(gl, vertex, fragment) {
@@ -34,13 +39,18 @@ function newProgram(gl, vertex, fragment) {
   return { program, places };
 }
 
-function newMesh(gl, profile) {
-  const { corners, faces } = meshOf(profile), buffer = gl.createBuffer(), indices = gl.createBuffer();
-  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-  gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
-  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
-  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, faces, gl.STATIC_DRAW);
-  return { buffer, indices, faces: faces.length };
+// A profile, and the triangles of as many pieces as the largest layer needs.
+function newMesh(gl, profile, closed) {
+  return { profile: new Float32Array(profile.flat()), corners: profile.length, faces: facesOf(profile.length, closed), indices: gl.createBuffer(), pieces: 0 };
+}
+
+function reserve(gl, mesh, pieces) {
+  if (pieces <= mesh.pieces) return;
+  const { faces, corners } = mesh, count = 2 * pieces, list = new Uint32Array(count * faces.length);
+  for (let k = 0; k < count; k++) for (let i = 0; i < faces.length; i++) list[k * faces.length + i] = faces[i] + 2 * corners * k;
+  mesh.pieces = count;
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, list, gl.STATIC_DRAW);
 }
 
 // One pixel of whole numbers.
@@ -58,37 +68,14 @@ function newTarget(gl) {
 }
 
 // `about` is what the shader has to know of a layer: top, height, start, pace of time, seconds.
-function addLayer(scene, index, records, about) {
-  const { gl } = scene, count = records.byteLength / RECORD - 3;
-  if (count < 1) return;
-  const buffer = gl.createBuffer();
-  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-  gl.bufferData(gl.ARRAY_BUFFER, records, gl.STATIC_DRAW);
-  scene.layers[index] = { ...about, count, arrays: scene.meshes.map(mesh => arrayOf(gl, mesh, buffer)) };
-}
-
-function arrayOf(gl, mesh, buffer) {
-  const array = gl.createVertexArray();
-  gl.bindVertexArray(array);
-  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
-  gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffer);
-  for (const [place, size, offset] of [[0, 3, 0], [1, 2, 12]]) {
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribPointer(place, size, gl.FLOAT, false, 20, offset);
-  }
-  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-  for (const [place, size, offset] of [[2, 2, 0], [3, 3, RECORD], [4, 3, 2 * RECORD], [5, 2, 3 * RECORD], [6, 3, RECORD + 12]]) {
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribPointer(place, size, gl.FLOAT, false, RECORD, offset);
-    gl.vertexAttribDivisor(place, 1);
-  }
-  for (const [place, size, kind, offset] of [[7, 2, gl.UNSIGNED_BYTE, 24], [8, 1, gl.UNSIGNED_SHORT, 26]]) {
-    gl.enableVertexAttribArray(place);
-    gl.vertexAttribIPointer(place, size, kind, RECORD, RECORD + offset);
-    gl.vertexAttribDivisor(place, 1);
-  }
-  gl.bindVertexArray(null);
-  return array;
+function addLayer(scene, index, { numbers, count, outside }, about) {
+  if (count < 4) return;
+  const { gl } = scene, texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ACROSS, numbers.length / 4 / ACROSS, 0, gl.RGBA, gl.FLOAT, numbers);
+  for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+  scene.most = Math.max(scene.most, count);
+  scene.layers[index] = { ...about, texture, count: count - 3, outside: Math.max(outside - 3, 0) };
 }
 
 // The layers to draw up to the highest one shown: in groups of `stride`, of which only the top one is drawn, as high as
@@ -107,27 +94,36 @@ function grouped(layers, highest, stride) {
   return list;
 }
 
-// `look`: matrix, light, highest, until, field, range, ramp, kinds, picked { layer, pass }, stride, mesh (0 round, 1 plain).
+// `look`: matrix, light, fine (whether layers are pixels high, 0 to 1), highest, until, field, range, ramp, kinds, picked { layer, pass }, and how much of it: mesh (0
+// round, 1 plain, 2 plain and open), stride, whether only passes along the outline are drawn below the highest layer.
 function drawBeads3(scene, { program, places }, look) {
-  const { gl } = scene, mesh = look.mesh;
+  const { gl } = scene, mesh = scene.meshes[look.mesh];
   gl.useProgram(program);
+  reserve(gl, mesh, scene.most);
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+  gl.uniform4fv(places.profile, mesh.profile);
+  gl.uniform1i(places.corners, mesh.corners);
   gl.uniformMatrix4fv(places.camera, false, look.matrix);
   if (places.light) {
     gl.uniform3fv(places.light, look.light);
+    gl.uniform1f(places.fine, look.fine);
     gl.uniform1i(places.field, look.field);
     gl.uniform2fv(places.range, look.range);
     gl.uniform3fv(places.ramp, look.ramp);
     gl.uniform3fv(places.kinds, look.kinds);
   }
+  let triangles = 0;
   for (const { layer, index, height } of grouped(scene.layers, look.highest, look.stride)) {
+    const count = mesh.faces.length * (look.outside && index !== look.highest ? layer.outside : layer.count);
     gl.uniform4f(places.layer, layer.top, height, layer.start, layer.pace);
     gl.uniform2f(places.span, index === look.highest ? Math.min(look.until, 1e30) : 1e30, layer.seconds);
     gl.uniform1i(places.picked, look.picked?.layer === index ? look.picked.pass : -1);
     if (places.number) gl.uniform1i(places.number, index);
-    gl.bindVertexArray(layer.arrays[mesh]);
-    gl.drawElementsInstanced(gl.TRIANGLES, scene.meshes[mesh].faces, gl.UNSIGNED_SHORT, 0, layer.count);
+    gl.bindTexture(gl.TEXTURE_2D, layer.texture);
+    gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
+    triangles += count / 3;
   }
-  gl.bindVertexArray(null);
+  return triangles;
 }
 
 // Lines as [x, y, z, x, y, z, …] with a colour each.
@@ -146,13 +142,14 @@ function drawLines3(scene, matrix, lines) {
   gl.disableVertexAttribArray(0);
 }
 
+// The number of triangles drawn.
 function drawScene(scene, look) {
   const { gl } = scene;
   gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
   gl.clearColor(...look.paper.map(v => v / 255), 1);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   drawLines3(scene, look.matrix, look.lines);
-  drawBeads3(scene, scene.lit, look);
+  return drawBeads3(scene, scene.lit, look);
 }
 
 // What lies at a place of the picture, -1 to 1: { layer, pass, seconds }, or null.

@@ -1,9 +1,10 @@
 // The part in 3-D: reading its layers into scene.js bit by bit, what is drawn, pointers and keys.
 
 const solid = $("solid");
-// `cost` is what a whole picture takes, ms; a slow one is drawn coarsely while it moves.
-const space = { scene: null, camera: newCamera(), matrix: null, pieces: 0, cost: 0, moving: 0, asked: 0 };
-const QUICK = 30, SLOW = 150, MOST_ROUND = 250000, BATCH = 16;
+// `pieces` of beads, of these `outside` along outlines; `rate` is the time of a triangle, ms, as it was measured last.
+const space = { scene: null, camera: newCamera(), matrix: null, pieces: 0, outside: 0, rate: 1e-4, moving: 0, drawing: false, again: false };
+// How long a picture may take while something moves, and at rest, ms.
+const QUICK = 12, MOVING = 25, RESTING = 1200, PRETTY = 300, BATCH = 16;
 
 const solidShown = () => space.scene && $("stages").dataset.view !== "layer";
 
@@ -36,9 +37,10 @@ async function readSolid() {
 }
 
 function addSolid(index, layer) {
-  const { z: top, height } = heads[index], { begins: start, lasts, seconds } = layer, records = strands(layer);
-  space.pieces += records.byteLength / RECORD;
-  addLayer(space.scene, index, records, { top, height, start, seconds, pace: seconds > 0 ? lasts / seconds : 0 });
+  const { z: top, height } = heads[index], { begins: start, lasts, seconds } = layer, found = strands(layer);
+  space.pieces += found.count;
+  space.outside += found.outside;
+  addLayer(space.scene, index, found, { top, height, start, seconds, pace: seconds > 0 ? lasts / seconds : 0 });
 }
 
 function noteSolid(text) {
@@ -67,36 +69,50 @@ function solidLines() {
   return [...lines, { points: moves, colour: channels(colours.text) }];
 }
 
-// What scene.js has to know. Coarse pictures take one layer for several.
-function lookNow(coarse) {
+// How much of the part is drawn, so that a picture takes no longer than it may: all, as little as has to be, or one
+// layer for several.
+function amount(moving) {
+  const { scene, pieces, outside, rate } = space, share = (shown.index + 1) / heads.length;
+  const cost = (count, mesh) => count * share * scene.meshes[mesh].faces.length / 3 * rate, most = moving ? MOVING : RESTING;
+  if (cost(pieces, 0) < Math.min(most, PRETTY)) return { mesh: 0, stride: 1, outside: false };
+  if (cost(pieces, 1) < most) return { mesh: 1, stride: 1, outside: false };
+  return { mesh: 2, stride: Math.min(Math.ceil(cost(outside, 2) / most), 24), outside: true };
+}
+
+// What scene.js has to know.
+function lookNow(much) {
   const { camera } = space, [low, high] = solidBox(), { right, back } = axesOf(camera), choice = CHOICES[shown.by];
   const reach = 1.5 * Math.hypot(...low.map((v, i) => high[i] - v)) + Math.hypot(...camera.target.map((v, i) => v - (low[i] + high[i]) / 2));
   const light = [0, 1, 2].map(i => 0.78 * back[i] - 0.38 * right[i] + (i > 1 ? 0.4 : 0));
+  const pixels = (high[2] - low[2]) / heads.length * much.stride * solid.height / (2 * FIELD * camera.distance);
   space.matrix = matrixOf(camera, solid.width / solid.height, reach);
   return {
-    matrix: space.matrix, light, lines: solidLines(), paper: channels(colours.stage), highest: shown.index, until: shown.until, picked: shown.picked,
+    ...much, matrix: space.matrix, light, fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: solidLines(), paper: channels(colours.stage), highest: shown.index, until: shown.until, picked: shown.picked,
     field: choice.field, range: choice.range ?? [0, 1], ramp: (choice.ramp ?? RAMP).flat().map(v => v / 255), kinds: colours.kinds.flat().map(v => v / 255),
-    stride: coarse ? Math.min(Math.ceil(space.cost / QUICK), 64) : 1, mesh: coarse || space.pieces > MOST_ROUND ? 1 : 0,
   };
 }
 
 function drawSolid() {
   if (!solidShown() || !colours.kinds || !solid.width) return;
+  space.again = space.drawing;
+  if (space.drawing) return;
   if (space.camera.fitted) fitSolid();
-  const coarse = space.moving > 0 && space.cost > QUICK;
-  drawScene(space.scene, lookNow(coarse));
-  if (!coarse) timeSolid(space.scene.gl, performance.now());
+  const look = lookNow(amount(space.moving > 0)), drawn = drawScene(space.scene, look);
+  timeSolid(space.scene.gl, drawn, performance.now());
   placeMark();
 }
 
-// How long the whole picture takes, without waiting for it.
-function timeSolid(gl, begun) {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), asked = ++space.asked;
+// How long the picture takes, without waiting for it; the next one comes when it is done.
+function timeSolid(gl, triangles, begun) {
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  space.drawing = true;
   const look = () => {
-    if (asked !== space.asked) return gl.deleteSync(fence);
-    if (gl.clientWaitSync(fence, gl.SYNC_FLUSH_COMMANDS_BIT, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 4);
-    space.cost = performance.now() - begun;
+    if (gl.clientWaitSync(fence, gl.SYNC_FLUSH_COMMANDS_BIT, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 3);
     gl.deleteSync(fence);
+    space.drawing = false;
+    // Few triangles tell nothing of their rate.
+    if (triangles > 20000) space.rate = (performance.now() - begun) / triangles;
+    if (space.again) redraw();
   };
   look();
 }
@@ -117,7 +133,7 @@ function placeMark() {
 // What lies below a place of the canvas, px.
 function pickSolid(x, y) {
   const { clientWidth: width, clientHeight: height } = solid;
-  return pickScene(space.scene, { ...lookNow(false), mesh: 1 }, 2 * x / width - 1, 1 - 2 * y / height);
+  return pickScene(space.scene, lookNow({ mesh: 1, stride: 1, outside: false }), 2 * x / width - 1, 1 - 2 * y / height);
 }
 
 function zoomSolid(factor, x = 0, y = 0) {
@@ -134,7 +150,7 @@ function followSolid() {
   const hover = event => {
     clearTimeout(resting);
     const { offsetX, offsetY, clientX, clientY } = event;
-    if (space.cost < SLOW) resting = setTimeout(() => pointOut(pickSolid(offsetX, offsetY), clientX, clientY), 50);
+    if (space.pieces * space.rate < QUICK) resting = setTimeout(() => pointOut(pickSolid(offsetX, offsetY), clientX, clientY), 50);
   };
   solid.onpointerdown = event => {
     solid.setPointerCapture(event.pointerId);

@@ -1,7 +1,7 @@
-// The points of a layer as the graphics card takes them: RECORD bytes each, all passes one after another.
+// The points of a layer as the graphics card takes them: eight numbers each (shaders.js names them) in a texture of two
+// texels a point, ACROSS texels in a row; all passes one after another.
 
-// x, y, time in the layer, width, speed, temperature (Float32); kind, 1 where a piece begins (bytes), pass (Uint16).
-const RECORD = 28;
+const RECORD = 8, ACROSS = 2048;
 // Points are left out as long as a bead moves by no more than this part of its width.
 const THINNING = 0.04;
 
@@ -27,34 +27,48 @@ function needed(pass) {
     high = Math.min(high, turn + open);
     last = distance;
   }
-  if (count > 1) kept.push(count - 1);
-  return kept;
+  return count > 1 ? [...kept, count - 1] : [];
 }
 
 const turned = angle => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 const differs = (a, b) => Math.abs(a[0] - b[0]) > 0.02 * b[0] || Math.abs(a[1] - b[1]) > 0.05 * b[1];
 
-// Every pass has one more point at each end, so that the shader knows where its neighbours lie: the joint of a closed
-// pass is like any other, and an open end repeats itself.
+// Whether a pass lies along the outline of its layer, by some of its points: such passes hide the others.
+function outer({ xy, along }, rings) {
+  const reach = 0.75 * along[0][0], step = 2 * Math.max(Math.floor(xy.length / 2 / 8), 1);
+  for (let i = 0; i < xy.length; i += step) {
+    if (rings.some(ring => near(ring, xy[i], xy[i + 1], reach))) return true;
+  }
+  return false;
+}
+
+function near(ring, x, y, reach) {
+  for (let i = 0; i + 3 < ring.length; i += 2) {
+    const [ax, ay, dx, dy] = [ring[i], ring[i + 1], ring[i + 2] - ring[i], ring[i + 3] - ring[i + 1]], length = dx * dx + dy * dy;
+    const part = length > 0 ? Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / length, 0), 1) : 0;
+    if (Math.abs(x - ax - part * dx) < reach && Math.hypot(x - ax - part * dx, y - ay - part * dy) < reach) return true;
+  }
+  return false;
+}
+
+// The passes with the points that they need, those along the outline first. Every pass has one more point at each end,
+// so that the shader knows where its neighbours lie: the joint of a closed pass is like any other, an open end repeats itself.
 function strands(layer) {
-  const lists = layer.passes.map(pass => pass.xy.length > 2 ? needed(pass) : []);
-  const count = lists.reduce((sum, list) => sum + (list.length ? list.length + 2 : 0), 0);
-  const buffer = new ArrayBuffer(RECORD * count), floats = new Float32Array(buffer), bytes = new Uint8Array(buffer), shorts = new Uint16Array(buffer);
+  const rings = layer.islands.flat(), all = layer.passes.map((pass, index) => ({ pass, index, list: needed(pass) })).filter(({ list }) => list.length > 1);
+  const outside = all.filter(({ pass }) => outer(pass, rings)), inside = all.filter(strand => !outside.includes(strand));
+  const records = list => list.reduce((sum, strand) => sum + strand.list.length + 2, 0), count = records(all);
+  // Whole rows.
+  const numbers = new Float32Array(Math.ceil(count * RECORD / (4 * ACROSS)) * 4 * ACROSS);
   let at = 0;
-  layer.passes.forEach((pass, index) => {
-    const list = lists[index], n = list.length;
-    const put = (i, begins) => {
-      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)];
-      floats.set([pass.xy[2 * i], pass.xy[2 * i + 1], pass.times[i], width, speed, pass.celsius ?? 0], at / 4);
-      bytes[at + 24] = Math.min(pass.kind, 2);
-      bytes[at + 25] = begins ? 1 : 0;
-      shorts[at / 2 + 13] = Math.min(index, 65535);
-      at += RECORD;
+  for (const { pass, index, list } of [...outside, ...inside]) {
+    const n = list.length, put = (i, begins) => {
+      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)], tags = Math.min(pass.kind, 2) + (begins ? 4 : 0);
+      const record = [pass.xy[2 * i], pass.xy[2 * i + 1], pass.times[i], width, speed, pass.celsius ?? 0, tags, index];
+      for (const number of record) numbers[at++] = number;
     };
-    if (!n) return;
     put(pass.closed ? list[n - 2] : list[0], false);
     list.forEach((i, k) => put(i, k + 1 < n));
     put(pass.closed ? list[1] : list[n - 1], false);
-  });
-  return buffer;
+  }
+  return { numbers, count, outside: records(outside) };
 }

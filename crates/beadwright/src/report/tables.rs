@@ -17,7 +17,7 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
     let m = &summary.metrics;
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
-        count(m.layers, "layer", "layers"),
+        layers(header, m),
         count(m.passes, "pass", "passes"),
         escape(&header.strategy),
         metres(m.deposited_length_mm),
@@ -25,6 +25,15 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         escape(&profile.wire.material),
         hours(m.total_time_s)
     )
+}
+
+/// How many layers there are, and how many of them hold something.
+fn layers(header: &Header, m: &Metrics) -> String {
+    let all = count(header.layers, "layer", "layers");
+    match header.layers.saturating_sub(m.layers) {
+        0 => all,
+        empty => format!("{all} ({empty} of them empty)"),
+    }
 }
 
 /// The badge beside the heading.
@@ -36,17 +45,19 @@ pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
 }
 
 /// The totals of the plan.
-pub(super) fn totals(summary: &Summary, figures: Option<&Figures>) -> String {
+pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figures: Option<&Figures>) -> String {
     let m: &Metrics = &summary.metrics;
+    let [starts, time, wire] =
+        if profile.prints() { ["Starts", "Time extruding", "Filament"] } else { ["Arc starts", "Arc time", "Wire"] };
     let mut rows = vec![
-        ("Layers", m.layers.to_string()),
+        ("Layers", layers(header, m)),
         ("Passes", m.passes.to_string()),
-        ("Arc starts", m.arc_starts.to_string()),
+        (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),
         ("Travel length", metres(m.travel_length_mm)),
-        ("Arc time", hours(m.arc_time_s)),
+        (time, hours(m.arc_time_s)),
         ("Total time", hours(m.total_time_s)),
-        ("Wire", format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
+        (wire, format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
     rows.push(("Part volume", volume(m.part_volume_mm3)));
@@ -65,8 +76,11 @@ pub(super) fn process(header: &Header, profile: &Profile) -> String {
     let Profile { wire, process: p, bead, layers, fill, travel, .. } = profile;
     let mut rows = vec![
         ("Profile", header.profile.clone()),
-        ("Wire", format!("{}, ⌀ {} mm, {} g/cm³", wire.material, wire.diameter, wire.density)),
-        ("Wire feed speed", format!("{} m/min", p.wire_feed_speed)),
+        (
+            if profile.prints() { "Filament" } else { "Wire" },
+            format!("{}, ⌀ {} mm, {} g/cm³", wire.material, wire.diameter, wire.density),
+        ),
+        (if profile.prints() { "Filament feed" } else { "Wire feed speed" }, format!("{} m/min", p.wire_feed_speed)),
         ("Deposition speed", format!("{} mm/s", p.deposition_speed)),
     ];
     rows.extend(p.current.map(|current| ("Current", format!("{current} A"))));
@@ -80,13 +94,14 @@ pub(super) fn process(header: &Header, profile: &Profile) -> String {
     if fill.machining_allowance != 0.0 {
         rows.push(("Machining allowance", format!("{} mm", fill.machining_allowance)));
     }
-    rows.extend([
+    let welding = [
         ("Shielding gas", format!("{}, {} L/min", p.gas, p.gas_flow)),
         ("Gas before / after the arc", format!("{} s / {} s", p.gas_preflow, p.gas_postflow)),
         ("Wait at arc start / end", format!("{} s / {} s", p.arc_start_delay, p.arc_end_delay)),
         ("Contact tip to work", format!("{} mm", p.ctwd)),
-        ("Travel", format!("{} mm/s, {} mm above the layer", travel.speed, travel.clearance)),
-    ]);
+    ];
+    rows.extend(welding.into_iter().filter(|_| !profile.prints()));
+    rows.push(("Travel", format!("{} mm/s, {} mm above the layer", travel.speed, travel.clearance)));
     table(&rows)
 }
 
