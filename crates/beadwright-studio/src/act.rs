@@ -82,7 +82,8 @@ impl Studio {
                 self.window.store.keep_settings(&self.window.settings);
             }
             Action::SetValue(key, value) => self.set_value(&key, &value),
-            Action::ResetValue(key) => self.reset_value(&key),
+            Action::ResetValue(key) => self.reset_values(&[key]),
+            Action::ResetValues(keys) => self.reset_values(&keys),
             Action::SetProfile(text) => self.set_profile("profile", Ok(text.to_owned())),
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),

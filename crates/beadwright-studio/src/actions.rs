@@ -70,6 +70,8 @@ pub enum Action {
     SetValue(String, String),
     /// Removes a value from the profile, so that its default applies.
     ResetValue(String),
+    /// Removes several values from the profile.
+    ResetValues(Vec<String>),
     /// Loads the text of another profile.
     SetProfile(&'static str),
     /// Places the part.

@@ -304,10 +304,11 @@ impl Studio {
         self.set_profile(key, text.map_err(|error| error.to_string()));
     }
 
-    /// Removes a value from the profile, so that its default applies.
-    pub(crate) fn reset_value(&mut self, key: &str) {
-        let text = edit::without_value(&self.project().profile, key);
-        self.set_profile(key, text.map_err(|error| error.to_string()));
+    /// Removes values from the profile, so that their defaults apply: all of them, or none if one cannot be missing.
+    pub(crate) fn reset_values(&mut self, keys: &[String]) {
+        let Some(first) = keys.first() else { return };
+        let text = keys.iter().try_fold(self.project().profile.clone(), |text, key| edit::without_value(&text, key));
+        self.set_profile(first, text.map_err(|error| error.to_string()));
     }
 
     /// Takes over the text of a profile if it is valid.

@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 
 const FLAGS: &str = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
     --enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking --disable-component-update \
-    --disable-sync --virtual-time-budget=20000 --dump-dom";
+    --disable-sync --virtual-time-budget=300000 --dump-dom";
 
 /// Reports faults and the steps of a test in the title of the page, which then stands in the text that comes back.
 const BEFORE: &str = "<script>
@@ -51,7 +51,7 @@ fn ask(html: &str, script: &str) -> Option<serde_json::Value> {
     let after = format!(
         "<script>(async () => {{
            const rest = ms => new Promise(done => setTimeout(done, ms));
-           while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(10);
+           while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(20);
            {script}
          }})().catch(error => {{ faults.push(String(error)); return null; }})
            .then(value => {{ document.body.dataset.told = JSON.stringify({{ value, faults }}); }});

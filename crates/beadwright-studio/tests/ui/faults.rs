@@ -1,6 +1,6 @@
 //! What once was wrong with the window, as people saw it.
 
-use super::window::{click, crosses, example, sees, studio, wait};
+use super::window::{click, crosses, example, search, sees, studio, wait};
 use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright_studio::Studio;
@@ -182,4 +182,36 @@ fn a_printer_has_filament_and_a_torch_has_an_arc() {
         assert!(there.iter().all(|word| sees(&harness, word)), "{profile}: {there:?}");
         assert!(!gone.iter().any(|word| sees(&harness, word)), "{profile}: {gone:?}");
     }
+}
+
+#[test]
+fn parameters_are_found_by_names_of_both_languages_and_by_reasons() {
+    // A Chinese name, an English one, and a word of the reason for a range.
+    for (text, there, gone) in [
+        ("沉积速度", "deposition speed", "gas flow"),
+        ("Gas flow", "gas flow", "deposition speed"),
+        ("ten hours cool", "interpass time", "gas flow"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut harness = example(folder.path(), "cross");
+        search(&mut harness, text);
+        assert!(sees(&harness, there) && !sees(&harness, gone), "{text}");
+    }
+}
+
+#[test]
+fn a_group_goes_back_to_its_defaults() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    let before = harness.state().project().profile.clone();
+    harness.state_mut().set_value("start_stop.interpass_time", "9.0");
+    harness.state_mut().set_value("start_stop.end_overlap", "3.0");
+    wait(&mut harness);
+    let text = |harness: &Harness<'static, Studio>| harness.state().project().profile.clone();
+    assert!(text(&harness).contains("interpass_time") && text(&harness).contains("end_overlap"));
+    search(&mut harness, "interpass time");
+    click(&mut harness, "all to defaults");
+    wait(&mut harness);
+    assert!(!text(&harness).contains("interpass_time") && !text(&harness).contains("end_overlap"), "{before}");
+    assert!(harness.state().plan().is_complete());
 }

@@ -1,7 +1,6 @@
 // Reading layers: encode.rs tells the format. A layer is inflated when it is shown.
 
-const HEAD = 18, HEAD_CHARACTERS = 192, KEPT = 48;
-const $ = id => document.getElementById(id);
+const HEAD = 18, HEAD_CHARACTERS = 192;
 
 function readHead(text) {
   const [z, height, slice, planned, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points, judged, empty, full] =
@@ -49,23 +48,6 @@ async function readLayer(text, head) {
   return { islands, passes, seconds, warnings };
 }
 
-// A layer with its temperatures and its place in time.
-async function readPlaced(index) {
-  const layer = await readLayer(data.layers[index], heads[index]);
-  layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
-  const { begins, lasts } = heads[index];
-  return { ...layer, begins, lasts };
-}
-
-// A layer with its height field too, if it has one.
-async function readWhole(index) {
-  const [layer, map] = await Promise.all([readPlaced(index), readMap(data.maps[index])]);
-  return { ...layer, map };
-}
-
-// The time of the build at a time with the arc on in a layer, s; what a layer waits and travels is spread over it.
-const whenOf = (layer, t) => layer.begins + (layer.seconds > 0 ? t / layer.seconds : 0) * layer.lasts;
-
 // Width and speed from a point to the next.
 const after = ({ along }, i) => along[along.length > 1 ? i : 0];
 
@@ -80,24 +62,3 @@ function timePass(pass, start) {
   pass.start = start;
   return pass.end = times.length ? times[times.length - 1] : start;
 }
-
-const data = JSON.parse($("data").textContent);
-const heads = data.layers.map(readHead);
-// Arc, wait and the rest of every layer, s: when it begins, how long it lasts, and the time of the whole build.
-const total = data.times.reduce((begins, parts, i) => {
-  const lasts = parts.reduce((sum, part) => sum + part, 0);
-  Object.assign(heads[i], { begins, lasts });
-  return begins + lasts;
-}, 0);
-data.warmth.forEach(({ starts, wait }, i) => Object.assign(heads[i], { hottest: Math.max(0, ...starts), wait }));
-const kept = new Map();
-
-// The promise of a layer; the last ones are kept.
-function layerAt(index) {
-  const layer = kept.get(index) ?? readWhole(index);
-  kept.delete(index);
-  kept.set(index, layer);
-  if (kept.size > KEPT) kept.delete(kept.keys().next().value);
-  return layer;
-}
-

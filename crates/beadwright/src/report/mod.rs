@@ -13,9 +13,10 @@
 //! | [`overhang`] | faces that hang over, seen from below |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
-//! | `layers.js`, `heat.js`, `colour.js` | reading layers, height fields, what beads are coloured by |
+//! | `layers.js`, `layout.js`, `heat.js`, `colour.js` | reading layers, those of the page, height fields, what beads are coloured by |
 //! | `picture.js`, `pick.js`, `timeline.js`, `page.js` | a layer from above, the pass pointed out, the build in time, the controls |
-//! | `camera.js`, `strands.js`, `shaders.js`, `scene.js`, `solid.js` | the part in 3-D (WebGL 2): camera, points, programs, buffers, the view |
+//! | `camera.js`, `steer.js`, `strands.js`, `shaders.js`, `scene.js`, `pace.js` | beads in 3-D (WebGL 2): camera and its handling, points, programs, buffers, how much is drawn |
+//! | `solid.js`, `twins.js` | the part in 3-D on the report; strategies side by side on other pages |
 
 pub mod angles;
 pub mod bead_window;
@@ -130,13 +131,16 @@ impl Report {
                 [
                     include_str!("inflate.js"),
                     include_str!("layers.js"),
+                    include_str!("layout.js"),
                     include_str!("heat.js"),
                     include_str!("colour.js"),
                     include_str!("picture.js"),
                     include_str!("camera.js"),
+                    include_str!("steer.js"),
                     include_str!("strands.js"),
                     include_str!("shaders.js"),
                     include_str!("scene.js"),
+                    include_str!("pace.js"),
                     include_str!("solid.js"),
                     include_str!("pick.js"),
                     include_str!("timeline.js"),

@@ -129,9 +129,6 @@ function player(button, range, perSecond, changed) {
   range.addEventListener("pointerdown", stop);
 }
 
-// How much closer a turn of the wheel brings.
-const wheelFactor = ({ deltaY, deltaMode }) => Math.exp(-Math.max(-400, Math.min(400, deltaY * (deltaMode ? 33 : 1))) * 0.0016);
-
 function followPointers() {
   const down = new Map();
   const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);

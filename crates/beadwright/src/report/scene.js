@@ -78,6 +78,11 @@ function addLayer(scene, index, { numbers, count, outside }, about) {
   scene.layers[index] = { ...about, texture, count: count - 3, outside: Math.max(outside - 3, 0) };
 }
 
+function clearLayers(scene) {
+  scene.layers.forEach(({ texture }) => scene.gl.deleteTexture(texture));
+  scene.layers = [];
+}
+
 // The layers to draw up to the highest one shown: in groups of `stride`, of which only the top one is drawn, as high as
 // all of them.
 function grouped(layers, highest, stride) {

@@ -1,10 +1,9 @@
 // The part in 3-D: reading its layers into scene.js bit by bit, what is drawn, pointers and keys.
 
 const solid = $("solid");
-// `pieces` of beads, of these `outside` along outlines; `rate` is the time of a triangle, ms, as it was measured last.
-const space = { scene: null, camera: newCamera(), matrix: null, pieces: 0, outside: 0, rate: 1e-4, moving: 0, drawing: false, again: false };
-// How long a picture may take while something moves, and at rest, ms.
-const QUICK = 12, MOVING = 25, RESTING = 1200, PRETTY = 300, BATCH = 16;
+// What a picture takes is in pace.js.
+const space = { ...newPace(), scene: null, camera: newCamera(), matrix: null, moving: 0 };
+const QUICK = 12, BATCH = 16;
 
 const solidShown = () => space.scene && $("stages").dataset.view !== "layer";
 
@@ -69,16 +68,6 @@ function solidLines() {
   return [...lines, { points: moves, colour: channels(colours.text) }];
 }
 
-// How much of the part is drawn, so that a picture takes no longer than it may: all, as little as has to be, or one
-// layer for several.
-function amount(moving) {
-  const { scene, pieces, outside, rate } = space, share = (shown.index + 1) / heads.length;
-  const cost = (count, mesh) => count * share * scene.meshes[mesh].faces.length / 3 * rate, most = moving ? MOVING : RESTING;
-  if (cost(pieces, 0) < Math.min(most, PRETTY)) return { mesh: 0, stride: 1, outside: false };
-  if (cost(pieces, 1) < most) return { mesh: 1, stride: 1, outside: false };
-  return { mesh: 2, stride: Math.min(Math.ceil(cost(outside, 2) / most), 24), outside: true };
-}
-
 // What scene.js has to know.
 function lookNow(much) {
   const { camera } = space, [low, high] = solidBox(), { right, back } = axesOf(camera), choice = CHOICES[shown.by];
@@ -97,24 +86,9 @@ function drawSolid() {
   space.again = space.drawing;
   if (space.drawing) return;
   if (space.camera.fitted) fitSolid();
-  const look = lookNow(amount(space.moving > 0)), drawn = drawScene(space.scene, look);
-  timeSolid(space.scene.gl, drawn, performance.now());
+  const much = amount(space, space.scene, (shown.index + 1) / heads.length, space.moving > 0), begun = performance.now();
+  timed(space, space.scene.gl, drawScene(space.scene, lookNow(much)), begun, redraw);
   placeMark();
-}
-
-// How long the picture takes, without waiting for it; the next one comes when it is done.
-function timeSolid(gl, triangles, begun) {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  space.drawing = true;
-  const look = () => {
-    if (gl.clientWaitSync(fence, gl.SYNC_FLUSH_COMMANDS_BIT, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 3);
-    gl.deleteSync(fence);
-    space.drawing = false;
-    // Few triangles tell nothing of their rate.
-    if (triangles > 20000) space.rate = (performance.now() - begun) / triangles;
-    if (space.again) redraw();
-  };
-  look();
 }
 
 // Draws while something moves, coarsely if need be, and once more when it rests.
@@ -142,65 +116,20 @@ function zoomSolid(factor, x = 0, y = 0) {
 }
 
 function followSolid() {
-  const down = new Map();
-  let moved = 0, resting = 0;
-  const at = event => [event.offsetX / solid.clientWidth * 2 - 1, 1 - event.offsetY / solid.clientHeight * 2];
-  const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
-  const spread = () => { const [a, b] = [...down.values()]; return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0; };
-  const hover = event => {
-    clearTimeout(resting);
-    const { offsetX, offsetY, clientX, clientY } = event;
-    if (space.pieces * space.rate < QUICK) resting = setTimeout(() => pointOut(pickSolid(offsetX, offsetY), clientX, clientY), 50);
-  };
-  solid.onpointerdown = event => {
-    solid.setPointerCapture(event.pointerId);
-    down.set(event.pointerId, [event.offsetX, event.offsetY]);
-    moved = 0;
-    pointOut(null);
-  };
-  solid.onpointermove = event => {
-    if (!down.has(event.pointerId)) return hover(event);
-    const [fromX, fromY] = middle(), before = spread();
-    down.set(event.pointerId, [event.offsetX, event.offsetY]);
-    const [toX, toY] = middle(), height = solid.clientHeight, [x, y] = [toX - fromX, toY - fromY];
-    moved += Math.abs(x) + Math.abs(y);
-    if (down.size > 1 || event.shiftKey || event.buttons > 1) panCamera(space.camera, x / height, y / height);
-    else turnCamera(space.camera, -x * 0.008, y * 0.008);
-    if (before > 0) zoomSolid(spread() / before, ...at(event));
-    stirSolid();
-  };
-  solid.onpointerup = event => {
-    down.delete(event.pointerId);
-    if (moved > 4 || event.button > 0) return;
-    const found = pickSolid(event.offsetX, event.offsetY);
-    pointOut(found, event.clientX, event.clientY);
-    if (found && found.layer !== shown.index) show(found.layer);
-  };
-  solid.onpointercancel = event => down.delete(event.pointerId);
+  let resting = 0;
+  steerCamera(solid, space.camera, stirSolid, {
+    begin: () => pointOut(null),
+    hover({ offsetX, offsetY, clientX, clientY }) {
+      clearTimeout(resting);
+      if (space.pieces * space.rate < QUICK) resting = setTimeout(() => pointOut(pickSolid(offsetX, offsetY), clientX, clientY), 50);
+    },
+    press(event) {
+      const found = pickSolid(event.offsetX, event.offsetY);
+      pointOut(found, event.clientX, event.clientY);
+      if (found && found.layer !== shown.index) show(found.layer);
+    },
+  });
   solid.onpointerleave = () => { clearTimeout(resting); pointOut(null); };
-  solid.oncontextmenu = event => event.preventDefault();
-  solid.addEventListener("wheel", event => {
-    event.preventDefault();
-    zoomSolid(wheelFactor(event), ...at(event));
-  }, { passive: false });
-  solid.ondblclick = () => { space.camera.fitted = true; stirSolid(); };
-  solid.onkeydown = steerSolid;
-}
-
-const SIDES = { 7: [0, 1.55], 1: [0, 0], 3: [Math.PI / 2, 0], 0: [-0.6, 0.55] };
-
-function steerSolid(event) {
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const { key, shiftKey } = event, way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[key];
-  if (way && shiftKey) panCamera(space.camera, way[0] * 0.08, way[1] * 0.08);
-  else if (way) turnCamera(space.camera, way[0] * 0.15, -way[1] * 0.15);
-  else if (key === "+" || key === "=") zoomSolid(1.25);
-  else if (key === "-") zoomSolid(0.8);
-  else if (key === "f") space.camera.fitted = true;
-  else if (SIDES[key]) Object.assign(space.camera, { yaw: SIDES[key][0], pitch: SIDES[key][1], fitted: true });
-  else return;
-  event.preventDefault();
-  stirSolid();
 }
 
 // False where the browser has no WebGL 2.

@@ -1,7 +1,7 @@
 // The points of a layer as the graphics card takes them: eight numbers each (shaders.js names them) in a texture of two
 // texels a point, ACROSS texels in a row; all passes one after another.
 
-const RECORD = 8, ACROSS = 2048;
+const RECORD = 8, ACROSS = 512;
 // Points are left out as long as a bead moves by no more than this part of its width.
 const THINNING = 0.04;
 

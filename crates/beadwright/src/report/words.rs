@@ -43,6 +43,12 @@ pub(super) fn hinted(word: &str) -> String {
     known.map_or(word.to_owned(), |(_, meaning)| format!("<abbr title=\"{}\">{word}</abbr>", escape(&meaning)))
 }
 
+/// The heading of a column, such as `void %`: a known word has its meaning as a hint.
+pub(super) fn headed(text: &str) -> String {
+    let (word, unit) = text.split_at(text.find(' ').unwrap_or(text.len()));
+    hinted(&escape(word)) + &escape(unit)
+}
+
 /// All words as a list.
 pub(super) fn list() -> String {
     let item = |(word, meaning): (&str, String)| {
