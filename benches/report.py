@@ -30,7 +30,7 @@ class Browser:
     """A browser with one page, asked over file descriptors 3 and 4."""
 
     def __init__(self, program):
-        self.folder = tempfile.TemporaryDirectory()
+        self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         there, self.ask = os.pipe()
         self.answer, back = os.pipe()
 

@@ -17,7 +17,7 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
     let m = &summary.metrics;
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
-        layers(header, m),
+        count(header.layers, "layer", "layers") + &empty(header, m),
         count(m.passes, "pass", "passes"),
         escape(&header.strategy),
         metres(m.deposited_length_mm),
@@ -27,12 +27,11 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
     )
 }
 
-/// How many layers there are, and how many of them hold something.
-fn layers(header: &Header, m: &Metrics) -> String {
-    let all = count(header.layers, "layer", "layers");
+/// How many of the layers hold nothing, in brackets.
+fn empty(header: &Header, m: &Metrics) -> String {
     match header.layers.saturating_sub(m.layers) {
-        0 => all,
-        empty => format!("{all} ({empty} of them empty)"),
+        0 => String::new(),
+        empty => format!(" ({empty} of them empty)"),
     }
 }
 
@@ -50,7 +49,7 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
     let [starts, time, wire] =
         if profile.prints() { ["Starts", "Time extruding", "Filament"] } else { ["Arc starts", "Arc time", "Wire"] };
     let mut rows = vec![
-        ("Layers", layers(header, m)),
+        ("Layers", header.layers.to_string() + &empty(header, m)),
         ("Passes", m.passes.to_string()),
         (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),
