@@ -79,7 +79,7 @@ fn layers_and_views_are_shared_by_both_pictures() {
         slider.value = 3;
         slider.oninput();
         while (shown.index !== 3) await rest(5);
-        document.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+        document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
         while (shown.index !== 4) await rest(5);
         const ramps = ['order', 'width', 'speed', 'time', 'kind'].map(by => {
           document.querySelector(`[name=colour][value=${by}]`).click();
