@@ -78,6 +78,11 @@ function showTwins(card) {
     twin.choice.onchange = () => fillTwin(twin, redraw);
     fillTwin(twin, redraw);
   }
+  const key = make("div", card, { className: "key" });
+  for (const [i, word] of ["contour", "infill", "skeleton, wall"].entries()) {
+    make("i", key).style.background = `rgb(${KIND_COLOURS[i].join(" ")})`;
+    key.append(word);
+  }
   slide(card, data.labels, state.at, at => { state.at = at; stir(); });
   make("p", card, { className: "lead", textContent: "Both turn together. Drag: turn · shift or right button: move · wheel: zoom · double click: show all." });
   window.addEventListener("resize", redraw);
