@@ -99,7 +99,11 @@ function drawBeads(ctx, passes, layer) {
       continue;
     }
     stroke(wide, c => mix(c, BLACK, 0.34));
-    const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), space.moving ? 3 : 9);
+    if (hurried()) {
+      stroke(0.8 * wide, c => c);
+      continue;
+    }
+    const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), 9);
     for (let k = 0; k < rings; k++) {
       const part = k / (rings - 1), width = (1 - part) * Math.max(wide - 1.6 * pixel, 0.85 * wide) + part * 0.22 * wide;
       stroke(width, c => part < 0.4 ? mix(c, BLACK, 0.12 - 0.3 * part) : mix(c, WHITE, 0.4 * (part - 0.4)));

@@ -98,6 +98,9 @@ function stirSolid() {
   redraw();
 }
 
+// Whether something moves where the processor draws: then the layer is drawn plainly too.
+const hurried = () => space.moving && space.rate > 1e-4;
+
 function placeMark() {
   const { mark } = shown, at = mark && projected(space.matrix, [mark.x, mark.y, heads[mark.layer].z], solid.clientWidth, solid.clientHeight);
   $("solid-mark").hidden = !at;
