@@ -20,11 +20,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         _ => None,
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
-    if !any(studio) {
-        ui.weak(studio.t("no-messages"));
-        return;
-    }
+    let nothing = (!any(studio)).then(|| studio.t("no-messages"));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if let Some(text) = nothing {
+            ui.weak(text);
+        }
         if let Some(text) = failure {
             line(ui, &text, true, || studio.plans.own.failure = None, close);
         }
