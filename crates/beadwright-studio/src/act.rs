@@ -66,6 +66,7 @@ impl Studio {
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.window.ctx.send_viewport_cmd(ViewportCommand::Close),
             Action::Ask(what) => self.ask(what),
+            Action::Answer(what, path) => self.answered(what, &path),
             Action::Export(what) => {
                 let folder = self.view.folder.trim().to_owned();
                 self.jobs.exporting = what;
@@ -81,7 +82,8 @@ impl Studio {
                 self.window.store.keep_settings(&self.window.settings);
             }
             Action::SetValue(key, value) => self.set_value(&key, &value),
-            Action::ResetValue(key) => self.reset_value(&key),
+            Action::ResetValue(key) => self.reset_values(&[key]),
+            Action::ResetValues(keys) => self.reset_values(&keys),
             Action::SetProfile(text) => self.set_profile("profile", Ok(text.to_owned())),
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),

@@ -56,6 +56,8 @@ pub enum Action {
     Quit,
     /// Asks for a file.
     Ask(Ask),
+    /// Goes on with a path that was typed.
+    Answer(Ask, PathBuf),
     /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),
     /// Opens a model or a project.
@@ -68,6 +70,8 @@ pub enum Action {
     SetValue(String, String),
     /// Removes a value from the profile, so that its default applies.
     ResetValue(String),
+    /// Removes several values from the profile.
+    ResetValues(Vec<String>),
     /// Loads the text of another profile.
     SetProfile(&'static str),
     /// Places the part.

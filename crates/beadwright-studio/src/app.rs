@@ -1,7 +1,7 @@
 //! One frame of the window: receive what has happened, do what was asked for, draw the panels.
 
 use crate::actions;
-use crate::jobs;
+use crate::jobs::{self, Answer};
 use crate::panels;
 use crate::studio::Studio;
 use eframe::egui::{self, ViewportCommand};
@@ -19,8 +19,9 @@ impl Studio {
         }
         self.view.follow(self.plans.own.layer_count());
         match jobs::take(&mut self.jobs.dialog) {
-            Some(Ok((what, Some(path)))) => self.answered(what, &path),
-            Some(Ok((_, None))) | None => {}
+            Some(Ok(Answer { what, path: Some(path), .. })) => self.answered(what, &path),
+            Some(Ok(Answer { what, path: None, seen: false })) => self.ask_in_words(what),
+            Some(Ok(_)) | None => {}
             Some(Err(error)) => self.complain(error),
         }
         match jobs::take(&mut self.jobs.steps_job) {

@@ -90,6 +90,17 @@ impl Studio {
         self.jobs.dialog = Some(jobs::ask(&self.window.ctx, what, &name));
     }
 
+    /// Asks for a path to be typed, as on a desktop without file dialogs.
+    pub fn ask_in_words(&mut self, what: Ask) {
+        let named = |extension: &str| format!("{}.{extension}", self.project().part());
+        let first = match what {
+            Ask::SaveProject => named("bwp"),
+            Ask::SavePicture => named("png"),
+            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads => String::new(),
+        };
+        self.jobs.typed = Some((what, first));
+    }
+
     pub(crate) fn answered(&mut self, what: Ask, path: &Path) {
         match what {
             Ask::Open => self.open(path),

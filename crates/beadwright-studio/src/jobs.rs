@@ -10,6 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
 
 /// A background job that gives one answer.
 pub struct Job<T>(Receiver<Result<T, String>>);
@@ -78,8 +79,21 @@ pub enum Ask {
     OpenBeads,
 }
 
-/// Asks in the system's own dialog; none if the user cancels.
-pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<(Ask, Option<PathBuf>)> {
+/// What a dialog gave: the path, if there is one, and whether the dialog can have been on the screen at all.
+pub struct Answer {
+    /// What was asked for.
+    pub what: Ask,
+    /// The path; none if the user cancelled.
+    pub path: Option<PathBuf>,
+    /// Whether somebody can have seen it: a desktop without file dialogs answers at once.
+    pub seen: bool,
+}
+
+/// Nobody reads and closes a dialog faster than this.
+const QUICKEST: Duration = Duration::from_millis(350);
+
+/// Asks in the system's own dialog.
+pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
     let dialog = rfd::AsyncFileDialog::new();
     let named = |extension: &str| dialog.clone().set_file_name(format!("{name}.{extension}"));
     let models = ["stl", "STL", "igs", "iges", "IGS", "IGES", "bwp"];
@@ -91,7 +105,11 @@ pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<(Ask, Option<PathBuf>)> 
         Ask::SaveProject => Box::pin(named("bwp").save_file()),
         Ask::SavePicture => Box::pin(named("png").save_file()),
     };
-    Job::start(ctx, move || (what, pollster::block_on(answer).map(|file| file.path().to_owned())))
+    let asked = Instant::now();
+    Job::start(ctx, move || {
+        let path = pollster::block_on(answer).map(|file| file.path().to_owned());
+        Answer { what, path, seen: asked.elapsed() > QUICKEST }
+    })
 }
 
 /// The steps of the hybrid on every island of a layer: pockets and skeleton regions.

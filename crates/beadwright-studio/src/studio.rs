@@ -4,7 +4,7 @@ use crate::actions::Action;
 use crate::export::Export;
 use crate::form::Parsed;
 use crate::history::History;
-use crate::jobs::{Ask, Job};
+use crate::jobs::{Answer, Ask, Job};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::{Settings, Store};
@@ -79,7 +79,9 @@ pub struct Plans {
 /// Other background work, and its results.
 #[derive(Default)]
 pub struct Jobs {
-    pub(crate) dialog: Option<Job<(Ask, Option<PathBuf>)>>,
+    pub(crate) dialog: Option<Job<Answer>>,
+    /// A path that is typed, where there is no dialog: what for, and the text so far.
+    pub(crate) typed: Option<(Ask, String)>,
     /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
     pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
@@ -168,6 +170,17 @@ impl Studio {
     /// The text of a key in the language of the window.
     pub(crate) fn t(&self, key: &'static str) -> &'static str {
         self.language().text(key)
+    }
+
+    /// Whether the plan is one for a printer, which has filament and no arc.
+    pub(crate) fn prints(&self) -> bool {
+        self.plans.own.profile.as_ref().is_some_and(|profile| profile.prints())
+    }
+
+    /// The text of a key in the words of the process: those of welding, or of printing where they differ.
+    pub(crate) fn worded(&self, key: &'static str) -> &'static str {
+        let printed = self.prints().then(|| self.language().find(&format!("fdm {key}"))).flatten();
+        printed.unwrap_or_else(|| self.t(key))
     }
 
     pub(crate) fn language(&self) -> Language {
@@ -291,10 +304,11 @@ impl Studio {
         self.set_profile(key, text.map_err(|error| error.to_string()));
     }
 
-    /// Removes a value from the profile, so that its default applies.
-    pub(crate) fn reset_value(&mut self, key: &str) {
-        let text = edit::without_value(&self.project().profile, key);
-        self.set_profile(key, text.map_err(|error| error.to_string()));
+    /// Removes values from the profile, so that their defaults apply: all of them, or none if one cannot be missing.
+    pub(crate) fn reset_values(&mut self, keys: &[String]) {
+        let Some(first) = keys.first() else { return };
+        let text = keys.iter().try_fold(self.project().profile.clone(), |text, key| edit::without_value(&text, key));
+        self.set_profile(first, text.map_err(|error| error.to_string()));
     }
 
     /// Takes over the text of a profile if it is valid.

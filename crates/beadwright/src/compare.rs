@@ -8,6 +8,7 @@ use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
 use crate::plan::{self, Header, PlanError, Sink};
 use crate::profile::Profile;
+use crate::report::encode;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::Sheet;
 use crate::report::steps;
@@ -75,6 +76,8 @@ pub struct JudgedLayer {
     pub peaks: Vec<Patch>,
     /// Its height field.
     pub picture: Option<Picture>,
+    /// Its passes in the compact form of pages ([`encode::shape`]).
+    pub beads: String,
 }
 
 /// Pixels of a height field, along its longer side.
@@ -107,7 +110,7 @@ impl<'a> EntryBuilder<'a> {
         judged.peaks.truncate(KEPT_PATCHES);
         let (index, z) = (layer.index, layer.z);
         let (figures, voids, peaks, picture) = (judged.figures, judged.voids, judged.peaks, judged.picture);
-        self.layers.push(JudgedLayer { index, z, figures, voids, peaks, picture });
+        self.layers.push(JudgedLayer { index, z, figures, voids, peaks, picture, beads: encode::shape(layer) });
     }
 
     fn entry(self, name: &str, totals: Totals) -> Entry {
@@ -301,6 +304,8 @@ pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
         let maps = (0..labels.len()).map(|k| entry.layers.get(k)?.picture.as_ref()).collect();
         columns.push((entry.name.clone(), maps));
     }
+    let beads = |entry: &Entry| entry.layers.iter().map(|layer| layer.beads.clone()).collect();
+    page.beads(&labels, &entries.iter().map(|entry| (entry.name.clone(), beads(entry))).collect::<Vec<_>>());
     page.maps(&labels, &columns);
     if labels.len() > 1 {
         page.svg(&layer_plot("Void", entries, Figures::void_percent).svg());

@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use beadwright::layer::Layer;
 use beadwright::model::RepairReport;
-use beadwright::pass::{Along, Pass, PassKind};
+use beadwright::pass::{Along, Pass, PassKind, Segment};
 use beadwright::plan::Plan;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::process::Process;
@@ -161,12 +161,76 @@ fn many_warnings_of_a_layer_are_told_in_part() {
 fn layers_of_the_page_are_the_encoded_layers() {
     let (plan, profile) = planned("cross");
     let html = page(&plan, &profile);
-    let (_, data) = html.split_once("id=\"data\">").unwrap();
-    let data: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let data = data(&html);
     let layers = data["layers"].as_array().unwrap();
     assert_eq!(layers.len(), plan.layers.len());
     layers.iter().zip(&plan.layers).for_each(|(text, layer)| assert_eq!(text, &encode::layer(layer, &process(), None)));
     assert_eq!(html, page(&plan, &profile));
+}
+
+/// What the page holds for its scripts.
+fn data(html: &str) -> serde_json::Value {
+    let (_, data) = html.split_once("id=\"data\">").unwrap();
+    serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn the_time_line_is_the_time_of_the_plan() {
+    for (name, part) in [("cmt-al2319-kuka", "cross"), ("cmt-steel-abb", "propeller"), ("fdm-abs-0.4", "cross")] {
+        let mut profile = profile(name);
+        profile.start_stop.interpass_time = 7.0;
+        let plan = common::planned(part, &profile);
+        let data = data(&page(&plan, &profile));
+        let metrics = &plan.summary.metrics;
+        let sum = |part: usize| -> f64 {
+            data["times"].as_array().unwrap().iter().map(|parts| parts[part].as_f64().unwrap()).sum()
+        };
+        // Every figure is rounded to 0.1 s.
+        let room = 0.05 * plan.layers.len() as f64 + 1e-6;
+        assert!((sum(0) - metrics.arc_time_s).abs() <= room, "{name}: arc");
+        assert!((sum(1) - metrics.dwell_time_s).abs() <= room, "{name}: waits");
+        assert!((sum(0) + sum(1) + sum(2) - metrics.total_time_s).abs() <= 3.0 * room, "{name}: in all");
+        assert!(metrics.dwell_time_s > 0.0, "{name}: the profile waits between layers");
+    }
+}
+
+#[test]
+fn colours_span_what_the_beads_have() {
+    let (mut plan, profile) = planned("cross");
+    let pass = &mut plan.layers[0].passes[0];
+    let count = pass.points.len();
+    pass.width = Along::Each((0..count).map(|i| 5.0 + i as f64 / count as f64).collect());
+    let data = data(&page(&plan, &profile));
+    let pieces = || plan.layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| pass.segments());
+    let ends = |value: fn(&Segment) -> f64| {
+        let values = || pieces().map(|piece| value(&piece));
+        [values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max)]
+    };
+    for (key, ends) in [("width", ends(|piece| piece.width)), ("speed", ends(|piece| piece.pace))] {
+        for (told, true_value) in data["ranges"][key].as_array().unwrap().iter().zip(ends) {
+            assert!((told.as_f64().unwrap() - true_value).abs() <= 0.0005 + 1e-9, "{key}");
+        }
+    }
+}
+
+#[test]
+fn a_warning_leads_to_its_place_and_words_are_explained() {
+    let (mut plan, profile) = planned("cross");
+    plan.summary.warnings = Default::default();
+    for (layer, size) in [(0, 3.0), (2, 9.0), (1, 5.0)] {
+        let place = DVec2::new(1.25, -4.5 - size);
+        plan.summary.warnings.add(Warning { kind: WarningKind::ThinFeature, layer, place, size });
+    }
+    let html = page(&plan, &profile);
+    let button = "<button data-layer=\"2\" data-x=\"1.25\" data-y=\"-13.50\">Show on layer 3</button>";
+    assert!(html.contains(button), "the largest one has a button");
+    for word in ["void", "low", "overfill", "outside", "closeness"] {
+        assert!(html.contains(&format!("data-word=\"{word}\"")), "{word}");
+    }
+    assert_eq!(html.matches(" id=\"").count(), {
+        let ids = html.split(" id=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+        ids.collect::<std::collections::BTreeSet<_>>().len()
+    });
 }
 
 #[test]

@@ -31,11 +31,12 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
     look_closer(studio);
-    let (label, scale) = (studio.t("view-2d-label"), Some(studio.t("bead-heights")));
+    let words = Words { label: studio.t("view-2d-label"), nothing: studio.t("nothing-laid") };
+    let scale = Some(studio.t("bead-heights"));
     let steps = steps(studio);
     let layer = studio.view.last;
     if let Some(picked) =
-        flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), label, scale)
+        flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), words, scale)
     {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
@@ -48,13 +49,20 @@ fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
     studio.jobs.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
 }
 
+/// What the view of a layer is called, and what is said of an empty one.
+#[derive(Clone, Copy)]
+struct Words {
+    label: &'static str,
+    nothing: &'static str,
+}
+
 fn flat(
     plan: &PlanState,
     view: &mut View2d,
     ui: &mut Ui,
     state: &crate::view::ViewState,
     steps: &[Steps],
-    label: &str,
+    words: Words,
     scale: Option<&str>,
 ) -> Option<Option<(usize, usize)>> {
     let layer = plan.layer(state.last)?;
@@ -65,9 +73,10 @@ fn flat(
         steps,
         pieces: (state.progress * count as f64).ceil() as usize,
         scale,
+        nothing: words.nothing,
         chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, _)| pass),
     };
-    view.show(ui, subject, state.show, label).picked
+    view.show(ui, subject, state.show, words.label).picked
 }
 
 fn bar(studio: &mut Studio, ui: &mut Ui) {
@@ -102,12 +111,13 @@ fn look_closer(studio: &mut Studio) {
 fn compare(studio: &mut Studio, ui: &mut Ui) {
     choose(studio, ui);
     bar(studio, ui);
-    let [label, other_label] = ["view-2d-label", "view-2d-other"].map(|key| studio.t(key));
+    let nothing = studio.t("nothing-laid");
+    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| Words { label: studio.t(key), nothing });
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
         left.strong(studio.plans.own.header.as_ref().map_or("", |header| &header.strategy));
         let before = studio.flat.eye();
-        if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &[], label, None) {
+        if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &[], own, None) {
             studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
         }
         let Some(other) = &mut studio.plans.other else { return };
@@ -120,7 +130,7 @@ fn compare(studio: &mut Studio, ui: &mut Ui) {
             other.flat.follow(&studio.flat);
         }
         let before = other.flat.eye();
-        flat(&other.plan, &mut other.flat, right, &studio.view, &[], other_label, None);
+        flat(&other.plan, &mut other.flat, right, &studio.view, &[], theirs, None);
         if other.flat.eye() != before {
             studio.flat.follow(&other.flat);
         }

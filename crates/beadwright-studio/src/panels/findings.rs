@@ -3,7 +3,10 @@
 use crate::studio::Studio;
 use crate::view::Mode;
 use beadwright::check::{CHECKS, Finding};
-use eframe::egui::{CollapsingHeader, Ui};
+use eframe::egui::{CollapsingHeader, RichText, Ui};
+
+/// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
+const SERIOUS: [&str; 8] = ["points", "layers", "air", "crossing", "retraced", "clearance", "low-travel", "towers"];
 
 /// Most findings listed for one check.
 const LISTED: usize = 100;
@@ -21,22 +24,60 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         if found.is_empty() {
             continue;
         }
-        let title = format!("{} ({})", check.name, found.len());
-        CollapsingHeader::new(title).id_salt(check.name).default_open(true).show(ui, |ui| {
-            ui.weak(format!("{}: {}.", studio.t("why"), check.why));
-            ui.weak(format!("{}: {}.", studio.t("remedy"), check.remedy));
-            for finding in found.iter().take(LISTED) {
-                let text = sentence(finding);
-                if finding.layer.is_none() {
-                    ui.label(text);
-                } else if ui.link(text).on_hover_text(studio.t("go-there")).clicked() {
-                    go_to(studio, finding);
+        let serious = SERIOUS.contains(&check.name);
+        let word = studio.t(if serious { "serious" } else { "remark" });
+        let colour = if serious { ui.visuals().error_fg_color } else { ui.visuals().warn_fg_color };
+        let title = format!("{} ({}, {word})", check.name, found.len());
+        CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name).default_open(true).show(
+            ui,
+            |ui| {
+                ui.weak(format!("{}: {}.", studio.t("why"), check.why));
+                ui.weak(format!("{}: {}.", studio.t("remedy"), check.remedy));
+                let groups = grouped(&found);
+                for group in groups.iter().take(LISTED) {
+                    listed(studio, ui, group);
                 }
-            }
-            if found.len() > LISTED {
-                ui.weak(format!("… {}", found.len() - LISTED));
-            }
+                if groups.len() > LISTED {
+                    ui.weak(format!("… {}", groups.len() - LISTED));
+                }
+            },
+        );
+    }
+}
+
+/// One finding, or many that say the same: the first of them, and the others on request.
+fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
+    let [first, rest @ ..] = group else { return };
+    one(studio, ui, first);
+    if let Some(last) = rest.last() {
+        let title = format!("{} × {}", group.len(), layers(first, last));
+        CollapsingHeader::new(title).id_salt((first.check, first.layer, first.pass, &first.text)).show(ui, |ui| {
+            rest.iter().take(LISTED).for_each(|finding| one(studio, ui, finding));
         });
+    }
+}
+
+fn one(studio: &mut Studio, ui: &mut Ui, finding: &Finding) {
+    let text = sentence(finding);
+    if finding.layer.is_none() {
+        ui.label(text);
+    } else if ui.link(text).on_hover_text(studio.t("go-there")).clicked() {
+        go_to(studio, finding);
+    }
+}
+
+/// Findings that follow each other and differ in their numbers only.
+fn grouped<'a, 'b>(findings: &'b [&'a Finding]) -> Vec<&'b [&'a Finding]> {
+    let words = |finding: &Finding| finding.text.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+    findings.chunk_by(|a, b| a.layer.is_some() == b.layer.is_some() && words(a) == words(b)).collect()
+}
+
+/// The layers from one finding to another, counted from 1.
+fn layers(first: &Finding, last: &Finding) -> String {
+    match (first.layer, last.layer) {
+        (Some(a), Some(b)) if a != b => format!("{}–{}", a + 1, b + 1),
+        (Some(a), _) => format!("{}", a + 1),
+        _ => String::new(),
     }
 }
 

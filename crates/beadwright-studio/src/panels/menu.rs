@@ -3,10 +3,10 @@
 use crate::actions::{self, Action};
 use crate::studio::Studio;
 use crate::text::Language;
-use crate::view::Mode;
+use crate::view::{Mode, Side};
 use beadwright::task::Stage;
 use beadwright::{example, fill};
-use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, Ui};
+use eframe::egui::{Button, Color32, ComboBox, MenuBar, ProgressBar, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     MenuBar::new().ui(ui, |ui| {
@@ -116,9 +116,7 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
                 studio.request(Action::Stop);
             }
         }
-        None if studio.plans.own.is_complete() => {
-            ui.label(studio.t("ready"));
-        }
+        None if studio.plans.own.is_complete() => done(studio, ui),
         None if studio.plans.own.failure.is_none() && studio.plans.own.part.is_some() => {
             ui.label(studio.t("stopped"));
             if ui.button(studio.t("plan")).clicked() {
@@ -126,6 +124,18 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
             }
         }
         None => {}
+    }
+}
+
+/// That the plan is complete, and how much the checks found; a click shows it.
+fn done(studio: &mut Studio, ui: &mut Ui) {
+    let count = studio.plans.own.findings.as_ref().map_or(0, Vec::len);
+    let good =
+        if ui.visuals().dark_mode { Color32::from_rgb(0x5f, 0xd0, 0x8a) } else { Color32::from_rgb(0x13, 0x7a, 0x3e) };
+    let warn = ui.visuals().warn_fg_color;
+    ui.colored_label(if count > 0 { warn } else { good }, studio.t("ready"));
+    if count > 0 && ui.link(format!("{}: {count}", studio.t("findings"))).clicked() {
+        studio.view.side = Side::Findings;
     }
 }
 

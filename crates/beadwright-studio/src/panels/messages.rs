@@ -5,8 +5,8 @@ use crate::planner::Failure;
 use crate::studio::Studio;
 use eframe::egui::{Color32, RichText, ScrollArea, Ui};
 
-/// Greatest height of the messages, points; longer lists scroll.
-const HEIGHT: f32 = 70.0;
+/// Height of the messages, points; longer lists scroll.
+pub(super) const HEIGHT: f32 = 52.0;
 
 /// Whether there is anything to say.
 pub(super) fn any(studio: &Studio) -> bool {
@@ -20,7 +20,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         _ => None,
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
-    ScrollArea::vertical().max_height(HEIGHT).show(ui, |ui| {
+    let nothing = (!any(studio)).then(|| studio.t("no-messages"));
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if let Some(text) = nothing {
+            ui.weak(text);
+        }
         if let Some(text) = failure {
             line(ui, &text, true, || studio.plans.own.failure = None, close);
         }

@@ -15,13 +15,14 @@ mod totals;
 
 use crate::studio::Studio;
 use crate::view::Side;
-use eframe::egui::{Panel, ScrollArea, Ui};
+use eframe::egui::{Button, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};
 
 /// The whole window.
 pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     Panel::top("menu").show(ui, |ui| menu::show(studio, ui));
-    if messages::any(studio) {
-        Panel::bottom("messages").show(ui, |ui| messages::show(studio, ui));
+    // Always there and of one height once a part is open, so that the views do not move when there is something to say.
+    if messages::any(studio) || studio.project().source.is_some() {
+        Panel::bottom("messages").exact_size(messages::HEIGHT).show(ui, |ui| messages::show(studio, ui));
     }
     if studio.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
@@ -37,6 +38,13 @@ pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     questions::show(studio, ui);
 }
 
+/// The size of a button with this text, so that the buttons beside it stay where they are when its own text changes.
+fn room(ui: &Ui, text: String) -> Vec2 {
+    let ink = ui.visuals().text_color();
+    let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), ink);
+    vec2(galley.size().x + 2.0 * ui.spacing().button_padding.x, 0.0)
+}
+
 fn side(studio: &mut Studio, ui: &mut Ui) {
     let tabs =
         [(Side::Totals, "totals"), (Side::Findings, "findings"), (Side::Plots, "plots"), (Side::Export, "export")];
@@ -44,7 +52,11 @@ fn side(studio: &mut Studio, ui: &mut Ui) {
         for (side, key) in tabs {
             let count = studio.plans.own.findings.as_ref().filter(|_| side == Side::Findings).map_or(0, Vec::len);
             let text = if count > 0 { format!("{} ({count})", studio.t(key)) } else { studio.t(key).to_owned() };
-            ui.selectable_value(&mut studio.view.side, side, text);
+            let widest = if side == Side::Findings { format!("{} (999)", studio.t(key)) } else { text.clone() };
+            let button = Button::selectable(studio.view.side == side, text).min_size(room(ui, widest));
+            if ui.add(button).clicked() {
+                studio.view.side = side;
+            }
         }
     });
     ui.separator();

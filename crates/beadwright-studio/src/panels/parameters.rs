@@ -5,6 +5,7 @@ use crate::actions::Action;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
 use crate::studio::Studio;
+use crate::text::Language;
 use beadwright::limit::Limit;
 use beadwright::profile::{BUILT_IN, Profile};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
@@ -53,8 +54,7 @@ struct Form<'a> {
 impl Form<'_> {
     fn section(&mut self, ui: &mut Ui, section: &Section) {
         let search = self.studio.view.search.to_lowercase();
-        let found =
-            |f: &&Field| search.is_empty() || f.key.contains(&search) || f.about.to_lowercase().contains(&search);
+        let found = |f: &&Field| search.is_empty() || self.says(section, f, &search);
         let fields: Vec<&Field> = section.fields.iter().filter(found).collect();
         // A dialect that has no section in this profile has no values to show.
         let present = section.key.is_empty() || form::value(self.values, &section.key).is_some();
@@ -74,10 +74,32 @@ impl Form<'_> {
                 if !section.about.is_empty() {
                     ui.weak(&section.about);
                 }
+                self.reset(ui, section);
                 Grid::new(&section.key).num_columns(2).show(ui, |ui| {
                     fields.into_iter().for_each(|field| self.field(ui, field));
                 });
             });
+    }
+
+    /// Whether a field has a text in its key, its meaning, the reason for its range, or a name in either language.
+    fn says(&self, section: &Section, field: &Field, search: &str) -> bool {
+        let name = |(language, _): (Language, _)| {
+            let words = [("name", &field.name), ("section", &section.key)];
+            words.map(|(kind, word)| language.word(kind, word)).join(" ")
+        };
+        let reason = form::limit(self.limits, &field.key).map_or("", |limit| limit.reason);
+        let texts = [field.key.clone(), field.about.clone(), reason.to_owned()];
+        texts.into_iter().chain(Language::ALL.map(name)).any(|text| text.to_lowercase().contains(search))
+    }
+
+    /// A button that takes the values of a section out of the profile which have a default.
+    fn reset(&mut self, ui: &mut Ui, section: &Section) {
+        let own = |field: &&Field| field.optional && form::value(self.values, &field.key).is_some();
+        let keys: Vec<String> = section.fields.iter().filter(own).map(|field| field.key.clone()).collect();
+        let (text, hint) = (self.studio.t("defaults"), keys.join(", "));
+        if !keys.is_empty() && !section.key.is_empty() && ui.small_button(text).on_hover_text(hint).clicked() {
+            self.studio.request(Action::ResetValues(keys));
+        }
     }
 
     fn field(&mut self, ui: &mut Ui, field: &Field) {

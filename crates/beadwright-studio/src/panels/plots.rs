@@ -18,19 +18,19 @@ const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
 const HEIGHT: f32 = 140.0;
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let x = studio.t("axis-layer");
+    let (x, none) = (studio.t("axis-layer"), studio.t("no-values"));
     let judged = |value: fn(&beadwright::deposit::Figures) -> f64| -> Vec<[f64; 2]> {
         let figures = studio.plans.own.judgements.iter().enumerate();
         figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
     };
-    curve(ui, studio.t("plot-void"), x, judged(|f| f.void_percent()));
-    curve(ui, studio.t("plot-overfill"), x, judged(|f| f.overfill_percent()));
+    curve(ui, studio.t("plot-void"), x, none, judged(|f| f.void_percent()));
+    curve(ui, studio.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
     let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
         (0..studio.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
-    curve(ui, studio.t("plot-starts"), x, planned(&|i| studio.plans.own.layers[i].passes.len() as f64));
+    curve(ui, studio.worded("plot-starts"), x, none, planned(&|i| studio.plans.own.layers[i].passes.len() as f64));
     let seconds = |i: usize| studio.plans.own.scene.layer(i).map_or(0.0, |beads| beads.seconds());
-    curve(ui, studio.t("plot-time"), x, planned(&seconds));
+    curve(ui, studio.t("plot-time"), x, none, planned(&seconds));
     ui.separator();
     beads(studio, ui);
     ui.separator();
@@ -63,8 +63,12 @@ fn drawn(ui: &mut Ui, id: &str, found: &page::Plot) {
     });
 }
 
-fn curve(ui: &mut Ui, title: &'static str, x: &'static str, points: Vec<[f64; 2]>) {
+fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, points: Vec<[f64; 2]>) {
     ui.label(title);
+    if points.is_empty() {
+        ui.weak(none);
+        return;
+    }
     let step = points.len().div_ceil(POINTS).max(1);
     let points: PlotPoints<'_> = points.into_iter().step_by(step).collect();
     let axis = AxisHints::new_x().label(x).label_spacing(SPACING);

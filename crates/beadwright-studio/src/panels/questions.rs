@@ -4,7 +4,7 @@ use crate::actions::{Action, ENTRIES};
 use crate::planner::Failure;
 use crate::studio::Studio;
 use beadwright::model::{Placement, Units};
-use eframe::egui::{Align2, DragValue, Grid, Ui, Window, vec2};
+use eframe::egui::{Align2, Button, DragValue, Grid, Key, TextEdit, Ui, Window, vec2};
 
 pub(super) fn show(studio: &mut Studio, ui: &Ui) {
     lost(studio, ui);
@@ -14,7 +14,35 @@ pub(super) fn show(studio: &mut Studio, ui: &Ui) {
         _ => {}
     }
     closing(studio, ui);
+    path(studio, ui);
     keys(studio, ui);
+}
+
+/// A path to be typed, where the desktop has no file dialogs.
+fn path(studio: &mut Studio, ui: &Ui) {
+    let Some((what, mut text)) = studio.jobs.typed.clone() else { return };
+    let mut answer = None;
+    window(studio.t("path-title")).show(ui.ctx(), |ui| {
+        ui.label(studio.t("path-text"));
+        let label = ui.label(studio.t("path"));
+        let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).labelled_by(label.id);
+        if ui.memory(|memory| memory.focused().is_none()) {
+            field.request_focus();
+        }
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        ui.horizontal(|ui| {
+            if ui.add_enabled(!text.trim().is_empty(), Button::new(studio.t("take"))).clicked() || entered {
+                answer = Some(true);
+            }
+            if ui.button(studio.t("cancel")).clicked() {
+                answer = Some(false);
+            }
+        });
+    });
+    studio.jobs.typed = answer.is_none().then(|| (what, text.clone()));
+    if answer == Some(true) && !text.trim().is_empty() {
+        studio.request(Action::Answer(what, text.trim().into()));
+    }
 }
 
 fn closing(studio: &mut Studio, ui: &Ui) {

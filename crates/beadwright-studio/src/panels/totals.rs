@@ -17,7 +17,10 @@ pub(super) fn show(studio: &Studio, ui: &mut Ui) {
     let rows = rows_of(&studio.plans.own);
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
-            ui.label(name_of(studio, name));
+            let label = ui.label(name_of(studio, name));
+            if let Some(hint) = studio.language().find(&format!("hint {name}")) {
+                label.on_hover_text(hint);
+            }
             ui.label(value);
             ui.end_row();
         }
@@ -31,12 +34,20 @@ pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
     let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
     let figures: Option<&Figures> = plan.total.as_ref();
     let totals = metrics.map(rows::totals).into_iter().flatten();
+    // Sliders and plots count all layers.
+    let all = plan.layers.len();
+    let totals = totals.map(|(name, value)| match metrics {
+        Some(metrics) if name == "layers" && all > metrics.layers => (name, format!("{value} / {all}")),
+        _ => (name, value),
+    });
     totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
 }
 
 /// A row's name in the language of the window.
 pub(super) fn name_of(studio: &Studio, name: &'static str) -> &'static str {
-    studio.language().find(&format!("total {name}")).unwrap_or(name)
+    let key = format!("total {name}");
+    let printed = studio.prints().then(|| studio.language().find(&format!("fdm {key}"))).flatten();
+    printed.or_else(|| studio.language().find(&key)).unwrap_or(name)
 }
 
 fn chosen(studio: &Studio, ui: &mut Ui) {
@@ -65,7 +76,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     Grid::new("chosen").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         let heat = heat.map(|heat| ("heat-input", format!("{heat:.0} J/mm")));
         for (key, value) in values.into_iter().chain(heat) {
-            ui.label(studio.t(key));
+            ui.label(studio.worded(key));
             ui.label(value);
             ui.end_row();
         }

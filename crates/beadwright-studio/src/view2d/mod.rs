@@ -70,6 +70,8 @@ pub struct Drawing<'a> {
     pub chosen: Option<usize>,
     /// The caption of the scale of heights, where it is shown.
     pub scale: Option<&'a str>,
+    /// What to say of a layer without passes.
+    pub nothing: &'a str,
 }
 
 /// What the user did in the view.
@@ -168,6 +170,10 @@ impl View2d {
         pen.passes(&subject, show);
         self.measures(&pen);
         pen.scale_bar();
+        if subject.layer.passes.is_empty() {
+            pen.note(Align2::CENTER_CENTER, subject.nothing);
+            response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{label}: {}", subject.nothing)));
+        }
         if let (true, Some(caption)) = (show.heights, subject.scale) {
             pen.heat_scale(caption);
         }

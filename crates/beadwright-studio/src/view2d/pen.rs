@@ -38,8 +38,17 @@ impl Pen<'_> {
         (length * self.eye.scale) as f32
     }
 
+    /// A closed line. It is drawn as an open one that ends where it began: only at the corners of those are mitres
+    /// limited, and the sharp corners of slivers would become spikes across the view.
     fn ring(&self, points: &[DVec2], stroke: Stroke) {
-        self.painter.add(Shape::closed_line(points.iter().map(|p| self.at(*p)).collect(), stroke));
+        /// Points closer than this on the screen are one: they have no direction.
+        const SAME: f32 = 0.2;
+        let mut line: Vec<Pos2> = points.iter().chain(points.first()).map(|p| self.at(*p)).collect();
+        line.dedup_by(|b, a| a.distance(*b) < SAME);
+        if let [only] = line[..] {
+            self.painter.circle_filled(only, stroke.width / 2.0, stroke.color);
+        }
+        self.painter.add(Shape::line(line, stroke));
     }
 
     pub(super) fn outlines(&self, layer: &Layer) {

@@ -5,6 +5,7 @@ mod background;
 mod compare;
 mod edit;
 mod export;
+mod faults;
 mod files;
 mod flat;
 mod pictures;

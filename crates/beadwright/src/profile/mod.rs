@@ -286,6 +286,11 @@ impl Profile {
         MassBalance::new(self.bead(), wire_feed_speed, self.wire.diameter, efficiency, deposition_speed)
     }
 
+    /// Whether this is a process without arc and gas whose programs are for a printer: its wire is filament.
+    pub fn prints(&self) -> bool {
+        self.process.gas == "none" && self.posts.iter().any(|post| post == "marlin")
+    }
+
     /// Heat input of the nominal bead, J/mm; `None` where the profile gives no current or voltage.
     pub fn heat_input(&self) -> Option<f64> {
         self.process.heat_at(self.process.deposition_speed)

@@ -46,10 +46,21 @@ const MOST_WARNINGS: usize = 30;
 /// One layer, and what the deposit model says of it, as base64. It does not depend on other layers, so callers may
 /// encode several in parallel.
 pub fn layer(layer: &Layer, process: &Process, figures: Option<&Figures>) -> String {
+    let process = process.at_layer(layer.index);
+    encoded(layer, figures, &|pace| process.speed_at(pace))
+}
+
+/// One layer as it lies there, with paces in place of the torch's speeds.
+pub fn shape(layer: &Layer) -> String {
+    encoded(layer, None, &|pace| pace)
+}
+
+/// `speed` gives the speed of the torch at a pace, mm/s.
+fn encoded(layer: &Layer, figures: Option<&Figures>, speed: &dyn Fn(f64) -> f64) -> String {
     let bounds = Bounds::of(points(layer)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let resolution = (bounds.size().max_element() / SPAN).max(FINEST);
-    let bytes = head(layer, process, figures, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
-    STANDARD.encode(deflate(bytes, &body(layer, process, bounds.min, resolution)))
+    let bytes = head(layer, speed, figures, &bounds, resolution).iter().flat_map(|v| v.to_le_bytes()).collect();
+    STANDARD.encode(deflate(bytes, &body(layer, speed, bounds.min, resolution)))
 }
 
 fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
@@ -57,8 +68,15 @@ fn points(layer: &Layer) -> impl Iterator<Item = DVec2> + '_ {
     rings.chain(layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate()))
 }
 
-fn head(layer: &Layer, process: &Process, figures: Option<&Figures>, bounds: &Bounds, resolution: f64) -> [f64; HEAD] {
+fn head(
+    layer: &Layer,
+    speed: &dyn Fn(f64) -> f64,
+    figures: Option<&Figures>,
+    bounds: &Bounds,
+    resolution: f64,
+) -> [f64; HEAD] {
     let size = bounds.size();
+    let seconds = |pass: &Pass| pass.segments().map(|s| s.length() / speed(s.pace)).sum::<f64>();
     let figures = figures.copied().unwrap_or_default();
     [
         layer.z,
@@ -66,7 +84,7 @@ fn head(layer: &Layer, process: &Process, figures: Option<&Figures>, bounds: &Bo
         layer.slice_area,
         layer.planned_area,
         layer.passes.iter().map(Pass::length).sum(),
-        layer.passes.iter().map(|pass| pass.seconds(process)).sum(),
+        layer.passes.iter().map(seconds).sum(),
         super::travels(layer).map(|(from, to)| from.distance(to)).sum(),
         layer.passes.len() as f64,
         layer.warnings.len() as f64,
@@ -90,8 +108,8 @@ pub fn map(picture: &Picture) -> String {
     STANDARD.encode(deflate(Vec::new(), &bytes))
 }
 
-fn body(layer: &Layer, process: &Process, origin: DVec2, resolution: f64) -> Vec<u8> {
-    let table = table(layer, process);
+fn body(layer: &Layer, speed: &dyn Fn(f64) -> f64, origin: DVec2, resolution: f64) -> Vec<u8> {
+    let table = table(layer, speed);
     let mut bytes = Vec::with_capacity(4 * table.len() + 4 * points(layer).count() + 256);
     bytes.extend((table.len() as u32).to_le_bytes());
     bytes.extend(table.iter().flat_map(|v| v.to_le_bytes()));
@@ -104,8 +122,7 @@ fn body(layer: &Layer, process: &Process, origin: DVec2, resolution: f64) -> Vec
     bytes
 }
 
-fn table(layer: &Layer, process: &Process) -> Vec<u32> {
-    let process = process.at_layer(layer.index);
+fn table(layer: &Layer, speed: &dyn Fn(f64) -> f64) -> Vec<u32> {
     let mut table = vec![layer.islands.len() as u32];
     for island in &layer.islands {
         table.push(island.rings().count() as u32);
@@ -117,7 +134,7 @@ fn table(layer: &Layer, process: &Process) -> Vec<u32> {
         let flags = if pass.closed { 256 } else { 0 } + if varies { 512 } else { 0 };
         table.extend([kind(pass.kind) + flags, pass.points.len() as u32]);
         for i in 0..if varies { pass.points.len() } else { 1 } {
-            let values = [pass.width.after(i), process.speed_at(pass.pace.after(i))];
+            let values = [pass.width.after(i), speed(pass.pace.after(i))];
             table.extend(values.map(|value| (value * 1e3).round() as u32));
         }
     }

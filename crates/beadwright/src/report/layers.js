@@ -1,6 +1,6 @@
 // Reading layers: encode.rs tells the format. A layer is inflated when it is shown.
 
-const HEAD = 18, HEAD_CHARACTERS = 192, KEPT = 48;
+const HEAD = 18, HEAD_CHARACTERS = 192;
 
 function readHead(text) {
   const [z, height, slice, planned, length, seconds, travel, passes, warnings, x, y, sizeX, sizeY, resolution, points, judged, empty, full] =
@@ -40,19 +40,12 @@ async function readLayer(text, head) {
   const passes = list(() => {
     const flags = next(), count = next(), closed = (flags & 256) > 0;
     const along = Array.from({ length: flags & 512 ? count : 1 }, () => [next() / 1e3, next() / 1e3]);
-    return { kind: Math.min(flags & 255, 2), along, count, closed };
+    return { kind: flags & 255, along, count, closed };
   }).map(({ kind, along, count, closed }) => ({ kind, along, xy: path(count, closed) }));
   let seconds = 0;
   for (const pass of passes) seconds = timePass(pass, seconds);
   const warnings = JSON.parse(new TextDecoder().decode(body.subarray(end + 4 * head.points)));
   return { islands, passes, seconds, warnings };
-}
-
-// A layer with its height field, if it has one.
-async function readWhole(index) {
-  const [layer, map] = await Promise.all([readLayer(data.layers[index], heads[index]), readMap(data.maps[index])]);
-  layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
-  return { ...layer, map };
 }
 
 // Width and speed from a point to the next.
@@ -69,18 +62,3 @@ function timePass(pass, start) {
   pass.start = start;
   return pass.end = times.length ? times[times.length - 1] : start;
 }
-
-const data = JSON.parse(document.getElementById("data").textContent);
-const heads = data.layers.map(readHead);
-data.warmth.forEach(({ starts, wait }, i) => Object.assign(heads[i], { hottest: Math.max(0, ...starts), wait }));
-const kept = new Map();
-
-// The promise of a layer; the last ones are kept.
-function layerAt(index) {
-  const layer = kept.get(index) ?? readWhole(index);
-  kept.delete(index);
-  kept.set(index, layer);
-  if (kept.size > KEPT) kept.delete(kept.keys().next().value);
-  return layer;
-}
-

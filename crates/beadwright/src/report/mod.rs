@@ -5,6 +5,7 @@
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`rows`] | totals as people read them |
+//! | `words` | what the words of the figures mean |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | plots over the raster angle |
@@ -12,7 +13,10 @@
 //! | [`overhang`] | faces that hang over, seen from below |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
-//! | `layers.js`, `heat.js`, `picture.js`, `page.js` | reading layers, height fields, drawing a layer, the controls |
+//! | `layers.js`, `layout.js`, `heat.js`, `colour.js` | reading layers, those of the page, height fields, what beads are coloured by |
+//! | `picture.js`, `pick.js`, `timeline.js`, `page.js` | a layer from above, the pass pointed out, the build in time, the controls |
+//! | `camera.js`, `steer.js`, `strands.js`, `shaders.js`, `scene.js`, `pace.js` | beads in 3-D (WebGL 2): camera and its handling, points, programs, buffers, how much is drawn |
+//! | `solid.js`, `twins.js` | the part in 3-D on the report; strategies side by side on other pages |
 
 pub mod angles;
 pub mod bead_window;
@@ -26,9 +30,11 @@ pub mod steps;
 pub mod svg;
 mod tables;
 pub mod temperature;
+mod words;
 
 use crate::deposit::{Figures, Judgement};
 use crate::layer::Layer;
+use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::pass::Pass;
 use crate::plan::{Header, Summary};
@@ -46,6 +52,11 @@ pub struct Report {
     maps: Vec<String>,
     /// Of every layer: temperatures where its passes begin, °C, and the seconds that the torch waits.
     warmth: Vec<(Vec<f64>, f64)>,
+    /// Of every layer: arc, waits, and the rest of its time, s.
+    times: Vec<[f64; 3]>,
+    clock: Metrics,
+    widths: Range,
+    speeds: Range,
     figures: Option<Figures>,
     /// The layer in the middle, for plots over the raster angle.
     middle: Layer,
@@ -60,6 +71,10 @@ impl Report {
             layers: Vec::new(),
             maps: Vec::new(),
             warmth: Vec::new(),
+            times: Vec::new(),
+            clock: Metrics::new(profile),
+            widths: Range::default(),
+            speeds: Range::default(),
             figures: None,
             middle: Layer::default(),
         }
@@ -73,9 +88,25 @@ impl Report {
         self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
         let waits = layer.passes.iter().map(|pass| pass.wait).sum();
         self.warmth.push((layer.temperatures.iter().map(|t| t.start).collect(), waits));
+        self.measure(layer);
         if let Some(judgement) = judgement {
             self.figures.get_or_insert_default().add(&judgement.figures);
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
+        }
+    }
+
+    /// Adds the layer's time, and what its beads are coloured by.
+    fn measure(&mut self, layer: &Layer) {
+        let now = |clock: &Metrics| [clock.arc_time_s, clock.dwell_time_s, clock.total_time_s];
+        let before = now(&self.clock);
+        self.clock.add(layer);
+        let after = now(&self.clock);
+        let [arc, wait, whole] = [0, 1, 2].map(|i| after[i] - before[i]);
+        self.times.push([arc, wait, (whole - arc - wait).max(0.0)]);
+        let process = self.profile.process.at_layer(layer.index);
+        for piece in layer.passes.iter().flat_map(Pass::segments) {
+            self.widths.take(piece.width);
+            self.speeds.take(process.speed_at(piece.pace));
         }
     }
 
@@ -87,20 +118,32 @@ impl Report {
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, repair)),
-            ("totals", tables::totals(summary, self.figures.as_ref())),
+            ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile)),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
             ("warnings", tables::warnings(summary, repair)),
+            ("words", words::list()),
             ("data", self.data()),
             (
                 "js",
                 [
                     include_str!("inflate.js"),
                     include_str!("layers.js"),
+                    include_str!("layout.js"),
                     include_str!("heat.js"),
+                    include_str!("colour.js"),
                     include_str!("picture.js"),
+                    include_str!("camera.js"),
+                    include_str!("steer.js"),
+                    include_str!("strands.js"),
+                    include_str!("shaders.js"),
+                    include_str!("scene.js"),
+                    include_str!("pace.js"),
+                    include_str!("solid.js"),
+                    include_str!("pick.js"),
+                    include_str!("timeline.js"),
                     include_str!("page.js"),
                 ]
                 .concat(),
@@ -115,7 +158,12 @@ impl Report {
         // Base64 needs no escaping.
         let list = |texts: &[String]| texts.iter().map(|text| format!("\n\"{text}\"")).collect::<Vec<_>>().join(",");
         let (layers, maps) = (list(&self.layers), list(&self.maps));
-        format!("{{\"bead\":{bead},\"warmth\":{},\"layers\":[{layers}],\"maps\":[{maps}]}}", self.warmth())
+        let times: Vec<[f64; 3]> = self.times.iter().map(|parts| parts.map(|s| (s * 10.0).round() / 10.0)).collect();
+        let (times, warmth) = (json!(times), self.warmth());
+        let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
+        format!(
+            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+        )
     }
 
     /// Starts in whole °C and waits in seconds, layer by layer; nothing where no temperature was computed.
@@ -128,6 +176,22 @@ impl Report {
             json!({ "starts": starts, "wait": wait.round() as i64 })
         };
         self.warmth.iter().map(layer).collect()
+    }
+}
+
+/// The least and the greatest of some values.
+#[derive(Debug, Clone, Copy, Default)]
+struct Range(Option<[f64; 2]>);
+
+impl Range {
+    fn take(&mut self, value: f64) {
+        let [least, greatest] = self.0.unwrap_or([value; 2]);
+        self.0 = Some([least.min(value), greatest.max(value)]);
+    }
+
+    /// Both, in thousandths; zeros where there was no value.
+    fn ends(self) -> [f64; 2] {
+        self.0.unwrap_or_default().map(|value| (value * 1e3).round() / 1e3)
     }
 }
 

@@ -1,15 +1,7 @@
 // The controls around the picture.
 
-const $ = id => document.getElementById(id);
 const slider = $("layer"), progress = $("progress"), bars = $("bars");
 const PROGRESS_STEPS = 1000;
-
-const metres = mm => mm >= 1000 ? `${(mm / 1000).toFixed(2)} m` : `${mm.toFixed(0)} mm`;
-const area = mm2 => mm2 >= 1e5 ? `${(mm2 / 100).toFixed(1)} cm²` : `${mm2.toFixed(1)} mm²`;
-function clock(seconds) {
-  const s = Math.round(seconds), two = v => String(v).padStart(2, "0");
-  return s < 3600 ? `${Math.floor(s / 60)} min ${two(s % 60)} s` : `${Math.floor(s / 3600)} h ${two(Math.floor(s / 60) % 60)} min ${two(s % 60)} s`;
-}
 
 function tellLayer() {
   const head = heads[shown.index], layer = shown.layer;
@@ -26,15 +18,24 @@ function tellLayer() {
   $("numbers").replaceChildren(...numbers.map(([name, value, more]) => {
     const item = document.createElement("div");
     item.append(element("dt", name), element("dd", value));
+    item.title = hintOf(name);
     if (more) item.lastChild.append(element("small", more));
     return item;
   }));
   const list = $("layer-warnings"), more = head.warnings - layer.warnings.length;
   list.hidden = !head.warnings;
-  list.replaceChildren(...layer.warnings.map(([x, y, text]) => element("li", `${text} near x ${x.toFixed(1)} y ${y.toFixed(1)} mm`)));
+  list.replaceChildren(...layer.warnings.map(([x, y, text]) => {
+    const item = element("li", `${text} near x ${x.toFixed(1)} y ${y.toFixed(1)} mm`), button = element("button", "Show");
+    button.onclick = () => goTo(shown.index, x, y);
+    item.append(button);
+    return item;
+  }));
   if (more > 0) list.append(element("li", `and ${more} more`));
   $("key-other").hidden = layer.passes.every(pass => pass.kind < 2);
 }
+
+// What the glossary of the page says of a word.
+const hintOf = name => document.querySelector(`[data-word="${name.toLowerCase()}"]`)?.textContent ?? "";
 
 function element(name, text) {
   const node = document.createElement(name);
@@ -61,7 +62,8 @@ async function show(index) {
   tellLayer();
   tellProgress();
   drawBars();
-  redraw();
+  drawTimeline();
+  stirSolid();
   for (const near of [index + 1, index - 1]) if (near >= 0 && near < heads.length) layerAt(near);
 }
 
@@ -89,18 +91,21 @@ function drawBars() {
 }
 
 function resize() {
-  const stage = $("stage"), width = stage.clientWidth;
+  const both = $("stages").dataset.view === "both", width = Math.max($("stage").clientWidth, $("stage-solid").clientWidth);
   if (width < 50) return;
-  const height = Math.round(Math.max(300, Math.min(width * 0.62, window.innerHeight * 0.72)));
+  const height = Math.round(Math.max(300, Math.min(width * (both ? 0.85 : 0.62), window.innerHeight - 350)));
   Object.assign(view, { width, height });
-  resizeCanvas(picture, width, height);
+  for (const canvas of [picture, solid]) resizeCanvas(canvas, width, height);
   resizeCanvas(bars, bars.clientWidth, 54);
+  resizeCanvas(timeline, timeline.clientWidth, 54);
   // The thumb stands below its bar: its way is shorter than the track by one thumb.
   const inset = bars.clientWidth / heads.length / 2 - 8;
   slider.style.marginInline = `${inset}px`;
   if (view.fitted) fit();
   drawBars();
+  drawTimeline();
   draw();
+  drawSolid();
 }
 
 // Plays a slider until its end; a second press stops it.
@@ -129,6 +134,7 @@ function followPointers() {
   const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
   const spread = () => { const [a, b] = [...down.values()]; return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0; };
   picture.onpointerdown = event => {
+    pointOut(null);
     picture.setPointerCapture(event.pointerId);
     down.set(event.pointerId, [event.offsetX, event.offsetY]);
     picture.classList.add("dragging");
@@ -136,7 +142,7 @@ function followPointers() {
   picture.onpointermove = event => {
     const x = (event.offsetX - view.x) / view.scale, y = (view.y - event.offsetY) / view.scale;
     $("place").textContent = `x ${x.toFixed(1)}  y ${y.toFixed(1)} mm`;
-    if (!down.has(event.pointerId)) return;
+    if (!down.has(event.pointerId)) return pointOut(pickLayer(x, y), event.clientX, event.clientY);
     const [fromX, fromY] = middle(), before = spread();
     down.set(event.pointerId, [event.offsetX, event.offsetY]);
     const [toX, toY] = middle();
@@ -150,11 +156,10 @@ function followPointers() {
     down.delete(event.pointerId);
     if (!down.size) picture.classList.remove("dragging");
   };
-  picture.onpointerleave = () => { $("place").textContent = ""; };
+  picture.onpointerleave = () => { $("place").textContent = ""; pointOut(null); };
   picture.addEventListener("wheel", event => {
     event.preventDefault();
-    const pixels = event.deltaY * (event.deltaMode ? 33 : 1);
-    zoom(Math.exp(-Math.max(-400, Math.min(400, pixels)) * 0.0016), event.offsetX, event.offsetY);
+    zoom(wheelFactor(event), event.offsetX, event.offsetY);
     redraw();
   }, { passive: false });
   picture.ondblclick = () => { fit(); redraw(); };
@@ -170,15 +175,19 @@ function connect() {
     $(`show-${name}`).onchange = event => { shown[name] = event.target.checked; redraw(); };
   }
   document.querySelectorAll("[name=colour]").forEach(radio => {
-    radio.onchange = () => {
-      shown.byOrder = radio.value === "order";
-      shown.heat = radio.value === "heat";
-      shown.warm = radio.value === "warm";
-      for (const key of ["kind", "order", "heat", "warm"]) $(`key-${key}`).hidden = radio.value !== key;
-      redraw();
-    };
+    radio.onchange = () => { shown.by = radio.value; showKey(); redraw(); };
+  });
+  document.querySelectorAll("[name=view]").forEach(radio => {
+    radio.onchange = () => { $("stages").dataset.view = radio.value; resize(); };
+  });
+  document.querySelectorAll("[data-layer]").forEach(button => {
+    const { layer, x, y } = button.dataset;
+    button.onclick = () => goTo(Number(layer), Number(x), Number(y));
   });
   $("fit").onclick = picture.ondblclick;
+  $("solid-fit").onclick = solid.ondblclick;
+  $("solid-closer").onclick = () => zoomSolid(1.4);
+  $("solid-farther").onclick = () => zoomSolid(1 / 1.4);
   const step = factor => () => { zoom(factor, view.width / 2, view.height / 2); redraw(); };
   $("closer").onclick = step(1.4);
   $("farther").onclick = step(1 / 1.4);
@@ -186,36 +195,54 @@ function connect() {
   const barAt = event => Math.min(Math.floor(event.offsetX / bars.clientWidth * heads.length), heads.length - 1);
   bars.onpointerdown = event => { bars.setPointerCapture(event.pointerId); show(barAt(event)); };
   bars.onpointermove = event => { if (event.buttons) show(barAt(event)); };
-  document.addEventListener("keydown", event => {
-    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!by || event.altKey || event.ctrlKey || event.metaKey || event.target.matches("#progress, select, [type=radio]")) return;
-    event.preventDefault();
-    show(wanted + by * (event.shiftKey ? 10 : 1));
-  });
+  document.addEventListener("keydown", steer);
   window.addEventListener("resize", resize);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); resize(); });
 }
 
-function start() {
-  if (!heads.length) return void ($("viewer").hidden = true);
-  if (data.maps.length) {
-    document.querySelectorAll(".judged").forEach(node => { node.hidden = false; });
-    drawKey($("heat-ramp"), part => heatAt(FULL_SCALE * part));
-  }
-  if (data.warmth.length) {
-    document.querySelectorAll(".warmed").forEach(node => { node.hidden = false; });
-    [$("warm-low").textContent, $("warm-high").textContent] = warmth.map(celsius => `${celsius} °C`);
-    drawKey($("warm-ramp"), part => rampAt(part, EMBER));
-  }
+// Keys for the whole page: layers, and passes one after another.
+function steer(event) {
+  if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey || event.target.matches("#progress, select, [type=radio]")) return;
+  const { key } = event, layers = { ArrowLeft: -1, ArrowRight: 1, PageDown: -1, PageUp: 1 }[key], passes = { "[": -1, "]": 1 }[key];
+  if (key.startsWith("Page") && event.target !== solid && event.target !== picture) return;
+  if (layers) show(wanted + layers * (event.shiftKey ? 10 : 1));
+  else if (passes) pointOutNext(passes);
+  else if (key === "Escape") pointOut(null);
+  else return;
+  event.preventDefault();
+}
+
+// On a small screen there is room for one picture at a time.
+function chooseView() {
+  const value = innerWidth < 900 ? "solid" : "both";
+  $("stages").dataset.view = value;
+  document.querySelector(`[name=view][value=${value}]`).checked = true;
+}
+
+// What was not computed cannot be chosen.
+function offer(name, there) {
+  document.querySelectorAll(`.${name}`).forEach(node => { node.hidden = !there; });
+}
+
+async function start() {
+  if (!heads.length) return void ($("viewer").hidden = $("clock").hidden = true);
+  offer("judged", data.maps.length > 0);
+  offer("warmed", data.warmth.length > 0);
+  if (data.maps.length) drawKey($("heat-ramp"), part => heatAt(FULL_SCALE * part));
   readColours();
+  chooseView();
+  startTimeline();
+  const deep = startSolid();
   connect();
   followPointers();
   resize();
   if (typeof DecompressionStream === "undefined") {
-    $("trouble").textContent = "This browser is too old for the picture: Chrome 103, Firefox 113 or Safari 16.4 would do.";
+    $("trouble").textContent = "This browser is too old for the pictures: Chrome 103, Firefox 113 or Safari 16.4 would do.";
     $("trouble").hidden = false;
     return;
   }
-  show((heads.length - 1) >> 1);
+  if (!deep) withoutSolid("This browser has no WebGL 2, so there is no 3-D view; every layer is shown from above.");
+  await show(heads.findLastIndex(head => head.passes));
+  if (deep) readSolid();
 }
 start();

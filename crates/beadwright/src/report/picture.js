@@ -1,39 +1,10 @@
 // Drawing one layer on a canvas.
 
-const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
 const CHUNKS = 240;
-// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
-const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
-
-const picture = document.getElementById("picture");
+const picture = $("picture");
 const view = { scale: 1, x: 0, y: 0, width: 0, height: 0, fitted: true };
-const shown = { layer: null, index: 0, until: Infinity, byOrder: false, heat: false, warm: false, width: true, travels: true, ends: true, outline: true };
-let colours = {};
-
-function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  const names = ["stage", "slice", "outline", "travel", "contour", "infill", "other", "start", "end", "mark", "text", "soft", "accent", "line"];
-  colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
-  colours.kinds = [colours.contour, colours.infill, colours.other].map(hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16)));
-}
-
-const rgb = c => `rgb(${c.map(Math.round).join(" ")})`;
-const mix = (c, to, part) => c.map((v, i) => v + (to[i] - v) * part);
-const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
-
-function rampAt(part, ramp = RAMP) {
-  const at = Math.min(Math.max(part, 0), 1) * (ramp.length - 1), i = Math.min(Math.floor(at), ramp.length - 2);
-  return mix(ramp[i], ramp[i + 1], at - i);
-}
-
-// The coldest and the hottest start of all passes, °C.
-const warmth = data.warmth.flatMap(({ starts }) => starts).reduce(([low, high], t) => [Math.min(low, t), Math.max(high, t)], [Infinity, -Infinity]);
-
-// The colour of a whole pass: its kind, or how warm the metal is where it begins.
-function plainColour(pass) {
-  if (!shown.warm || pass.celsius === undefined) return colours.kinds[pass.kind];
-  return rampAt((pass.celsius - warmth[0]) / Math.max(warmth[1] - warmth[0], 1), EMBER);
-}
+// `by` is a key of CHOICES; `picked` { layer, pass } and `mark` { layer, x, y } are pointed out.
+const shown = { layer: null, index: 0, until: Infinity, by: "kind", width: true, travels: true, ends: true, outline: true, picked: null, mark: null };
 
 // The whole part in the middle; the same for all layers, so that they can be compared.
 const partBox = heads.reduce((b, h) => h.points ? {
@@ -91,22 +62,22 @@ function strokes(pass, layer) {
   if (along.length > 1) {
     const list = [];
     for (let i = 0; i + 1 < times.length && (!i || times[i] < until); i++) {
-      const colour = shown.byOrder ? rampAt((times[i] + times[i + 1]) / 2 / layer.seconds) : plainColour(pass);
+      const colour = colourOf(pass, i, (times[i] + times[i + 1]) / 2, layer);
       const end = times[i + 1] > until ? pointAt(pass, i, until) : [pass.xy[2 * i + 2], pass.xy[2 * i + 3]];
       list.push({ path: pathOf([pass.xy[2 * i], pass.xy[2 * i + 1], ...end]), colour, wide: after(pass, i)[0] });
     }
     return list;
   }
-  if (!shown.byOrder) {
-    if (until >= pass.end) return [{ path: pass.path ??= pathOf(pass.xy), colour: plainColour(pass), wide }];
-    return [{ path: between(pass, pass.start, until).path, colour: plainColour(pass), wide }];
+  if (!CHOICES[shown.by].flows) {
+    const path = until >= pass.end ? pass.path ??= pathOf(pass.xy) : between(pass, pass.start, until).path;
+    return [{ path, colour: colourOf(pass, 0, pass.start, layer), wide }];
   }
   const step = layer.seconds / CHUNKS || 1, list = [];
   const count = Math.max(1, Math.round((pass.end - pass.start) / step)), chunk = (pass.end - pass.start) / count;
   for (let k = 0; k < count; k++) {
     const from = pass.start + k * chunk, to = Math.min(from + chunk, until);
     if (k && from >= until) break;
-    list.push({ path: between(pass, from, to).path, colour: rampAt((from + to) / 2 / layer.seconds), wide });
+    list.push({ path: between(pass, from, to).path, colour: colourOf(pass, 0, (from + to) / 2, layer), wide });
   }
   return list;
 }
@@ -128,6 +99,10 @@ function drawBeads(ctx, passes, layer) {
       continue;
     }
     stroke(wide, c => mix(c, BLACK, 0.34));
+    if (hurried()) {
+      stroke(0.8 * wide, c => c);
+      continue;
+    }
     const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), 9);
     for (let k = 0; k < rings; k++) {
       const part = k / (rings - 1), width = (1 - part) * Math.max(wide - 1.6 * pixel, 0.85 * wide) + part * 0.22 * wide;
@@ -192,6 +167,28 @@ function drawWarnings(ctx, warnings) {
   }
 }
 
+// The pass below the pointer.
+function drawPicked(ctx, pass) {
+  pass.path ??= pathOf(pass.xy);
+  const wide = Math.max(0.4 * pass.along[0][0], 3 / view.scale);
+  for (const [width, colour] of [[wide + 2.4 / view.scale, colours.stage], [wide, colours.accent]]) {
+    ctx.lineWidth = width;
+    ctx.strokeStyle = colour;
+    ctx.stroke(pass.path);
+  }
+}
+
+// The place that a warning is about.
+function drawMark(ctx, { x, y }) {
+  for (const [width, colour] of [[6, colours.stage], [2.6, colours.mark]]) {
+    ctx.beginPath();
+    ctx.arc(x, y, 16 / view.scale, 0, 2 * Math.PI);
+    ctx.lineWidth = width / view.scale;
+    ctx.strokeStyle = colour;
+    ctx.stroke();
+  }
+}
+
 function drawScaleBar(ctx) {
   const most = 140 / view.scale, power = 10 ** Math.floor(Math.log10(most));
   const length = [5, 2, 1].find(f => f * power <= most) * power, x = 16, y = view.height - 16, end = x + length * view.scale;
@@ -226,16 +223,20 @@ function draw() {
   ctx.fillStyle = colours.slice;
   ctx.fill(layer.outline, "evenodd");
   const passes = layer.passes.filter(pass => pass.xy.length && (pass.start < shown.until || pass.end <= shown.until));
-  if (shown.heat && layer.map) drawMap(ctx, layer.map, view.scale);
+  const heat = shown.by === "heat" && layer.map;
+  if (heat) drawMap(ctx, layer.map, view.scale);
   else drawBeads(ctx, passes, layer);
   if (shown.outline) {
     ctx.strokeStyle = colours.outline;
     ctx.lineWidth = 1.4 / view.scale;
     ctx.stroke(layer.outline);
   }
-  if (shown.travels && !shown.heat) drawTravels(ctx, passes);
-  if (shown.ends && !shown.heat) drawEnds(ctx, passes);
+  if (shown.travels && !heat) drawTravels(ctx, passes);
+  if (shown.ends && !heat) drawEnds(ctx, passes);
   drawWarnings(ctx, layer.warnings);
+  const picked = shown.picked?.layer === shown.index && layer.passes[shown.picked.pass];
+  if (picked) drawPicked(ctx, picked);
+  if (shown.mark?.layer === shown.index) drawMark(ctx, shown.mark);
   const last = passes.at(-1);
   if (last && shown.until < layer.seconds) drawTorch(ctx, last);
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -244,7 +245,7 @@ function draw() {
 
 let waiting = 0;
 function redraw() {
-  waiting ||= requestAnimationFrame(() => { waiting = 0; draw(); });
+  waiting ||= requestAnimationFrame(() => { waiting = 0; draw(); drawSolid(); });
 }
 
 function resizeCanvas(canvas, width, height) {

@@ -15,12 +15,34 @@ async function paint(canvas, text) {
   drawMap(ctx, map, scale / ratio);
 }
 
+// A slider with a label for each of its places; nothing where there is but one.
+function slide(parent, labels, first, changed) {
+  if (labels.length < 2) return;
+  const row = make("div", parent, { className: "slide" });
+  const slider = make("input", row, { type: "range", min: 0, max: labels.length - 1, value: first, ariaLabel: "Layer" });
+  const label = make("span", row, { textContent: labels[first] });
+  slider.oninput = () => {
+    label.textContent = labels[slider.value];
+    changed(Number(slider.value));
+  };
+}
+
+// What is wider than the window says so.
+function hintAtWide(card) {
+  const hint = make("p", card, { className: "aside", textContent: "More to the right: scroll sideways →" });
+  card.before(hint);
+  card.tabIndex = 0;
+  const look = () => { hint.hidden = card.scrollWidth <= card.clientWidth + 1; };
+  look();
+  window.addEventListener("resize", look);
+}
+
 function showMaps(card) {
   const data = JSON.parse(card.querySelector("script").textContent);
   const key = make("div", card, { className: "key" });
   const [low, high] = data.key ?? ["0", "2 × bead height"];
   key.append(low);
-  drawHeatKey(make("canvas", key, { width: 160, height: 12 }));
+  drawKey(make("canvas", key, { width: 160, height: 12 }), part => heatAt(FULL_SCALE * part));
   key.append(high);
   if (!data.key) {
     make("i", key);
@@ -34,16 +56,7 @@ function showMaps(card) {
   });
   let at = data.labels.length >> 1;
   const show = () => canvases.forEach((canvas, k) => paint(canvas, data.columns[k].maps[at]));
-  if (data.labels.length > 1) {
-    const row = make("div", card, { className: "slide" });
-    const slider = make("input", row, { type: "range", min: 0, max: data.labels.length - 1, value: at });
-    const label = make("span", row, { textContent: data.labels[at] });
-    slider.oninput = () => {
-      at = Number(slider.value);
-      label.textContent = data.labels[at];
-      show();
-    };
-  }
+  slide(card, data.labels, at, to => { at = to; show(); });
   show();
   window.addEventListener("resize", show);
 }
@@ -65,3 +78,5 @@ function sortBy(table, column) {
 
 document.querySelectorAll("table").forEach(table =>
   [...table.rows[0].cells].forEach((head, column) => { head.onclick = () => sortBy(table, column); }));
+
+document.querySelectorAll(".card.wide, .card.drawn").forEach(hintAtWide);

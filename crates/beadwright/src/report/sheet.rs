@@ -1,6 +1,6 @@
 //! A page of pictures and tables: `compare.html`, `simulate.html` and the pages of `reproduce`.
 
-use super::{encode, escape};
+use super::{encode, escape, words};
 use crate::deposit::Picture;
 use crate::template;
 
@@ -37,14 +37,30 @@ impl Sheet {
             format!("<td{}>{}</td>", if *best { " class=\"best\"" } else { "" }, escape(text))
         };
         let row = |row: &Row| format!("<tr>{}</tr>", row.iter().map(cell).collect::<String>());
-        let head: String = head.iter().map(|h| format!("<th>{}</th>", escape(h))).collect();
+        let head: String = head.iter().map(|h| format!("<th>{}</th>", words::headed(h))).collect();
         let rows: Vec<String> = rows.iter().map(row).collect();
-        self.push(&format!("<div class=\"card\"><table><tr>{head}</tr>\n{}</table></div>", rows.join("\n")))
+        self.push(&format!("<div class=\"card wide\"><table><tr>{head}</tr>\n{}</table></div>", rows.join("\n")))
     }
 
     /// A finished SVG.
     pub fn svg(&mut self, svg: &str) -> &mut Self {
-        self.push(&format!("<div class=\"card\">{svg}</div>"))
+        self.push(&format!("<div class=\"card drawn\">{svg}</div>"))
+    }
+
+    /// Beads in 3-D, any two of the columns side by side under one slider and one camera; the layers are those of
+    /// [`encode::shape`], and `labels` name the positions of the slider.
+    pub fn beads(&mut self, labels: &[String], columns: &[(String, Vec<String>)]) -> &mut Self {
+        let list = |texts: Vec<String>| texts.join(",\n");
+        // Base64 needs no escaping.
+        let layers = |layers: &[String]| list(layers.iter().map(|layer| format!("\"{layer}\"")).collect());
+        let column = |(name, found): &(String, Vec<String>)| {
+            format!("{{\"name\":{},\"layers\":[{}]}}", json(name), layers(found))
+        };
+        let labels = list(labels.iter().map(|label| json(label)).collect());
+        let columns = list(columns.iter().map(column).collect());
+        self.push(&format!(
+            "<div class=\"card beads\"><script type=\"application/json\">{{\"labels\":[{labels}],\"columns\":[{columns}]}}</script></div>"
+        ))
     }
 
     /// Finished SVGs side by side, each with what it shows.
@@ -92,9 +108,26 @@ impl Sheet {
             ("lead", escape(&self.lead)),
             ("css", include_str!("sheet.css").to_owned()),
             ("body", self.body.clone()),
-            ("js", [include_str!("inflate.js"), include_str!("heat.js"), include_str!("sheet.js")].concat()),
+            ("js", self.scripts()),
         ];
         template::expand(include_str!("sheet.html"), &values)
+    }
+
+    /// Those of the 3-D view only where there is one.
+    fn scripts(&self) -> String {
+        let deep = [
+            include_str!("layers.js"),
+            include_str!("camera.js"),
+            include_str!("steer.js"),
+            include_str!("strands.js"),
+            include_str!("shaders.js"),
+            include_str!("scene.js"),
+            include_str!("pace.js"),
+            include_str!("twins.js"),
+        ];
+        let flat = [include_str!("inflate.js"), include_str!("heat.js"), include_str!("sheet.js")];
+        let deep = deep.iter().filter(|_| self.body.contains("class=\"card beads\""));
+        flat.iter().chain(deep).copied().collect()
     }
 
     fn push(&mut self, html: &str) -> &mut Self {

@@ -1,6 +1,7 @@
 //! The words and tables of the page, as HTML.
 
 use super::escape;
+use super::words::hinted;
 use crate::bead::Overlap;
 use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
@@ -9,13 +10,14 @@ use crate::model::RepairReport;
 use crate::number::hours;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
+use crate::warning::Warning;
 
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
     let m = &summary.metrics;
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
-        count(m.layers, "layer", "layers"),
+        count(header.layers, "layer", "layers") + &empty(header, m),
         count(m.passes, "pass", "passes"),
         escape(&header.strategy),
         metres(m.deposited_length_mm),
@@ -23,6 +25,14 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         escape(&profile.wire.material),
         hours(m.total_time_s)
     )
+}
+
+/// How many of the layers hold nothing, in brackets.
+fn empty(header: &Header, m: &Metrics) -> String {
+    match header.layers.saturating_sub(m.layers) {
+        0 => String::new(),
+        empty => format!(" ({empty} of them empty)"),
+    }
 }
 
 /// The badge beside the heading.
@@ -34,17 +44,19 @@ pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
 }
 
 /// The totals of the plan.
-pub(super) fn totals(summary: &Summary, figures: Option<&Figures>) -> String {
+pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figures: Option<&Figures>) -> String {
     let m: &Metrics = &summary.metrics;
+    let [starts, time, wire] =
+        if profile.prints() { ["Starts", "Time extruding", "Filament"] } else { ["Arc starts", "Arc time", "Wire"] };
     let mut rows = vec![
-        ("Layers", m.layers.to_string()),
+        ("Layers", header.layers.to_string() + &empty(header, m)),
         ("Passes", m.passes.to_string()),
-        ("Arc starts", m.arc_starts.to_string()),
+        (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),
         ("Travel length", metres(m.travel_length_mm)),
-        ("Arc time", hours(m.arc_time_s)),
+        (time, hours(m.arc_time_s)),
         ("Total time", hours(m.total_time_s)),
-        ("Wire", format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
+        (wire, format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
     rows.push(("Part volume", volume(m.part_volume_mm3)));
@@ -63,8 +75,11 @@ pub(super) fn process(header: &Header, profile: &Profile) -> String {
     let Profile { wire, process: p, bead, layers, fill, travel, .. } = profile;
     let mut rows = vec![
         ("Profile", header.profile.clone()),
-        ("Wire", format!("{}, ⌀ {} mm, {} g/cm³", wire.material, wire.diameter, wire.density)),
-        ("Wire feed speed", format!("{} m/min", p.wire_feed_speed)),
+        (
+            if profile.prints() { "Filament" } else { "Wire" },
+            format!("{}, ⌀ {} mm, {} g/cm³", wire.material, wire.diameter, wire.density),
+        ),
+        (if profile.prints() { "Filament feed" } else { "Wire feed speed" }, format!("{} m/min", p.wire_feed_speed)),
         ("Deposition speed", format!("{} mm/s", p.deposition_speed)),
     ];
     rows.extend(p.current.map(|current| ("Current", format!("{current} A"))));
@@ -78,13 +93,14 @@ pub(super) fn process(header: &Header, profile: &Profile) -> String {
     if fill.machining_allowance != 0.0 {
         rows.push(("Machining allowance", format!("{} mm", fill.machining_allowance)));
     }
-    rows.extend([
+    let welding = [
         ("Shielding gas", format!("{}, {} L/min", p.gas, p.gas_flow)),
         ("Gas before / after the arc", format!("{} s / {} s", p.gas_preflow, p.gas_postflow)),
         ("Wait at arc start / end", format!("{} s / {} s", p.arc_start_delay, p.arc_end_delay)),
         ("Contact tip to work", format!("{} mm", p.ctwd)),
-        ("Travel", format!("{} mm/s, {} mm above the layer", travel.speed, travel.clearance)),
-    ]);
+    ];
+    rows.extend(welding.into_iter().filter(|_| !profile.prints()));
+    rows.push(("Travel", format!("{} mm/s, {} mm above the layer", travel.speed, travel.clearance)));
     table(&rows)
 }
 
@@ -147,7 +163,9 @@ pub(super) fn files(files: &[String]) -> String {
 
 /// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
 pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
-    let item = |(source, text): &(&str, String)| format!("<li><b>{source}</b> {}</li>", escape(text));
+    let item = |(source, text, place): &Remark| {
+        format!("<li><b>{source}</b> {}{}</li>", escape(text), place.as_ref().map(link).unwrap_or_default())
+    };
     let items: Vec<String> = remarks(summary, repair).iter().map(item).collect();
     if items.is_empty() {
         return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
@@ -157,16 +175,30 @@ pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
-/// Where a remark comes from, and the remark.
-fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<(&'static str, String)> {
-    let model = repair.sentences().into_iter().map(|s| ("Model", s));
-    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence()));
-    let process = summary.notes.iter().map(|s| ("Process", s.clone()));
+/// Where a remark comes from, the remark, and the place that it tells of.
+type Remark = (&'static str, String, Option<Warning>);
+
+fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<Remark> {
+    let model = repair.sentences().into_iter().map(|s| ("Model", s, None));
+    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some(w.largest)));
+    let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
     model.chain(layers).chain(process).collect()
 }
 
+/// A button that shows the place of a warning.
+fn link(warning: &Warning) -> String {
+    let (layer, place) = (warning.layer, warning.place);
+    format!(
+        "<button data-layer=\"{layer}\" data-x=\"{:.2}\" data-y=\"{:.2}\">Show on layer {}</button>",
+        place.x,
+        place.y,
+        layer + 1
+    )
+}
+
 fn table(rows: &[(&str, String)]) -> String {
-    let row = |(name, value): &(&str, String)| format!("<tr><th>{name}</th><td>{}</td></tr>", escape(value));
+    let name = |name: &str| name.split(", ").map(hinted).collect::<Vec<_>>().join(", ");
+    let row = |(key, value): &(&str, String)| format!("<tr><th>{}</th><td>{}</td></tr>", name(key), escape(value));
     format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
 }
 

@@ -1,0 +1,64 @@
+// What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
+
+const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
+// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
+const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
+const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
+const KINDS = ["contour", "infill", "skeleton", "wall"];
+let colours = {};
+
+function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  const names = ["stage", "slice", "outline", "travel", "contour", "infill", "other", "start", "end", "mark", "text", "soft", "accent", "line", "wait"];
+  colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
+  colours.kinds = ["contour", "infill", "other"].map(name => channels(colours[name]));
+}
+
+const channels = hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));
+const rgb = c => `rgb(${c.map(Math.round).join(" ")})`;
+const mix = (c, to, part) => c.map((v, i) => v + (to[i] - v) * part);
+
+function rampAt(part, ramp = RAMP) {
+  const at = Math.min(Math.max(part, 0), 1) * (ramp.length - 1), i = Math.min(Math.floor(at), ramp.length - 2);
+  return mix(ramp[i], ramp[i + 1], at - i);
+}
+
+const metres = mm => mm >= 1000 ? `${(mm / 1000).toFixed(2)} m` : `${mm.toFixed(0)} mm`;
+const area = mm2 => mm2 >= 1e5 ? `${(mm2 / 100).toFixed(1)} cm²` : `${mm2.toFixed(1)} mm²`;
+function clock(seconds) {
+  const s = Math.round(seconds), two = v => String(v).padStart(2, "0");
+  return s < 3600 ? `${Math.floor(s / 60)} min ${two(s % 60)} s` : `${Math.floor(s / 3600)} h ${two(Math.floor(s / 60) % 60)} min ${two(s % 60)} s`;
+}
+
+// The coldest and the hottest start of all passes, °C.
+const warmth = data.warmth.flatMap(({ starts }) => starts).reduce(([low, high], t) => [Math.min(low, t), Math.max(high, t)], [Infinity, -Infinity]);
+
+// `field` is the number of the value in the shader of scene.js; `flows` says that it changes within a piece.
+const CHOICES = {
+  kind: { field: 0 },
+  order: { field: 1, flows: true, ramp: RAMP, range: [0, 1], of: (pass, i, t, layer) => t / (layer.seconds || 1), tell: part => part ? "last" : "first" },
+  width: { field: 2, ramp: RAMP, range: data.ranges.width, of: (pass, i) => after(pass, i)[0], tell: mm => `${mm.toFixed(2)} mm` },
+  speed: { field: 3, ramp: RAMP, range: data.ranges.speed, of: (pass, i) => after(pass, i)[1], tell: v => `${v.toFixed(1)} mm/s` },
+  time: { field: 4, flows: true, ramp: RAMP, range: [0, total], of: (pass, i, t, layer) => whenOf(layer, t), tell: clock },
+  warm: { field: 5, ramp: EMBER, range: warmth, of: pass => pass.celsius, tell: celsius => `${celsius} °C` },
+  heat: { field: 0 },
+};
+
+// Where a value lies in a range, 0 to 1; the middle where there is but one value.
+const partOf = (value, [low, high]) => high > low ? (value - low) / (high - low) : 0.5;
+
+// The colour of the piece after a point; `t` is its time in the layer, s.
+function colourOf(pass, i, t, layer) {
+  const choice = CHOICES[shown.by], value = choice.of?.(pass, i, t, layer);
+  return value === undefined ? colours.kinds[Math.min(pass.kind, 2)] : rampAt(partOf(value, choice.range), choice.ramp);
+}
+
+function showKey() {
+  const { ramp, range, tell } = CHOICES[shown.by];
+  $("key-kind").hidden = Boolean(ramp) || shown.by === "heat";
+  $("key-heat").hidden = shown.by !== "heat";
+  $("key-ramp").hidden = !ramp;
+  if (!ramp) return;
+  [$("ramp-low").textContent, $("ramp-high").textContent] = range.map(tell);
+  drawKey($("ramp"), part => rampAt(part, ramp));
+}

@@ -1,0 +1,41 @@
+// The layers of the page: what stands in it as JSON, when each layer is welded, and the layers read last.
+
+const KEPT = 48;
+const $ = id => document.getElementById(id);
+const data = JSON.parse($("data").textContent);
+const heads = data.layers.map(readHead);
+// Arc, wait and the rest of every layer, s: when it begins, how long it lasts, and the time of the whole build.
+const total = data.times.reduce((begins, parts, i) => {
+  const lasts = parts.reduce((sum, part) => sum + part, 0);
+  Object.assign(heads[i], { begins, lasts });
+  return begins + lasts;
+}, 0);
+data.warmth.forEach(({ starts, wait }, i) => Object.assign(heads[i], { hottest: Math.max(0, ...starts), wait }));
+
+// A layer with its temperatures and its place in time.
+async function readPlaced(index) {
+  const layer = await readLayer(data.layers[index], heads[index]);
+  layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
+  const { begins, lasts } = heads[index];
+  return { ...layer, begins, lasts };
+}
+
+// A layer with its height field too, if it has one.
+async function readWhole(index) {
+  const [layer, map] = await Promise.all([readPlaced(index), readMap(data.maps[index])]);
+  return { ...layer, map };
+}
+
+// The time of the build at a time with the arc on in a layer, s; what a layer waits and travels is spread over it.
+const whenOf = (layer, t) => layer.begins + (layer.seconds > 0 ? t / layer.seconds : 0) * layer.lasts;
+
+const kept = new Map();
+
+// The promise of a layer; the last ones are kept.
+function layerAt(index) {
+  const layer = kept.get(index) ?? readWhole(index);
+  kept.delete(index);
+  kept.set(index, layer);
+  if (kept.size > KEPT) kept.delete(kept.keys().next().value);
+  return layer;
+}
