@@ -16,6 +16,7 @@ MOST = 1.2
 CASES = [
     ("propeller, compound", "propeller", "crates/beadwright/benches/fdm-5.39x2.toml"),
     ("vase, compound", "vase", "crates/beadwright/benches/fdm-5.39x2.toml"),
+    ("cross, loop", "cross", "cmt-al2319-kuka"),
 ]
 
 
