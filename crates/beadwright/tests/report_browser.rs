@@ -91,10 +91,16 @@ fn layers_and_views_are_shared_by_both_pictures() {
     let Some(told) = ask(&page(&plan, &profile), script) else { return };
     assert_eq!(told["first"], plan.layers.len() - 1, "the whole part is shown first");
     assert!(told["now"].as_str().unwrap().starts_with(&format!("5 of {}", plan.layers.len())));
-    assert_eq!(told["ramps"][1], serde_json::json!(["width", false, "7.54 mm"]));
+    let pieces = || plan.layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| pass.segments());
+    let least = pieces().map(|piece| piece.width).fold(f64::MAX, f64::min);
+    assert_eq!(told["ramps"][1], serde_json::json!(["width", false, format!("{least:.2} mm")]));
     assert_eq!(told["ramps"][4][1], true);
     let tip = told["tip"].as_str().unwrap();
-    assert!(tip.contains("Layer 5, pass 1 of") && tip.contains("7.54 mm wide") && tip.contains("10.5 mm/s"), "{tip}");
+    let first = plan.layers[4].passes[0].segments().next().unwrap();
+    let speed = profile.process.speed_at(first.pace);
+    for word in ["Layer 5, pass 1 of", &format!("{:.2} mm wide", first.width), &format!("{speed:.1} mm/s")] {
+        assert!(tip.contains(word), "{word}: {tip}");
+    }
     // Null where the browser has no WebGL 2.
     assert!(told["layers"].is_null() || told["layers"] == plan.layers.len());
 }

@@ -17,13 +17,7 @@ async function readPlaced(index) {
   const layer = await readLayer(data.layers[index], heads[index]);
   layer.passes.forEach((pass, i) => { pass.celsius = data.warmth[index]?.starts[i]; });
   const { begins, lasts } = heads[index];
-  return { ...layer, begins, lasts };
-}
-
-// A layer with its height field too, if it has one.
-async function readWhole(index) {
-  const [layer, map] = await Promise.all([readPlaced(index), readMap(data.maps[index])]);
-  return { ...layer, map };
+  return { ...layer, index, begins, lasts };
 }
 
 // The time of the build at a time with the arc on in a layer, s; what a layer waits and travels is spread over it.
@@ -33,7 +27,7 @@ const kept = new Map();
 
 // The promise of a layer; the last ones are kept.
 function layerAt(index) {
-  const layer = kept.get(index) ?? readWhole(index);
+  const layer = kept.get(index) ?? readPlaced(index);
   kept.delete(index);
   kept.set(index, layer);
   if (kept.size > KEPT) kept.delete(kept.keys().next().value);

@@ -1,7 +1,7 @@
 // How much of a part is drawn, so that a picture takes no longer than it may.
 
 // Triangles at a rate that was measured: how long a picture may take while something moves, and at rest, ms.
-const MOVING = 25, RESTING = 1200, PRETTY = 300;
+const MOVING = 15, RESTING = 1200, PRETTY = 300;
 
 // `pieces` of beads, of these `outside` along outlines; `rate` is the time of a triangle, ms.
 const newPace = () => ({ pieces: 0, outside: 0, rate: 1e-4, drawing: false, again: false });

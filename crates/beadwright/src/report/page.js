@@ -64,7 +64,6 @@ async function show(index) {
   drawBars();
   drawTimeline();
   stirSolid();
-  for (const near of [index + 1, index - 1]) if (near >= 0 && near < heads.length) layerAt(near);
 }
 
 const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, share: v => `${v.toFixed(1)} %`, voids: v => `${v.toFixed(2)} %`, overfill: v => `${v.toFixed(2)} %`, hottest: v => `${v} °C`, wait: clock };

@@ -211,6 +211,14 @@ function drawScaleBar(ctx) {
   ctx.fillText(text, (x + end) / 2, y - 9);
 }
 
+// The height field of a layer is read when it is to be seen.
+async function fetchMap(layer) {
+  if (layer.map !== undefined) return;
+  layer.map = null;
+  layer.map = await readMap(data.maps[layer.index]);
+  redraw();
+}
+
 function draw() {
   const ctx = picture.getContext("2d"), ratio = picture.width / view.width || 1, layer = shown.layer;
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -223,6 +231,7 @@ function draw() {
   ctx.fillStyle = colours.slice;
   ctx.fill(layer.outline, "evenodd");
   const passes = layer.passes.filter(pass => pass.xy.length && (pass.start < shown.until || pass.end <= shown.until));
+  if (shown.by === "heat") fetchMap(layer);
   const heat = shown.by === "heat" && layer.map;
   if (heat) drawMap(ctx, layer.map, view.scale);
   else drawBeads(ctx, passes, layer);

@@ -94,7 +94,11 @@ function drawSolid() {
 // Draws while something moves, coarsely if need be, and once more when it rests.
 function stirSolid() {
   clearTimeout(space.moving);
-  space.moving = setTimeout(() => { space.moving = 0; redraw(); }, 250);
+  space.moving = setTimeout(() => {
+    space.moving = 0;
+    redraw();
+    for (const near of [shown.index + 1, shown.index - 1]) if (heads[near]) layerAt(near);
+  }, 250);
   redraw();
 }
 
