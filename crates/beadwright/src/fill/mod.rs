@@ -74,6 +74,17 @@ pub trait Strategy: Sync {
     /// Lays passes into one island.
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill;
 
+    /// Lays passes into an island that is the same on several layers, [`Self::period`] apart; their settings differ in the
+    /// layer only.
+    fn fill_layers(&self, island: &Polygon, layers: &[FillSettings]) -> Vec<Fill> {
+        layers.iter().map(|settings| self.fill(island, settings)).collect()
+    }
+
+    /// After so many layers of the same shape most of the work is the same; `None` where each layer is one of its own.
+    fn period(&self) -> Option<usize> {
+        None
+    }
+
     /// The region of an island that is filled with scan lines; empty where none are laid.
     fn infill(&self, _island: &Polygon, _settings: &FillSettings) -> Region {
         Region::default()

@@ -13,6 +13,7 @@ use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
+use std::cell::OnceCell;
 
 /// A slice with the passes of its islands, not yet in order.
 #[derive(Clone)]
@@ -26,8 +27,8 @@ pub(super) struct Filled {
     pub(super) shared: bool,
 }
 
-/// Fills a batch of slices in parallel; `datum` is the place of the part. A slice like one before it takes its passes from
-/// there, where the strategy lays the same on every layer: prismatic parts are filled once.
+/// Fills a batch of slices in parallel; `datum` is the place of the part. Slices of the same shape are filled together:
+/// prismatic parts once where the strategy lays the same on every layer, and a few times where layers take turns.
 pub(super) fn fill_batch(
     batch: Vec<Planned>,
     strategy: &dyn Strategy,
@@ -35,30 +36,60 @@ pub(super) fn fill_batch(
     datum: DVec2,
     task: &Task,
 ) -> Result<Vec<Filled>, Cancelled> {
-    let like: Vec<usize> = (0..batch.len()).map(|i| first_like(&batch, i, strategy, profile)).collect();
-    let fill = |(i, layer): (usize, &Planned)| {
+    let fill = |alike: &Vec<usize>| {
         task.check()?;
-        Ok((like[i] == i).then(|| fill_planned(layer, strategy, profile, datum)))
+        let layers: Vec<&Planned> = alike.iter().map(|&i| &batch[i]).collect();
+        Ok(fill_alike(&layers, strategy, profile, datum))
     };
-    let mut filled: Vec<Option<Filled>> = batch.par_iter().enumerate().map(fill).collect::<Result<_, _>>()?;
-    for (i, &first) in like.iter().enumerate().filter(|(i, first)| i != *first) {
-        filled[i] = filled[first].as_mut().map(|first| first.shared_with(&batch[i].slice));
-    }
-    Ok(filled.into_iter().flatten().collect())
+    let filled = groups(&batch, strategy, profile).par_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
+    let mut filled: Vec<Filled> = filled.into_iter().flatten().collect();
+    filled.sort_by_key(|filled| filled.slice.index);
+    Ok(filled)
 }
 
-/// The first slice of a batch that is filled like the one of number `i`; that may be itself.
-fn first_like(batch: &[Planned], i: usize, strategy: &dyn Strategy, profile: &Profile) -> usize {
+/// The slices of a batch, those together that are filled together.
+fn groups(batch: &[Planned], strategy: &dyn Strategy, profile: &Profile) -> Vec<Vec<usize>> {
     let settings = |i: usize| FillSettings { layer: 0, ..settings_of(&batch[i], profile) };
     // Short passes are told by the time that they take.
     let rate = |i: usize| profile.process.at_layer(batch[i].slice.index).rate();
-    let alike = |k: &usize| {
-        batch[*k].slice.islands == batch[i].slice.islands
-            && batch[*k].slice.height == batch[i].slice.height
-            && settings(*k) == settings(i)
-            && rate(*k) == rate(i)
+    let period = if strategy.repeats() { Some(1) } else { strategy.period() };
+    let turn = |i: usize| period.map_or(batch[i].slice.index, |period| batch[i].slice.index % period);
+    let alike = |k: usize, i: usize| {
+        turn(k) == turn(i)
+            && batch[k].slice.islands == batch[i].slice.islands
+            && batch[k].slice.height == batch[i].slice.height
+            && settings(k) == settings(i)
+            && rate(k) == rate(i)
     };
-    if strategy.repeats() { (0..i).find(alike).unwrap_or(i) } else { i }
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for i in 0..batch.len() {
+        match groups.iter_mut().find(|group| alike(group[0], i)) {
+            Some(group) => group.push(i),
+            None => groups.push(vec![i]),
+        }
+    }
+    groups
+}
+
+/// Fills slices of the same shape.
+fn fill_alike(layers: &[&Planned], strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Vec<Filled> {
+    let settings: Vec<FillSettings> =
+        layers.iter().map(|layer| FillSettings { datum, ..settings_of(layer, profile) }).collect();
+    if let ([layer, others @ ..], true) = (layers, strategy.repeats()) {
+        let mut first = fill_planned(layer, strategy, profile, datum);
+        let others: Vec<Filled> = others.iter().map(|other| first.shared_with(&other.slice)).collect();
+        return std::iter::once(first).chain(others).collect();
+    }
+    let islands = layers.first().map_or(0, |layer| layer.slice.islands.len());
+    let fills: Vec<OnceCell<Vec<Fill>>> = (0..islands).map(|_| OnceCell::new()).collect();
+    let fill = |(k, layer): (usize, &&Planned)| {
+        let own = |i: usize, island: &Polygon| {
+            let all = fills[i].get_or_init(|| strategy.fill_layers(island, &settings));
+            all[k].clone()
+        };
+        fill_layer(layer.slice.clone(), own, strategy, profile, &settings[k])
+    };
+    layers.iter().enumerate().map(fill).collect()
 }
 
 impl Filled {
@@ -81,40 +112,48 @@ fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a>
 /// Fills a slice; `datum` is the place of the part.
 pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
     let settings = FillSettings { datum, ..settings_of(layer, profile) };
-    fill_layer(layer.slice.clone(), strategy, profile, &settings)
+    let fill = |_: usize, island: &Polygon| strategy.fill(island, &settings);
+    fill_layer(layer.slice.clone(), fill, strategy, profile, &settings)
 }
 
-fn fill_layer(mut slice: Slice, strategy: &dyn Strategy, profile: &Profile, settings: &FillSettings) -> Filled {
+/// Fills a slice; `fill` gives what the strategy lays into an island of a number.
+fn fill_layer(
+    mut slice: Slice,
+    fill: impl Fn(usize, &Polygon) -> Fill,
+    strategy: &dyn Strategy,
+    profile: &Profile,
+    settings: &FillSettings,
+) -> Filled {
     let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
-    for island in &slice.islands {
+    for (i, island) in slice.islands.iter().enumerate() {
         let thin = strategy.welds_thin_walls();
         let known = slice.warnings.len();
         let reached = reach(island, strategy.narrowest(settings), slice.index, &mut slice.warnings);
         if thin {
             slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
         }
-        let mut fill = if thin || reached > 0.0 {
-            sound_fill(island, strategy, settings, reached, &mut slice.warnings)
+        let mut own = if thin || reached > 0.0 {
+            sound_fill(fill(i, island), island, settings, reached, &mut slice.warnings)
         } else {
             Fill::default()
         };
-        if reached > 0.0 && fill.is_empty() {
+        if reached > 0.0 && own.is_empty() {
             // Wide enough for a bead, but with room for neither a ring nor a wall.
             let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
             let (kind, size) = (WarningKind::IslandTooSmall, island.area());
             slice.warnings.push(Warning { kind, layer: slice.index, place, size });
         }
-        for stage in &mut fill.stages {
+        for stage in &mut own.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
         let left_out = slice.warnings[known..].iter().any(|w| w.kind == WarningKind::IslandTooSmall);
-        let (covered, bare) = covered(&fill, island, profile, reached);
+        let (covered, bare) = covered(&own, island, profile, reached);
         planned_area += covered;
         if let Some(bare) = bare.filter(|_| !left_out) {
             let (kind, layer) = (WarningKind::Bare, slice.index);
             slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
         }
-        fills.push(fill);
+        fills.push(own);
     }
     Filled { slice, fills, planned_area, known: came_with, shared: false }
 }
@@ -137,15 +176,14 @@ fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f
     ((area - bare).max(0.0), inner.filter(|inner| inner.area > least))
 }
 
-/// The fill of an island by a strategy, or, where that cannot be welded, by contours, with a warning.
+/// The fill of an island by its strategy, or, where that cannot be welded, by contours, with a warning.
 fn sound_fill(
+    fill: Fill,
     island: &Polygon,
-    strategy: &dyn Strategy,
     settings: &FillSettings,
     reached: f64,
     warnings: &mut Vec<Warning>,
 ) -> Fill {
-    let fill = strategy.fill(island, settings);
     let Some(place) = unsound(&fill, island, settings, reached) else { return fill };
     let sound = |fill: &Fill| unsound(fill, island, settings, reached).is_none();
     warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });

@@ -20,7 +20,7 @@ const APART: f64 = 2.2;
 /// Side of the squares in which layers take turns to place flips, in stepovers.
 const FIELD: f64 = 4.0;
 /// After this many layers it is a square's turn again.
-const TURNS: i64 = 3;
+pub(super) const TURNS: i64 = 3;
 /// No other ring comes closer to the middle between two rings than this fraction of their distance.
 const BETWEEN: f64 = 0.35;
 

@@ -108,13 +108,36 @@ impl Strategy for OneLoop {
     }
 
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill {
-        let placed = steps(island, settings).into_iter();
-        let passes = placed.flat_map(|(steps, middle)| steps.lines.into_iter().map(move |line| pass(line, middle)));
-        let passes: Vec<Path> = passes.collect();
-        // A single loop begins where its seam was put; several begin wherever the travel is short.
-        let alone = matches!(&passes[..], [pass] if pass.closed);
-        Fill { stages: vec![passes], fixed_order: alone }
+        self.fill_layers(island, std::slice::from_ref(settings)).pop().unwrap_or_default()
     }
+
+    /// Only where loops begin differs between the layers.
+    fn fill_layers(&self, island: &Polygon, layers: &[FillSettings]) -> Vec<Fill> {
+        let Some(first) = layers.first() else { return Vec::new() };
+        let mut passes: Vec<Vec<Path>> = vec![Vec::new(); layers.len()];
+        for part in island.offset(first.machining_allowance, Join::ROUND).polygons() {
+            let (part, middle) = about_origin(part);
+            let settings = LoopSettings::of(first, middle);
+            let room = Room::of(&part, &settings);
+            let relaxed = Steps::relaxed_in(&room, &part, &settings).relaxed;
+            for (layer, passes) in layers.iter().zip(&mut passes) {
+                let settings = LoopSettings::of(layer, middle);
+                passes.extend(relaxed.iter().map(|line| pass(finish::finished(line, &room, &settings), middle)));
+            }
+        }
+        passes.into_iter().map(fill_of).collect()
+    }
+
+    /// Flips and spirals take turns.
+    fn period(&self) -> Option<usize> {
+        Some(2 * flips::TURNS as usize)
+    }
+}
+
+/// A single loop begins where its seam was put; several begin wherever the travel is short.
+fn fill_of(passes: Vec<Path>) -> Fill {
+    let alone = matches!(&passes[..], [pass] if pass.closed);
+    Fill { stages: vec![passes], fixed_order: alone }
 }
 
 /// The steps of an island with the middle of its bounding box as origin, and where that middle lies. A machining
@@ -270,13 +293,20 @@ pub struct Steps {
 impl Steps {
     /// Runs all steps for an island that lies around the origin.
     pub fn of(island: &Polygon, settings: &LoopSettings) -> Self {
+        let room = Room::of(island, settings);
+        let steps = Self::relaxed_in(&room, island, settings);
+        let lines = steps.relaxed.iter().map(|line| finish::finished(line, &room, settings)).collect();
+        Self { lines, ..steps }
+    }
+
+    /// All steps but the last, in the island's room.
+    fn relaxed_in(room: &Room, island: &Polygon, settings: &LoopSettings) -> Self {
         let split = split(island, &settings.thin_limits());
         let (mut rings, mut flips, mut paths) = (Vec::new(), Vec::new(), Vec::new());
-        let room = Room::of(island, settings);
         for part in &split.thick {
             // Usually the whole island is thick.
             let own =
-                if part == island { rings_of(&room, settings) } else { rings_of(&Room::of(part, settings), settings) };
+                if part == island { rings_of(room, settings) } else { rings_of(&Room::of(part, settings), settings) };
             // A thin wall tied to an open path would cost an arc start.
             let open = settings.spirals && split.thin.is_empty();
             match Some(&own).filter(|_| open).and_then(|own| spiral::spiral(own, settings)) {
@@ -291,10 +321,9 @@ impl Steps {
         }
         let step = settings.stepover / POINTS_PER_STEPOVER;
         let mut joined: Vec<Line> = tied(paths, &split, settings).iter().map(|line| line.resampled(step)).collect();
-        cells::set_widths(&mut joined, &room, settings);
-        let relaxed = relaxed(joined.clone(), &room, &split.open, settings);
-        let lines = relaxed.iter().map(|line| finish::finished(line, &room, settings)).collect();
-        Self { split, rings, flips, joined, relaxed, lines }
+        cells::set_widths(&mut joined, room, settings);
+        let relaxed = relaxed(joined.clone(), room, &split.open, settings);
+        Self { split, rings, flips, joined, relaxed, lines: Vec::new() }
     }
 }
 
