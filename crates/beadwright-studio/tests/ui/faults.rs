@@ -26,7 +26,7 @@ fn slivers() -> Vec<Ring> {
         let (way, middle) =
             (DVec2::from_angle(0.37 * k as f64), DVec2::new(10.0 * (k % 9) as f64 - 40.0, 4.0 * k as f64 - 40.0));
         let points = [middle, middle + 6.0 * way, middle + 6.0 * way + 1e-7, middle + 0.0006 * way.perp()];
-        Ring::new(if k % 2 == 0 { points.to_vec() } else { points[..3].to_vec() })
+        Ring::new(if k.is_multiple_of(2) { points.to_vec() } else { points[..3].to_vec() })
     };
     (0..20).map(slit).collect()
 }
