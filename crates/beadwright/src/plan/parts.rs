@@ -1,7 +1,8 @@
 //! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
 
 use super::clearance::{Clearance, Close, Watch};
-use super::{Header, PlanError, Sink, Summary, plan_into, slabs_at, strategy_of, warm};
+use super::warm::Warmth;
+use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, strategy_of, warm};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, PartRef};
@@ -29,11 +30,13 @@ pub fn parts_into<S: Sink + Send>(
             "process.layers: layers are numbered by the part, so it is not clear which are meant",
         ));
     }
-    let count = |(_, mesh): &(String, &Mesh)| -> Result<usize, PlanError<S::Error>> {
+    let foretold = |(_, mesh): &(String, &Mesh)| -> Result<(Warmth, usize), PlanError<S::Error>> {
         let warmth = warm::foretold(PartRef::Mesh(mesh), profile, task)?;
-        Ok(slabs_at(&warmth, mesh, profile, task)?.len())
+        let count = slabs_at(&warmth, mesh, profile, task)?.len();
+        Ok((warmth, count))
     };
-    let counts: Vec<usize> = parts.iter().map(count).collect::<Result<_, _>>()?;
+    let foretold = parts.iter().map(foretold).collect::<Result<Vec<_>, _>>()?;
+    let (warmths, counts): (Vec<Warmth>, Vec<usize>) = foretold.into_iter().unzip();
     let (layers, strategy) = (counts.iter().sum(), strategy_of(profile)?.name().to_owned());
     let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, layers };
     sink.begin(&header).map_err(PlanError::Sink)?;
@@ -41,10 +44,10 @@ pub fn parts_into<S: Sink + Send>(
     let mut row = Row { first: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
     let mut told = Told::of(profile);
     let mut volume = Some(0.0);
-    for ((part, mesh), count) in parts.iter().zip(&counts) {
+    for (((part, mesh), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(part);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_into(part, *mesh, profile, task, &mut watch)?;
+        let own = plan_at(warmth, part, PartRef::Mesh(mesh), profile, task, &mut watch)?;
         told.add(part, &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
