@@ -5,10 +5,12 @@
 pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
     const POWERS: [u64; 10] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
     let power = POWERS[decimals.min(9)];
-    let scaled = (value * power as f64).round();
     debug_assert!(value.is_finite());
-    let digits = scaled.abs() as u64;
-    if scaled < 0.0 {
+    let scaled = (value * power as f64).abs();
+    // Halves are rounded away from zero; a call of `round` costs more than all else here.
+    let whole = scaled as u64;
+    let digits = whole + u64::from(scaled - whole as f64 >= 0.5);
+    if value < 0.0 && digits > 0 {
         text.push('-');
     }
     push_digits(text, digits / power, 1);
@@ -34,7 +36,7 @@ fn push_digits(text: &mut String, mut value: u64, width: usize) {
         digits[start] = b'0' + (value % 10) as u8;
         value /= 10;
     }
-    text.extend(digits[start..].iter().map(|&d| char::from(d)));
+    text.push_str(std::str::from_utf8(&digits[start..]).unwrap_or_default());
 }
 
 /// Seconds as `1 h 02 min 03 s`.

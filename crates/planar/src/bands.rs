@@ -4,7 +4,6 @@
 //! boxes along x and y would cover each other wherever they run aslant.
 
 use glam::DVec2;
-use std::ops::Range;
 
 /// From one point to another, mm.
 pub type Piece = [DVec2; 2];
@@ -21,11 +20,18 @@ pub struct Bands {
     width: f64,
     /// The pieces in the frame of the axis.
     pieces: Vec<Piece>,
-    rounding: f64,
     /// Where each band begins in `items`.
     starts: Vec<usize>,
     /// The pieces of each band, by the place where they begin along it.
-    items: Vec<u32>,
+    items: Vec<Item>,
+}
+
+/// The number of a piece, and a box a little larger than it in the frame of the axis.
+#[derive(Clone, Copy, Default)]
+struct Item {
+    low: DVec2,
+    high: DVec2,
+    number: u32,
 }
 
 impl Bands {
@@ -42,31 +48,36 @@ impl Bands {
         // As wide as a piece reaches across on the average, so that each lies in few bands, and each band holds few.
         let mean = pieces.iter().map(|[a, b]| (a.y - b.y).abs()).sum::<f64>() / count;
         let width = mean.max(size.y / count).max(2.0 * rounding);
-        let mut bands = Self { axis, low: low.y, width, pieces, rounding, starts: Vec::new(), items: Vec::new() };
-        bands.sort((size.y / width) as usize + 1);
+        let mut bands = Self { axis, low: low.y, width, pieces, starts: Vec::new(), items: Vec::new() };
+        bands.sort(rounding, (size.y / width) as usize + 1);
         bands
     }
 
-    fn sort(&mut self, count: usize) {
+    fn sort(&mut self, rounding: f64, count: usize) {
+        let item = |(number, &[a, b]): (usize, &Piece)| Item {
+            low: a.min(b) - rounding,
+            high: a.max(b) + rounding,
+            number: number as u32,
+        };
+        let of = |item: &Item| self.band(item.low.y).min(count - 1)..self.band(item.high.y).min(count - 1) + 1;
         let mut starts = vec![0; count + 2];
-        for band in (0..self.pieces.len()).flat_map(|i| self.bands_of(i)) {
-            starts[band.min(count - 1) + 2] += 1;
+        for item in self.pieces.iter().enumerate().map(item) {
+            of(&item).for_each(|band| starts[band + 2] += 1);
         }
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut items = vec![0; starts[count + 1]];
-        for i in 0..self.pieces.len() {
-            for band in self.bands_of(i) {
-                let at = &mut starts[band.min(count - 1) + 1];
-                items[*at] = i as u32;
-                *at += 1;
+        let mut items = vec![Item::default(); starts[count + 1]];
+        for item in self.pieces.iter().enumerate().map(item) {
+            for band in of(&item) {
+                items[starts[band + 1]] = item;
+                starts[band + 1] += 1;
             }
         }
         starts.pop();
-        let begin = |i: &u32| self.along(*i as usize).start;
         for band in starts.windows(2) {
-            items[band[0]..band[1]].sort_unstable_by(|a, b| begin(a).total_cmp(&begin(b)).then(a.cmp(b)));
+            let by_begin = |a: &Item, b: &Item| a.low.x.total_cmp(&b.low.x).then(a.number.cmp(&b.number));
+            items[band[0]..band[1]].sort_unstable_by(by_begin);
         }
         (self.starts, self.items) = (starts, items);
     }
@@ -75,50 +86,51 @@ impl Bands {
         ((y - self.low) / self.width).max(0.0) as usize
     }
 
-    fn bands_of(&self, piece: usize) -> Range<usize> {
-        let across = self.across(piece);
-        self.band(across.start)..self.band(across.end) + 1
-    }
-
-    fn along(&self, piece: usize) -> Range<f64> {
-        let [a, b] = self.pieces[piece];
-        a.x.min(b.x) - self.rounding..a.x.max(b.x) + self.rounding
-    }
-
-    fn across(&self, piece: usize) -> Range<f64> {
-        let [a, b] = self.pieces[piece];
-        a.y.min(b.y) - self.rounding..a.y.max(b.y) + self.rounding
-    }
-
     /// Visits every pair of pieces whose boxes meet, once.
     pub fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
+        let last = self.starts.len() - 2;
         for (band, range) in self.starts.windows(2).enumerate() {
             let items = &self.items[range[0]..range[1]];
-            for (k, &i) in items.iter().enumerate() {
-                let (i, end, across) = (i as usize, self.along(i as usize).end, self.across(i as usize));
-                for j in items[k + 1..].iter().map(|&j| j as usize).take_while(|&j| self.along(j).start <= end) {
-                    let other = self.across(j);
-                    let start = across.start.max(other.start);
+            for (k, one) in items.iter().enumerate() {
+                for other in items[k + 1..].iter().take_while(|other| other.low.x <= one.high.x) {
+                    let start = one.low.y.max(other.low.y);
                     // Of the bands that both lie in, only the first one counts.
-                    if start <= across.end.min(other.end) && self.band(start).min(self.starts.len() - 2) == band {
-                        visit(i, j);
+                    if start <= one.high.y.min(other.high.y) && self.band(start).min(last) == band {
+                        visit(one.number as usize, other.number as usize);
                     }
                 }
             }
         }
     }
 
-    /// Whether a point lies inside the rings that the first `edges` pieces are the edges of, by winding parity.
-    pub fn inside(&self, point: DVec2, edges: usize) -> bool {
-        let (p, band) = (turned(self.axis, point), self.band(turned(self.axis, point).y));
-        let Some(range) = self.starts.get(band..band + 2) else { return false };
-        let before = self.items[range[0]..range[1]].iter().map(|&i| i as usize);
-        let before = before.take_while(|&i| self.along(i).start <= p.x).filter(|&i| i < edges);
-        let crosses = |i: usize| {
-            let [a, b] = self.pieces[i];
+    /// The pieces whose interior reaches across the height of a point before it along the axis.
+    fn before(&self, point: DVec2) -> impl Iterator<Item = usize> {
+        let p = turned(self.axis, point);
+        let band = self.band(p.y);
+        let range = self.starts.get(band..band + 2).map_or(0..0, |range| range[0]..range[1]);
+        let crosses = move |&number: &usize| {
+            let [a, b] = self.pieces[number];
             (a.y > p.y) != (b.y > p.y) && p.x > (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x
         };
-        before.filter(|&i| crosses(i)).count() % 2 == 1
+        let before = self.items[range].iter().take_while(move |item| item.low.x <= p.x);
+        before.map(|item| item.number as usize).filter(crosses)
+    }
+
+    /// Whether a point lies inside the rings that the first `edges` pieces are the edges of, by winding parity.
+    pub fn inside(&self, point: DVec2, edges: usize) -> bool {
+        self.before(point).filter(|&number| number < edges).count() % 2 == 1
+    }
+
+    /// How far a piece rises across the axis.
+    pub(crate) fn rise(&self, [a, b]: Piece) -> f64 {
+        self.axis.perp_dot(b - a)
+    }
+
+    /// How often closed rings, whose edges are the pieces, wind around the place just before a point along the axis that lies
+    /// on a piece.
+    pub(crate) fn winding_before(&self, point: DVec2, on: usize) -> i32 {
+        let others = self.before(point).filter(|&number| number != on);
+        others.map(|number| if self.pieces[number][1].y > self.pieces[number][0].y { -1 } else { 1 }).sum()
     }
 }
 

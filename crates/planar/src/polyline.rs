@@ -77,8 +77,10 @@ fn mark_kept(points: &[DVec2], first: usize, last: usize, tolerance_squared: f64
     let mut open = vec![(first, last)];
     while let Some((a, b)) = open.pop() {
         let mut worst = (tolerance_squared, None);
-        for i in a + 1..b {
-            let d = distance_squared_to_segment(points[i], points[a], points[b]);
+        let (from, way) = (points[a], points[b] - points[a]);
+        let per_length = 1.0 / way.length_squared().max(f64::MIN_POSITIVE);
+        for (i, p) in points.iter().enumerate().take(b).skip(a + 1) {
+            let d = (*p - from - way * ((*p - from).dot(way) * per_length).clamp(0.0, 1.0)).length_squared();
             if d > worst.0 {
                 worst = (d, Some(i));
             }

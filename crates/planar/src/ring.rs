@@ -193,6 +193,14 @@ impl Region {
         self.0.iter().any(|polygon| polygon.contains(p))
     }
 
+    /// Drops polygons and holes smaller than `least`, mm².
+    pub(crate) fn without_specks(self, least: f64) -> Self {
+        let mut polygons = self.0;
+        polygons.retain(|polygon| polygon.outer.area() >= least);
+        polygons.iter_mut().for_each(|polygon| polygon.holes.retain(|hole| hole.area() <= -least));
+        Self(polygons)
+    }
+
     /// Drops vertices that lie within `tolerance` (mm) of the line that remains, and rings that vanish with them.
     pub fn simplified(self, tolerance: f64) -> Self {
         let ring = |r: Ring| polyline::simplify_ring(r, tolerance);

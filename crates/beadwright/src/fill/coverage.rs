@@ -7,7 +7,7 @@ use planar::{Bounds, Region};
 use std::ops::Range;
 
 /// Rows in a bead's width.
-const ROWS: f64 = 16.0;
+const ROWS: f64 = 8.0;
 /// Beads count as wider by this fraction: neighbours that just touch leave nothing.
 const TOUCHING: f64 = 0.01;
 
@@ -22,38 +22,64 @@ pub struct Bare {
 
 /// What passes leave bare of a region; `width` is the nominal bead's, mm.
 pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
-    let outlines = region.polygons().iter().flat_map(|island| island.outer.points().iter().copied());
-    let Some(bounds) = Bounds::of(outlines) else { return Bare::default() };
-    let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
-    let step = bounds.size().y / count as f64;
-    let first = bounds.min.y + step / 2.0;
-    let mut rows = Rows { first, step, covered: vec![Vec::new(); count], starts: vec![0.0; count] };
-    for path in paths {
-        rows.cover(path);
+    Coverage::of(paths, region, width).map_or_else(Bare::default, |coverage| coverage.bare(region))
+}
+
+/// What passes cover, on rows across a region.
+pub struct Coverage {
+    /// Height of the first row and distance of the rows, mm.
+    first: f64,
+    step: f64,
+    /// Of each row, by where they begin.
+    covered: Vec<Vec<(f64, f64)>>,
+}
+
+impl Coverage {
+    /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
+    pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
+        let outlines = region.polygons().iter().flat_map(|island| island.outer.points().iter().copied());
+        let bounds = Bounds::of(outlines)?;
+        let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
+        let step = bounds.size().y / count as f64;
+        let first = bounds.min.y + step / 2.0;
+        let mut rows = Rows { first, step, covered: vec![Vec::new(); count], starts: vec![0.0; count] };
+        for path in paths {
+            rows.cover(path);
+        }
+        let mut covered = rows.covered;
+        covered.iter_mut().for_each(|row| row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0)));
+        Some(Self { first, step, covered })
     }
-    let mut covered = rows.covered;
-    let inside = region.rows(first, step, count);
-    let (mut found, mut widest) = (Bare::default(), 0.0);
-    for (k, (inside, covered)) in inside.iter().zip(&mut covered).enumerate() {
-        covered.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for span in inside.chunks_exact(2) {
-            let mut from = span[0];
-            for (low, high) in covered.iter().copied().chain([(span[1], f64::INFINITY)]) {
-                let gap = low.min(span[1]) - from;
-                if gap > 0.0 {
-                    found.area += gap * step;
-                    if gap > widest {
-                        (widest, found.place) = (gap, DVec2::new(from + gap / 2.0, first + k as f64 * step));
+
+    /// What is left bare of a region that lies within the one whose rows these are.
+    pub fn bare(&self, region: &Region) -> Bare {
+        let (mut found, mut widest) = (Bare::default(), 0.0);
+        let inside = region.rows(self.first, self.step, self.covered.len());
+        for (k, (inside, covered)) in inside.iter().zip(&self.covered).enumerate() {
+            for span in inside.chunks_exact(2) {
+                for gap in gaps(span[0]..span[1], covered) {
+                    let length = gap.end - gap.start;
+                    found.area += length * self.step;
+                    if length > widest {
+                        let middle = gap.start + length / 2.0;
+                        (widest, found.place) = (length, DVec2::new(middle, self.first + k as f64 * self.step));
                     }
-                }
-                from = from.max(high);
-                if from >= span[1] {
-                    break;
                 }
             }
         }
+        found
     }
-    found
+}
+
+/// What sorted spans leave bare of one.
+fn gaps(span: Range<f64>, covered: &[(f64, f64)]) -> impl Iterator<Item = Range<f64>> {
+    let mut from = span.start;
+    let before_end = covered.iter().copied().take_while(move |(low, _)| *low < span.end);
+    before_end.chain([(span.end, f64::INFINITY)]).filter_map(move |(low, high)| {
+        let gap = from..low;
+        from = from.max(high);
+        (gap.start < gap.end).then_some(gap)
+    })
 }
 
 /// What is covered of each row, so far.

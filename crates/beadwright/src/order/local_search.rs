@@ -8,10 +8,9 @@
 
 use super::exact;
 use super::nearest;
-use super::tour::{self, Ends, Gate, Stop, Visit, gap, neighbours};
+use super::tour::{self, Circle, Ends, Gate, Stop, Visit, gap, neighbours};
 use crate::random::Random;
 use glam::DVec2;
-use planar::Bounds;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -63,7 +62,7 @@ impl<'a> Search<'a> {
         let place = vec![0; stops.len()];
         let all_reversible = stops.iter().all(Stop::reversible);
         let gates: Vec<Vec<Gate>> = stops.iter().map(|s| s.gates().collect()).collect();
-        let circles = gates.iter().map(|gates| Circle::around(gates)).collect();
+        let circles = stops.iter().map(Circle::around).collect();
         let mut search = Self { stops, gates, circles, ends, tour, place, near: near(stops), all_reversible };
         search.number(0, stops.len());
         search
@@ -385,33 +384,12 @@ fn straight(before: Option<DVec2>, after: Option<DVec2>, visit: &Visit) -> f64 {
     if visit.enter == visit.leave { gap(before, after) } else { 0.0 }
 }
 
-/// A circle around the gates of a stop.
-struct Circle {
-    middle: DVec2,
-    radius: f64,
-}
-
-impl Circle {
-    fn around(gates: &[Gate]) -> Self {
-        let places = || gates.iter().flat_map(|gate| [gate.enter, gate.leave]);
-        let middle = Bounds::of(places()).map(|bounds| bounds.center()).unwrap_or_default();
-        // Greater by what rounding may take away.
-        let radius = places().map(|p| p.distance(middle)).fold(0.0, f64::max) + 1e-9 * (1.0 + middle.length());
-        Self { middle, radius }
-    }
-
-    /// A way through any gate is at least as long, mm.
-    fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
-        let middle = Some(self.middle);
-        let off = |way: f64| (way - self.radius).max(0.0);
-        off(gap(from, middle)) + off(gap(middle, to))
-    }
-}
-
 /// For each stop the stops whose gates lie nearest to its own, with the distance.
 fn near(stops: &[Stop]) -> Vec<Vec<(f64, usize)>> {
     /// The gates of the stop itself come first; at most this many gates around each are looked at.
     const MOST_LOOKED_AT: usize = 64;
+    /// Gates of a ring lie close together: about so many of them, all around it, find its neighbours.
+    const ASKED: usize = 16;
     let points = |s: usize| stops[s].gates().map(|g| [g.enter.x, g.enter.y]);
     let all = (0..stops.len()).flat_map(|s| points(s).map(move |p| GeomWithData::new(p, s)));
     let tree = RTree::bulk_load(all.collect());
@@ -421,7 +399,8 @@ fn near(stops: &[Stop]) -> Vec<Vec<(f64, usize)>> {
             let others = gates.filter(|(gate, _)| gate.data != s).take(NEAR);
             others.map(|(gate, squared)| (squared.sqrt(), gate.data)).collect::<Vec<_>>()
         };
-        let mut found: Vec<(f64, usize)> = points(s).flat_map(around).collect();
+        let every = points(s).count().div_ceil(ASKED).max(1);
+        let mut found: Vec<(f64, usize)> = points(s).step_by(every).flat_map(around).collect();
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut list: Vec<(f64, usize)> = Vec::with_capacity(NEAR);
         for other in found {

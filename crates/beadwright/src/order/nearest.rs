@@ -1,6 +1,6 @@
 //! Nearest next, and the improved nearest neighbour of Han et al. 2018 (section 2.1).
 
-use super::tour::{self, Ends, Gate, Stop, Visit, gap};
+use super::tour::{self, Circle, Ends, Gate, Stop, Visit, gap};
 use glam::DVec2;
 
 /// Always the stop with the nearest gate next.
@@ -11,7 +11,8 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     };
     let mut left: Vec<usize> = (0..stops.len()).collect();
     let mut tour = Vec::with_capacity(stops.len());
-    walk(&mut left, from, &mut tour, |stop, at| stops[stop].best_start(at, None));
+    let circles: Vec<Circle> = stops.iter().map(Circle::around).collect();
+    walk(&mut left, from, &mut tour, &circles, |stop, at| stops[stop].best_start(at, None));
     tour
 }
 
@@ -20,6 +21,7 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
 /// meets it.
 pub fn improved(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     let curves: Vec<Option<DVec2>> = stops.iter().map(pseudo_vertex).collect();
+    let circles: Vec<Circle> = stops.iter().map(Circle::around).collect();
     let mut best: Option<(f64, Vec<Visit>)> = None;
     let mut left = Vec::with_capacity(stops.len());
     for (seed, stop) in stops.iter().enumerate() {
@@ -29,7 +31,7 @@ pub fn improved(stops: &[Stop], ends: Ends) -> Vec<Visit> {
             left.clear();
             left.extend((0..stops.len()).filter(|&s| s != seed));
             let mut tour = vec![Visit::new(seed, gate)];
-            walk(&mut left, Some(gate.leave), &mut tour, |s, at| match (&curves[s], at) {
+            walk(&mut left, Some(gate.leave), &mut tour, &circles, |s, at| match (&curves[s], at) {
                 (Some(middle), Some(at)) => meeting(&stops[s], *middle, at),
                 _ => stops[s].best_gate(at, None),
             });
@@ -77,17 +79,28 @@ fn meeting(stop: &Stop, middle: DVec2, before: DVec2) -> Gate {
     nearest.map_or_else(|| stop.best_gate(Some(before), None), |p| Gate { enter: p, leave: p })
 }
 
-/// Walks from gate to nearest gate until no stop is left.
+/// Walks from gate to nearest gate until no stop is left. Stops whose circle lies farther off than the nearest gate so far
+/// are passed over.
 fn walk(
     left: &mut Vec<usize>,
     mut at: Option<DVec2>,
     tour: &mut Vec<Visit>,
+    circles: &[Circle],
     enter: impl Fn(usize, Option<DVec2>) -> Gate,
 ) {
-    while !left.is_empty() {
-        let gates = left.iter().map(|&s| enter(s, at)).enumerate();
-        let distance = |gate: &Gate| gap(at, Some(gate.enter));
-        let Some((i, gate)) = gates.min_by(|a, b| distance(&a.1).total_cmp(&distance(&b.1))) else { break };
+    loop {
+        let mut nearest: Option<(f64, usize, Gate)> = None;
+        for (i, &stop) in left.iter().enumerate() {
+            if nearest.is_some_and(|(least, ..)| circles[stop].least_gap(at) > least) {
+                continue;
+            }
+            let gate = enter(stop, at);
+            let distance = gap(at, Some(gate.enter));
+            if nearest.is_none_or(|(least, ..)| distance < least) {
+                nearest = Some((distance, i, gate));
+            }
+        }
+        let Some((_, i, gate)) = nearest else { break };
         at = Some(gate.leave);
         tour.push(Visit::new(left.swap_remove(i), gate));
     }

@@ -2,6 +2,7 @@
 
 use crate::fill::Path;
 use glam::DVec2;
+use planar::Bounds;
 
 /// The search lets a closed pass begin at no more than this many of its vertices; in the end its start moves along the
 /// whole path.
@@ -130,6 +131,33 @@ impl Stop {
         let best = starts.min_by(|a: &DVec2, b: &DVec2| way(*a).total_cmp(&way(*b)));
         // A vertex wins unless the middle of an edge is truly better.
         best.filter(|&p| way(p) < way(vertex.enter) - 1e-6).map_or(vertex, Gate::at)
+    }
+}
+
+/// A circle around the gates of a stop, and around all that lies between them.
+pub(super) struct Circle {
+    middle: DVec2,
+    radius: f64,
+}
+
+impl Circle {
+    pub(super) fn around(stop: &Stop) -> Self {
+        let path: &[DVec2] = if let Stop::Ring { path, .. } = stop { path } else { &[] };
+        let places = || stop.gates().flat_map(|gate| [gate.enter, gate.leave]).chain(path.iter().copied());
+        let middle = Bounds::of(places()).map(|bounds| bounds.center()).unwrap_or_default();
+        // Greater by what rounding may take away.
+        let radius = places().map(|p| p.distance(middle)).fold(0.0, f64::max) + 1e-9 * (1.0 + middle.length());
+        Self { middle, radius }
+    }
+
+    /// Any gate lies at least as far from a point, mm.
+    pub(super) fn least_gap(&self, from: Option<DVec2>) -> f64 {
+        (gap(from, Some(self.middle)) - self.radius).max(0.0)
+    }
+
+    /// A way through any gate is at least as long, mm.
+    pub(super) fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
+        self.least_gap(from) + self.least_gap(to)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::scan_lines::Planned;
 use crate::deposit::RIM;
 use crate::fill::contour::{Contour, rings_only};
-use crate::fill::coverage::{self, Bare};
+use crate::fill::coverage::{Bare, Coverage};
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
@@ -169,10 +169,11 @@ fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f
         return (reached, None);
     }
     let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
-    let bare = coverage::bare(&paths, &whole, width).area;
+    let Some(coverage) = Coverage::of(&paths, &whole, width) else { return (0.0, None) };
+    let bare = coverage.bare(&whole).area;
     let least = WORTH_TELLING * area;
     // At the rim the deposit model does not count voids either: beads are flat there.
-    let inner = (bare > least).then(|| coverage::bare(&paths, &whole.offset(-RIM * width, Join::ROUND), width));
+    let inner = (bare > least).then(|| coverage.bare(&whole.offset(-RIM * width, Join::ROUND)));
     ((area - bare).max(0.0), inner.filter(|inner| inner.area > least))
 }
 
