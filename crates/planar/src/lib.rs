@@ -29,6 +29,9 @@
 //! [`GRID_MM`] = 0.1 µm. A vertex moves by at most half a grid step per axis when it enters an operation,
 //! 0.07 µm, wherever it lies; coordinates may reach ±[`MAX_COORDINATE_MM`] = 50 m and are clamped there.
 //! An offset is then simplified by [`offset::SIMPLIFY_MM`].
+//!
+//! Most operations never get there: where boundaries cross but touch nowhere, the winding number decides (`winding`), on
+//! rings that an offset draws edge by edge (`edgewise`). The result is rounded to the same grid.
 
 pub mod arcs;
 pub mod bands;

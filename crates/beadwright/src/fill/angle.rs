@@ -72,7 +72,8 @@ fn few_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
 /// What depends on the raster angle, on one layer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curves {
-    /// Angle, °, and number of turns (eqs 6–8), exact.
+    /// Angle, °, and number of turns (eqs 6–8): exact between its jumps, or for every degree where there are more edges than
+    /// can be told apart in a picture.
     pub turns: Vec<DVec2>,
     /// Angle, °, and length of the scan lines, mm.
     pub length: Vec<DVec2>,
@@ -80,12 +81,13 @@ pub struct Curves {
     pub corner_area: Vec<DVec2>,
 }
 
+/// With more edges the number of turns is sampled: its jumps grow with the edges, and so does the work for each.
+const MOST_EDGES: usize = 1000;
+
 /// The curves for the islands of a layer; lengths and areas for every degree.
 pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSettings) -> Curves {
     let regions = infills(strategy, islands, settings);
     let spacing = settings.spacing();
-    let turns = regions.iter().fold(Turns::default(), |sum, region| sum.plus(&Turns::new(region, spacing)));
-    let corners = turns.steps().windows(2).flat_map(|w| [(w[0].0, w[0].1), (w[1].0, w[0].1)]);
     let place = |(angle, value): (f64, f64)| DVec2::new(angle.to_degrees(), value);
     let sampled = |value: &dyn Fn(&Region, f64) -> f64| {
         let at = |angle: f64| regions.iter().map(|region| value(region, angle)).sum::<f64>();
@@ -96,8 +98,15 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
         (0..scan.spans().len()).map(|s| scan.end(s, End::Right).x - scan.end(s, End::Left).x).sum()
     };
     let corner_area = |region: &Region, angle: f64| corner_area(region, angle, settings);
+    let exact = || {
+        let turns = regions.iter().fold(Turns::default(), |sum, region| sum.plus(&Turns::new(region, spacing)));
+        let corners = turns.steps().windows(2).flat_map(|w| [(w[0].0, w[0].1), (w[1].0, w[0].1)]);
+        corners.map(|(angle, count)| place((angle, count as f64))).collect()
+    };
+    let edges: usize = regions.iter().flat_map(Region::rings).map(|ring| ring.points().len()).sum();
+    let few = edges <= MOST_EDGES;
     Curves {
-        turns: corners.map(|(angle, count)| place((angle, count as f64))).collect(),
+        turns: if few { exact() } else { sampled(&|region, angle| ends_at(region, angle, spacing) as f64) },
         length: sampled(&length),
         corner_area: sampled(&corner_area),
     }
