@@ -100,6 +100,9 @@ pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profil
     timed.into_iter().find(|(time, _)| *time <= least * (1.0 + TIME_SLACK)).map(|(_, angle)| angle)
 }
 
+/// What the layers above and below leave open is no top and no bottom where it is narrower than this, in bead widths.
+const SLIVER: f64 = 0.1;
+
 /// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
 /// layers above or below does not cover the layer.
 fn solid_regions(
@@ -127,8 +130,10 @@ fn solid_regions(
         }
         let near = (own - reach..=own + reach).filter(|&other| other != own);
         let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
+        // Between slices of an upright wall slivers are left, since its facets are cut in other places.
+        let open = bare.into_polygons().into_iter().filter(|p| p.holds_disc(SLIVER * profile.bead.width / 2.0));
         // Grown, so that the solid infill holds on to the sparse infill around it.
-        Some(bare.offset(2.0 * profile.bead.width, Join::ROUND))
+        Some(Region::from_normalised(open.collect()).offset(2.0 * profile.bead.width, Join::ROUND))
     };
     Ok((0..slices.len()).into_par_iter().map(solid).collect())
 }
