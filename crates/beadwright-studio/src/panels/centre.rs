@@ -1,6 +1,6 @@
 //! The views in the middle of the window.
 
-use super::{solid, totals};
+use super::{bead, solid, totals};
 use crate::actions::Action;
 use crate::planner::Failure;
 use crate::state::PlanState;
@@ -15,21 +15,16 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     if studio.view.mode == Mode::Compare {
         Panel::bottom("differences").show(ui, |ui| differences(studio, ui));
     }
-    CentralPanel::default().show(ui, |ui| {
-        if studio.project().source.is_none() {
-            ui.centered_and_justified(|ui| ui.heading(studio.t("drop-here")));
-            return;
-        }
-        match studio.view.mode {
-            Mode::Solid => solid::show(studio, ui),
-            Mode::Layer => layer(studio, ui),
-            Mode::Compare => compare(studio, ui),
-        }
+    CentralPanel::default().show(ui, |ui| match studio.view.mode {
+        Mode::Solid => solid::show(studio, ui),
+        Mode::Layer => layer(studio, ui),
+        Mode::Compare => compare(studio, ui),
     });
 }
 
 fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
+    bead::show(studio, ui);
     look_closer(studio);
     let words = Words { label: studio.t("view-2d-label"), nothing: studio.t("nothing-laid") };
     let scale = Some(studio.t("bead-heights"));
@@ -74,7 +69,7 @@ fn flat(
         pieces: (state.progress * count as f64).ceil() as usize,
         scale,
         nothing: words.nothing,
-        chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, _)| pass),
+        chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, piece)| (pass, piece)),
     };
     view.show(ui, subject, state.show, words.label).picked
 }

@@ -40,10 +40,27 @@ fn torch(studio: &mut Studio, ui: &mut Ui) {
         studio.request(Action::Play);
     }
     let (rate, progress) = (studio.t("rate"), studio.t("progress"));
-    slider(ui, rate, 2, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
+    slider(ui, rate, 3, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
+    pass(studio, ui);
     if slider(ui, progress, 1, Slider::new(&mut studio.view.progress, 0.0..=1.0).show_value(false)) {
         studio.view.playing = false;
         studio.view.torch = None;
+    }
+}
+
+/// The last pass shown of the highest layer.
+fn pass(studio: &mut Studio, ui: &mut Ui) {
+    let Some(beads) = studio.plans.own.scene.layer(studio.view.last).filter(|beads| !beads.is_empty()).cloned() else {
+        return;
+    };
+    let shown = (studio.view.progress * beads.len() as f64).round() as usize;
+    let (text, count) = (studio.t("last-pass"), beads.passes().len());
+    let mut number = beads.pass_of(shown.max(1) - 1) + 1;
+    if slider(ui, text, 2, Slider::new(&mut number, 1..=count))
+        && let Some(span) = beads.passes().get(number - 1)
+    {
+        studio.view.progress = span.segments.end as f64 / beads.len() as f64;
+        (studio.view.playing, studio.view.torch) = (false, None);
     }
 }
 

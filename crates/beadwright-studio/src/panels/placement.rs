@@ -7,10 +7,7 @@ use beadwright::model::{Part, Placement, Units};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let Some(source) = studio.project().source.clone() else {
-        ui.label(studio.t("drop-here"));
-        return;
-    };
+    let Some(source) = studio.project().source.clone() else { return };
     ui.strong(source.label());
     CollapsingHeader::new(studio.t("placement")).show(ui, |ui| {
         let mut placement = studio.project().placement;

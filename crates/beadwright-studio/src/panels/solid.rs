@@ -1,15 +1,18 @@
 //! The 3-D view with its bar and its legend.
 
+use super::{bead, robot, section};
+use crate::actions::Action;
 use crate::studio::Studio;
 use crate::view3d::{Colour, Pick, palette};
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
 /// What the colours can show, with their texts.
-const COLOURS: [(Colour, &str); 6] = [
+const COLOURS: [(Colour, &str); 7] = [
     (Colour::Kind, "colour-kind"),
     (Colour::Order, "colour-order"),
     (Colour::Speed, "colour-speed"),
+    (Colour::Width, "colour-width"),
     (Colour::HeightError, "colour-height"),
     (Colour::Time, "colour-time"),
     (Colour::Temperature, "colour-temperature"),
@@ -17,8 +20,15 @@ const COLOURS: [(Colour, &str); 6] = [
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(studio, ui));
-    ui.horizontal(|ui| legend(studio, ui));
+    ui.horizontal_wrapped(|ui| {
+        legend(studio, ui);
+        ui.separator();
+        section::show(studio, ui);
+    });
+    bead::show(studio, ui);
+    robot::joints(studio, ui);
     let style = studio.style();
+    studio.solid.caption = caption(studio);
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
     let label = studio.t("view-3d-label");
@@ -29,13 +39,15 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn bar(studio: &mut Studio, ui: &mut Ui) {
-    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "parallel"];
-    let [mesh, beads, travels, starts, all_marks, parallel] = texts.map(|key| studio.t(key));
+    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "show-plate", "parallel"];
+    let [mesh, beads, travels, starts, all_marks, plate, parallel] = texts.map(|key| studio.t(key));
     ui.checkbox(&mut studio.view.mesh, mesh);
     ui.checkbox(&mut studio.view.show.beads, beads);
     ui.checkbox(&mut studio.view.show.travels, travels);
     ui.checkbox(&mut studio.view.show.starts, starts);
     ui.checkbox(&mut studio.view.all_marks, all_marks);
+    ui.checkbox(&mut studio.view.plate, plate);
+    robot::switch(studio, ui);
     ui.checkbox(&mut studio.view.parallel, parallel);
     let label = ui.label(studio.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
@@ -47,6 +59,20 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
         }
     });
     combo.response.labelled_by(label.id);
+    warm(studio, ui);
+}
+
+/// Has temperatures computed when they are to be shown and the plan has none.
+fn warm(studio: &mut Studio, ui: &mut Ui) {
+    if studio.jobs.heat_job.is_some() {
+        ui.spinner();
+        ui.weak(studio.t("stage-heat"));
+        return;
+    }
+    let known = || studio.plans.own.scene.value_range(Colour::Temperature).is_some();
+    if studio.view.colour == Colour::Temperature && studio.plans.own.summary.is_some() && !known() {
+        studio.request(Action::Heat);
+    }
 }
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
@@ -62,9 +88,13 @@ fn legend(studio: &Studio, ui: &mut Ui) {
         }
         return;
     }
-    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else { return };
+    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else {
+        ui.weak(studio.t("no-values"));
+        return;
+    };
     let unit = match studio.view.colour {
         Colour::Speed => " mm/s",
+        Colour::Width => " mm",
         Colour::Time => " s",
         Colour::Temperature => " °C",
         Colour::HeightError => studio.t("unit-bead-heights"),
@@ -87,6 +117,15 @@ fn legend(studio: &Studio, ui: &mut Ui) {
 
 fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
+}
+
+/// The size of the plate, and what the grid on it shows.
+fn caption(studio: &Studio) -> String {
+    let plate = studio.plate().filter(|_| studio.view.plate).map(|plate| {
+        let size = plate.high - plate.low;
+        format!("{} {:.0} × {:.0} × {:.0} mm, ", studio.t("show-plate"), size.x, size.y, plate.thickness)
+    });
+    format!("{}{}", plate.unwrap_or_default(), studio.t("grid"))
 }
 
 /// The picked bead, its segment counted within its pass instead of within its layer.

@@ -8,6 +8,7 @@
 //! | `beads` | one layer as it is drawn and timed |
 //! | `scene` | the model and the layers planned so far |
 //! | `style`, [`palette`] | what is shown and in which colours |
+//! | `section` | a plane that cuts away what lies beyond it |
 //! | `camera` | where the eye is |
 //! | `pick` | which segment is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |
@@ -23,6 +24,7 @@ mod overlay;
 pub mod palette;
 mod pick;
 mod scene;
+mod section;
 mod style;
 mod widget;
 
@@ -31,5 +33,6 @@ pub use camera::{Camera, StandardView};
 pub use headless::headless;
 pub use pick::{Pick, pick};
 pub use scene::{Position, Scene};
-pub use style::{Colour, Style};
+pub use section::Section;
+pub use style::{Colour, Plate, Style};
 pub use widget::{Shown, Timing, View3d};
