@@ -54,7 +54,7 @@ fn everybody_tells_the_quarters_of_every_scale_apart() {
                 for b in &stops[..i] {
                     let apart = difference(*a, *b, sight);
                     assert!(
-                        apart > 14.0,
+                        apart > 12.0,
                         "{scale:?}, dark {dark}, sight {number}: {a:?} and {b:?} differ by {apart:.0}"
                     );
                 }

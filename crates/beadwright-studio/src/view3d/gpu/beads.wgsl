@@ -13,9 +13,6 @@ struct BeadVertex {
     @location(2) side: vec3<f32>,
     @location(3) front: vec3<f32>,
     @location(4) at: vec3<f32>,
-    // The two ends of the centre line, with half the width and half the height.
-    @location(5) @interpolate(flat) end_a: vec4<f32>,
-    @location(6) @interpolate(flat) end_b: vec4<f32>,
 }
 
 fn bead_colour(value: f32) -> vec3<f32> {
@@ -97,10 +94,7 @@ fn ribbon(
     out.place = vec2(across * round, 0.0);
     out.side = (n * (edge.x / flat_width) + z * (edge.y / half_height)) * half_height * across * round;
     out.front = (n * (middle.x / flat_width) + z * (middle.y / half_height)) * half_height;
-    let down = vec3(0.0, 0.0, abs(to_height.w) * 0.5 * globals.ground.w);
     out.at = world;
-    out.end_a = vec4(from_width.xyz - down, abs(from_width.w) * 0.5);
-    out.end_b = vec4(to_height.xyz - down, down.z);
     return out;
 }
 
@@ -138,51 +132,24 @@ fn cap(
     out.side = rim / shape * round;
     out.front = front / shape;
     out.at = centre + half * spot;
-    out.end_a = vec4(centre, size.x * 0.5);
-    out.end_b = vec4(centre, size.y * 0.5);
     return out;
 }
 
-@fragment
-fn bead(in: BeadVertex) -> @location(0) vec4<f32> {
+fn lit(in: BeadVertex) -> vec4<f32> {
     let lift = sqrt(max(0.0, 1.0 - dot(in.place, in.place)));
     let normal = normalize(in.side + in.front * lift);
     return vec4(shaded(in.colour, normal), 1.0);
 }
 
-struct Cut {
-    @location(0) colour: vec4<f32>,
-    @builtin(frag_depth) depth: f32,
-}
-
-// How far a point is from the centre line of a bead: 1 on its surface.
-fn from_centre(at: vec3<f32>, bead: BeadVertex) -> f32 {
-    // Stretched so that the ellipse is a circle.
-    let stretch = vec3(1.0, 1.0, bead.end_a.w / bead.end_b.w);
-    let way = (bead.end_b.xyz - bead.end_a.xyz) * stretch;
-    let off = (at - bead.end_a.xyz) * stretch;
-    let part = clamp(dot(off, way) / max(dot(way, way), 1e-12), 0.0, 1.0);
-    return length(off - way * part) / bead.end_a.w;
-}
-
-// Where the near side of a bead is cut away, the line of sight goes on to the section and meets its inside there.
 @fragment
-fn cut_bead(in: BeadVertex) -> Cut {
-    if !is_cut(in.at) {
-        return Cut(bead(in), in.clip.z);
-    }
-    let sight = -to_viewer(in.at);
-    let ahead = dot(globals.section.xyz, sight);
-    if ahead > -1e-5 {
+fn bead(in: BeadVertex) -> @location(0) vec4<f32> {
+    return lit(in);
+}
+
+@fragment
+fn cut_bead(in: BeadVertex) -> @location(0) vec4<f32> {
+    if is_cut(in.at) {
         discard;
     }
-    let met = in.at + sight * ((globals.section.w - dot(globals.section.xyz, in.at)) / ahead);
-    let off = from_centre(met, in);
-    if off > 1.0 {
-        discard;
-    }
-    let clip = globals.clip_from_world * vec4(met, 1.0);
-    // Beads overlap: each point belongs to the bead that it is deepest in.
-    let depth = clip.z / clip.w * (1.0 + 1e-4 * (1.0 - off));
-    return Cut(vec4(in.colour * mix(0.85, 0.45, smoothstep(0.84, 0.94, off)), 1.0), depth);
+    return lit(in);
 }

@@ -112,6 +112,10 @@ fn draw_beads(
         for beads in pieces {
             pass.draw(0..2 * (quality.strips + 1), beads.clone());
         }
+        if pipelines.cut {
+            pass.set_pipeline(&pipelines.face);
+            pieces.iter().for_each(|beads| pass.draw(0..4, beads.clone()));
+        }
     }
     if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))
         && quality.caps

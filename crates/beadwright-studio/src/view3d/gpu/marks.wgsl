@@ -16,9 +16,13 @@ fn line(@location(0) at: vec3<f32>, @location(1) role: u32) -> MarkVertex {
     return out;
 }
 
+fn ink(in: MarkVertex) -> vec4<f32> {
+    return vec4(in.colour.rgb * in.colour.a, in.colour.a);
+}
+
 @fragment
 fn line_colour(in: MarkVertex) -> @location(0) vec4<f32> {
-    return vec4(in.colour.rgb * in.colour.a, in.colour.a);
+    return ink(in);
 }
 
 @fragment
@@ -26,7 +30,7 @@ fn cut_line(in: MarkVertex) -> @location(0) vec4<f32> {
     if is_cut(in.at) {
         discard;
     }
-    return line_colour(in);
+    return ink(in);
 }
 
 // A round dot of a few pixels: it lies on the bead, or faces a viewer who looks from the side.
@@ -53,6 +57,10 @@ fn dot_mark(
 
 @fragment
 fn dot_colour(in: MarkVertex) -> @location(0) vec4<f32> {
+    return disc(in);
+}
+
+fn disc(in: MarkVertex) -> vec4<f32> {
     let r = length(in.place);
     if r > 1.0 {
         discard;
@@ -65,7 +73,7 @@ fn cut_dot(in: MarkVertex) -> @location(0) vec4<f32> {
     if is_cut(in.at) {
         discard;
     }
-    return dot_colour(in);
+    return disc(in);
 }
 
 struct GroundVertex {

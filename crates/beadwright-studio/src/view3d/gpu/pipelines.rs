@@ -13,6 +13,8 @@ pub(super) struct Pipelines {
     pub cut: bool,
     pub ribbon: wgpu::RenderPipeline,
     pub cap: wgpu::RenderPipeline,
+    /// Where the section cuts a bead.
+    pub face: wgpu::RenderPipeline,
     pub line: wgpu::RenderPipeline,
     pub dot: wgpu::RenderPipeline,
     pub ground: wgpu::RenderPipeline,
@@ -44,7 +46,10 @@ impl Pipelines {
             let source = wgpu::ShaderSource::Wgsl(text.into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
         };
-        let beads = module("beads", concat!(include_str!("common.wgsl"), include_str!("beads.wgsl")));
+        let beads = module(
+            "beads",
+            concat!(include_str!("common.wgsl"), include_str!("beads.wgsl"), include_str!("faces.wgsl")),
+        );
         let marks = module("marks", concat!(include_str!("common.wgsl"), include_str!("marks.wgsl")));
         let surface = module("surface", concat!(include_str!("common.wgsl"), include_str!("surface.wgsl")));
         let make = |recipe: &Recipe<'_>| pipeline(device, bindings, samples, recipe);
@@ -67,6 +72,7 @@ impl Pipelines {
             cut,
             ribbon: lay(&beads, "ribbon", bead, &ribbon, STRIP, true),
             cap: lay(&beads, "cap", bead, &cap, TRIANGLES, true),
+            face: lay(&beads, "face", "cut_face", &ribbon, STRIP, true),
             line: lay(&marks, "line", line_colour, &line, LINES, false),
             dot: lay(&marks, "dot_mark", dot_colour, &dot, STRIP, true),
             ground: lay(&marks, "ground", "ground_colour", &[], STRIP, false),

@@ -38,16 +38,20 @@ fn cut_opaque(in: SurfaceVertex, @builtin(front_facing) outside: bool) -> @locat
 
 @fragment
 fn cut_glass(in: SurfaceVertex) -> @location(0) vec4<f32> {
-    let colour = glass(in);
+    let colour = clear(in);
     if is_cut(in.at) {
         discard;
     }
     return colour;
 }
 
-// Clearer where it is looked at squarely, as glass is.
 @fragment
 fn glass(in: SurfaceVertex) -> @location(0) vec4<f32> {
+    return clear(in);
+}
+
+// Clearer where it is looked at squarely, as glass is.
+fn clear(in: SurfaceVertex) -> vec4<f32> {
     let normal = facing(in.at);
     let square = abs(dot(normal, to_viewer(in.at)));
     let alpha = mix(0.42, 0.10, square);
