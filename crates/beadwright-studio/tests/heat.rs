@@ -1,7 +1,7 @@
 //! Temperatures computed afterwards are those of a plan that was made with them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use beadwright::heat::Interpass;
+use beadwright::heat::plate;
 use beadwright::layer::Layer;
 use beadwright::model::Model;
 use beadwright::profile::Profile;
@@ -17,22 +17,29 @@ fn layers(name: &str, profile: &Profile) -> Vec<Arc<Layer>> {
 }
 
 #[test]
-fn they_are_those_of_a_plan_with_a_limit_that_is_never_met() {
+fn they_are_those_that_the_model_finds_layer_by_layer() {
     for (name, strategy) in [("cross", "contour"), ("star", "zigzag")] {
         let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
         strategy.clone_into(&mut profile.fill.strategy);
-        profile.interpass = Some(Interpass { max_temperature: 1500.0, min_temperature: None, reorder: false });
-        let with = layers(name, &profile);
-        let found = temperatures(&with, &profile).unwrap();
-        assert_eq!(found.len(), with.len());
-        for (layer, found) in with.iter().zip(&found) {
-            assert_eq!(layer.temperatures.len(), found.len());
-            for (wanted, found) in layer.temperatures.iter().zip(&**found) {
-                // With a limit, the model stops more often on the way, to see whether it must wait.
-                let allowed = 0.5 + 0.03 * (wanted.start - 20.0);
-                assert!((wanted.start - f64::from(*found)).abs() < allowed, "{name}: {found} °C, not {}", wanted.start);
-            }
+        let layers = layers(name, &profile);
+        let found = temperatures(&layers, &profile).unwrap();
+        let owned: Vec<Layer> = layers.iter().map(|layer| (**layer).clone()).collect();
+        let mut build = plate(&owned, &profile.heat_settings().unwrap(), &profile.weld_settings()).unwrap();
+        for (layer, found) in owned.iter().zip(&found) {
+            let wanted: Vec<f32> = build.layer(layer).passes.iter().map(|pass| pass.start as f32).collect();
+            assert_eq!(**found, wanted, "{name}, layer {}", layer.index);
         }
+    }
+}
+
+#[test]
+fn a_wait_between_layers_lets_the_metal_cool() {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    let without = temperatures(&layers("cross", &profile), &profile).unwrap();
+    profile.start_stop.interpass_time = 300.0;
+    let with = temperatures(&layers("cross", &profile), &profile).unwrap();
+    for (layer, (hot, cool)) in without.iter().zip(&with).enumerate().skip(1) {
+        assert!(cool[0] < hot[0] - 1.0 && cool[0] > 20.0, "layer {layer}: {} and {} °C", hot[0], cool[0]);
     }
 }
 

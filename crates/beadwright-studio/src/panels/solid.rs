@@ -21,6 +21,7 @@ const COLOURS: [(Colour, &str); 7] = [
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(studio, ui));
     ui.horizontal_wrapped(|ui| {
+        colours(studio, ui);
         legend(studio, ui);
         ui.separator();
         section::show(studio, ui);
@@ -49,6 +50,9 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
     ui.checkbox(&mut studio.view.plate, plate);
     robot::switch(studio, ui);
     ui.checkbox(&mut studio.view.parallel, parallel);
+}
+
+fn colours(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
     let selected = studio.t(text(studio.view.colour));

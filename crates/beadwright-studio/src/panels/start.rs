@@ -6,8 +6,8 @@ use crate::studio::Studio;
 use crate::thumbnail::thumbnail;
 use beadwright::example::{self, Example};
 use eframe::egui::{
-    Align2, Button, Color32, FontId, Frame, Rect, Role, ScrollArea, Sense, Stroke, TextureId, TextureOptions, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, FontId, Frame, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureId, TextureOptions,
+    Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// Size of the picture of an example, points.
@@ -19,7 +19,7 @@ const RECENT: usize = 6;
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     draw_next(studio, ui);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing = vec2(10.0, 8.0);
+        ui.spacing_mut().item_spacing = vec2(10.0, 10.0);
         drop_zone(studio, ui);
         ui.add_space(6.0);
         ui.strong(studio.t("start-process"));
@@ -57,9 +57,9 @@ fn drop_zone(studio: &mut Studio, ui: &mut Ui) {
     } else {
         (visuals.faint_bg_color, visuals.weak_text_color())
     };
-    Frame::new().fill(fill).stroke(Stroke::new(1.5, ink)).corner_radius(8.0).inner_margin(18.0).show(ui, |ui| {
+    Frame::new().fill(fill).stroke(Stroke::new(1.5, ink)).corner_radius(8.0).inner_margin(26.0).show(ui, |ui| {
         ui.vertical_centered(|ui| {
-            ui.heading(studio.t("start-drop"));
+            ui.heading(RichText::new(studio.t("start-drop")).strong());
             ui.weak(studio.t("start-formats"));
             if ui.add(Button::new(studio.t("open")).min_size(vec2(120.0, 30.0))).clicked() {
                 studio.request(Action::Open);
@@ -103,7 +103,7 @@ fn recent(studio: &mut Studio, ui: &mut Ui) {
     if studio.window.settings.recent.is_empty() {
         return;
     }
-    ui.strong(studio.t("recent"));
+    ui.strong(studio.t("start-recent"));
     for path in studio.window.settings.recent.iter().take(RECENT).cloned().collect::<Vec<_>>() {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());

@@ -9,7 +9,7 @@ use super::style::Style;
 use super::{gpu, overlay};
 use eframe::egui::{self, Color32, PointerButton, Rect, Sense, Ui, WidgetInfo, pos2};
 use eframe::egui_wgpu::{RenderState, wgpu};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::time::Instant;
 
 /// The picture stays coarse this long after the last turn of the mouse wheel, s.
@@ -130,8 +130,9 @@ impl View3d {
             self.fit = true;
         }
         if self.fit && scene.bounds().is_some() {
-            let arm = style.arm.iter().flat_map(|link| link.ends);
-            self.camera.fit_points(&scene.outline().into_iter().chain(arm).collect::<Vec<_>>(), size);
+            let reach = |radius: f64| [-radius, radius].map(DVec3::splat);
+            let arm = style.arm.iter().flat_map(|link| link.ends.map(|end| reach(link.radius).map(|by| end + by)));
+            self.camera.fit_points(&scene.outline().into_iter().chain(arm.flatten()).collect::<Vec<_>>(), size);
             self.fit = false;
         }
         let mut shown = Shown { picked: None, clicked: response.clicked(), hovered: None, rendered: false, response };

@@ -6,10 +6,10 @@ use crate::view3d::style::{Plate, Style};
 use glam::{DVec3, Vec3};
 
 /// Sides of what is round.
-const SIDES: usize = 20;
+const SIDES: usize = 36;
 
 /// Steps from the side of a round end to its top.
-const ROUND: usize = 5;
+const ROUND: usize = 8;
 
 /// The top of the plate lies this far below the part, mm, so that the grid is seen on it.
 const BELOW: f32 = 0.05;
