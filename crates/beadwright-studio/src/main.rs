@@ -27,6 +27,9 @@ struct Arguments {
     /// Show heights and voids in the layer view.
     #[arg(long)]
     heights: bool,
+    /// Compare in 3-D.
+    #[arg(long)]
+    solid: bool,
     /// A section through the middle of the part, square to this axis.
     #[arg(long, value_name = "AXIS")]
     section: Option<Axis>,
@@ -128,6 +131,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
     });
     view.show.heights |= arguments.heights;
     view.robot |= arguments.robot;
+    view.compare_solid |= arguments.solid;
     // Parts stand about x = y = 0, and what lies in front is cut away.
     let section = |axis: Axis| Section { axis: axis as usize, at: 0.0, lower: matches!(axis, Axis::Y) };
     view.section = arguments.section.map(section);

@@ -33,8 +33,10 @@ pub struct Other {
     pub planner: Planner,
     /// Its plan.
     pub plan: PlanState,
-    /// Its view.
+    /// Its view of a layer.
     pub flat: View2d,
+    /// Its view in 3-D.
+    pub solid: View3d,
 }
 
 /// The window and what is remembered.
@@ -388,6 +390,7 @@ impl Studio {
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
             flat: View2d::default(),
+            solid: View3d::default(),
         };
         if self.project().source.is_some() {
             other.plan.restart();

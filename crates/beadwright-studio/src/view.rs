@@ -62,6 +62,8 @@ pub struct ViewState {
     pub plate: bool,
     /// Whether the robot's arm is shown.
     pub robot: bool,
+    /// Whether strategies are compared in 3-D, not layer by layer.
+    pub compare_solid: bool,
     /// The section through the part.
     pub section: Option<Section>,
     /// What else is shown.
@@ -102,6 +104,7 @@ impl Default for ViewState {
             parallel: false,
             plate: true,
             robot: false,
+            compare_solid: false,
             section: None,
             show: Show::default(),
             chosen: None,

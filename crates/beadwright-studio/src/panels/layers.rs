@@ -18,7 +18,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 fn range(studio: &mut Studio, ui: &mut Ui, layers: usize) {
     let (mut first, mut last) = (studio.view.first + 1, studio.view.last + 1);
     // Views of a single layer have no lowest layer.
-    let solid = studio.view.mode == Mode::Solid;
+    let in_compare = studio.view.mode == Mode::Compare && studio.view.compare_solid;
+    let solid = studio.view.mode == Mode::Solid || in_compare;
     let texts = ["first-layer", "last-layer", "layer"].map(|key| studio.t(key));
     if solid {
         ui.add_enabled_ui(last > 1, |ui| {
@@ -50,13 +51,14 @@ fn torch(studio: &mut Studio, ui: &mut Ui) {
 
 /// The last pass shown of the highest layer.
 fn pass(studio: &mut Studio, ui: &mut Ui) {
+    let text = studio.t("last-pass");
     let Some(beads) = studio.plans.own.scene.layer(studio.view.last).filter(|beads| !beads.is_empty()).cloned() else {
+        ui.add_enabled_ui(false, |ui| slider(ui, text, 2, Slider::new(&mut 0, 0..=0)));
         return;
     };
     let shown = (studio.view.progress * beads.len() as f64).round() as usize;
-    let (text, count) = (studio.t("last-pass"), beads.passes().len());
     let mut number = beads.pass_of(shown.max(1) - 1) + 1;
-    if slider(ui, text, 2, Slider::new(&mut number, 1..=count))
+    if slider(ui, text, 2, Slider::new(&mut number, 1..=beads.passes().len()))
         && let Some(span) = beads.passes().get(number - 1)
     {
         studio.view.progress = span.segments.end as f64 / beads.len() as f64;

@@ -3,6 +3,7 @@
 mod basic;
 mod bead;
 mod centre;
+mod compare;
 mod export;
 mod findings;
 mod layers;

@@ -3,7 +3,7 @@
 use super::{bead, robot, section};
 use crate::actions::Action;
 use crate::studio::Studio;
-use crate::view3d::{Colour, Pick, palette};
+use crate::view3d::{Colour, Pick, Style, palette};
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 
@@ -28,18 +28,23 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     });
     bead::show(studio, ui);
     robot::joints(studio, ui);
-    let style = studio.style();
+    let (style, label) = (studio.style(), studio.t("view-3d-label"));
+    view(studio, ui, &style, label);
+}
+
+/// The picture, with what a click chooses.
+pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str) {
     studio.solid.caption = caption(studio);
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
-    let label = studio.t("view-3d-label");
-    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, &style, label);
+    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, style, label);
     if shown.clicked {
         studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
     }
 }
 
-fn bar(studio: &mut Studio, ui: &mut Ui) {
+/// What is shown.
+pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
     let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "show-plate", "parallel"];
     let [mesh, beads, travels, starts, all_marks, plate, parallel] = texts.map(|key| studio.t(key));
     ui.checkbox(&mut studio.view.mesh, mesh);
@@ -52,7 +57,8 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
     ui.checkbox(&mut studio.view.parallel, parallel);
 }
 
-fn colours(studio: &mut Studio, ui: &mut Ui) {
+/// What the colours show.
+pub(super) fn colours(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
     let selected = studio.t(text(studio.view.colour));

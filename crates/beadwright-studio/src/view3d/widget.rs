@@ -112,6 +112,11 @@ impl View3d {
         self.fit = true;
     }
 
+    /// Keeps the camera where it is, also when the view is shown for the first time.
+    pub fn hold(&mut self) {
+        self.fit = false;
+    }
+
     /// The widget: it takes all available space. `label` is its name for screen readers.
     pub fn show(
         &mut self,
