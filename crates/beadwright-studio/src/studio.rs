@@ -263,11 +263,12 @@ impl Studio {
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
             colour: view.colour,
-            mesh: view.mesh,
+            mesh: view.mesh || view.laying,
             travels: view.show.travels,
             starts: view.show.starts,
             marks_from: if view.all_marks { 0 } else { view.last },
-            beads: view.show.beads,
+            // Beads would lie before the faces to be clicked.
+            beads: view.show.beads && !view.laying,
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
             section: view.section,

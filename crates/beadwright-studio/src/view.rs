@@ -62,6 +62,8 @@ pub struct ViewState {
     pub plate: bool,
     /// Whether the robot's arm is shown.
     pub robot: bool,
+    /// Whether the next click in 3-D chooses the face on which the part is laid.
+    pub laying: bool,
     /// Whether strategies are compared in 3-D, not layer by layer.
     pub compare_solid: bool,
     /// The section through the part.
@@ -104,6 +106,7 @@ impl Default for ViewState {
             parallel: false,
             plate: true,
             robot: false,
+            laying: false,
             compare_solid: false,
             section: None,
             show: Show::default(),
@@ -123,8 +126,8 @@ impl ViewState {
     /// Shows all of a new part.
     pub fn reset(&mut self) {
         let (first, last, progress) = (0, 0, 1.0);
-        let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
-        *self = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
+        let (wanted, left, chosen, torch, section, laying) = (None, None, None, None, None, false);
+        *self = Self { laying, wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
     }
 
     /// Keeps the range within the existing layers.

@@ -5,6 +5,10 @@ use eframe::egui::Ui;
 
 pub(super) fn show(studio: &Studio, ui: &mut Ui) {
     // Always one line, so that the view stays where it is.
+    if studio.view.laying {
+        ui.strong(studio.t("lay-hint"));
+        return;
+    }
     ui.horizontal(|ui| match figures(studio) {
         Some(figures) => {
             ui.strong(studio.t("chosen"));

@@ -13,7 +13,9 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
         choose(studio, ui);
         let text = studio.t("compare-solid");
-        ui.checkbox(&mut studio.view.compare_solid, text);
+        if ui.checkbox(&mut studio.view.compare_solid, text).changed() {
+            studio.solid.fit();
+        }
     });
     let solid = studio.view.compare_solid;
     if solid {
@@ -96,13 +98,22 @@ fn choose(studio: &mut Studio, ui: &mut Ui) {
 pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
     let Some(other) = &studio.plans.other else { return };
     let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
-    Grid::new("differences").num_columns(3).spacing([28.0, 2.0]).striped(true).show(ui, |ui| {
+    let names = [studio.plans.own.header.as_ref().map_or("", |header| &header.strategy), &other.strategy];
+    // Two tables side by side leave more room for the views.
+    ui.columns(2, |columns| {
+        for (column, rows) in columns.iter_mut().zip(own.chunks(own.len().div_ceil(2).max(1))) {
+            table(studio, column, names, rows, &theirs);
+        }
+    });
+}
+
+/// Some of the totals: their name, and the value of each plan.
+fn table(studio: &Studio, ui: &mut Ui, names: [&str; 2], own: &[Row], theirs: &[Row]) {
+    Grid::new("differences").num_columns(3).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
         ui.label("");
-        let now = studio.plans.own.header.as_ref().map_or("", |header| &header.strategy);
-        ui.strong(now);
-        ui.strong(&other.strategy);
+        names.into_iter().for_each(|name| drop(ui.strong(name)));
         ui.end_row();
-        for (name, value) in &own {
+        for (name, value) in own {
             ui.label(totals::name_of(studio, name));
             ui.label(value);
             ui.label(theirs.iter().find(|(n, _)| n == name).map_or("…", |(_, value)| value));
@@ -110,3 +121,6 @@ pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
         }
     });
 }
+
+/// A total: its name and its value.
+type Row = (&'static str, String);

@@ -3,9 +3,11 @@
 use super::{bead, robot, section};
 use crate::actions::Action;
 use crate::studio::Studio;
-use crate::view3d::{Colour, Pick, Style, palette};
+use crate::view3d::{Colour, Pick, Style, face, palette};
+use beadwright::model::Placement;
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
+use glam::DVec3;
 
 /// What the colours can show, with their texts.
 const COLOURS: [(Colour, &str); 7] = [
@@ -38,9 +40,20 @@ pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str)
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
     let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, style, label);
-    if shown.clicked {
+    if studio.view.laying {
+        shown.sight.into_iter().for_each(|sight| lay(studio, sight));
+    } else if shown.clicked {
         studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
     }
+}
+
+/// Lays the part onto the face that is seen there.
+fn lay(studio: &mut Studio, sight: (DVec3, DVec3)) {
+    let Some(normal) = studio.plans.own.scene.mesh().and_then(|mesh| face(mesh, sight)) else { return };
+    let placement = studio.project().placement;
+    studio.request(Action::Place(Placement { turn: placement.turned_onto(normal), ..placement }));
+    studio.view.laying = false;
+    studio.solid.fit();
 }
 
 /// What is shown.

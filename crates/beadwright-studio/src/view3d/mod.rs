@@ -10,7 +10,7 @@
 //! | `style`, [`palette`] | what is shown and in which colours |
 //! | `section` | a plane that cuts away what lies beyond it |
 //! | `camera` | where the eye is |
-//! | `pick` | which segment is under the pointer |
+//! | `pick`, `face` | which segment, which face of the model is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |
 //! | `widget` | the pointer turns and picks; frames are kept |
 //! | `overlay` | axes and scale bar |
@@ -18,6 +18,7 @@
 
 mod beads;
 mod camera;
+mod face;
 mod gpu;
 mod headless;
 mod overlay;
@@ -30,6 +31,7 @@ mod widget;
 
 pub use beads::{Bead, LayerBeads, PassSpan};
 pub use camera::{Camera, StandardView};
+pub use face::face;
 pub use headless::headless;
 pub use pick::{Pick, pick};
 pub use scene::{Position, Scene};

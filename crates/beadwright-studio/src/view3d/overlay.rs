@@ -21,7 +21,10 @@ pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, caption: &st
     painter.circle_filled(corner, 40.0, ground);
     axes(painter, corner, camera, ink);
     let beside = pos2(rect.left() + 100.0, rect.bottom() - 12.0);
-    painter.text(beside, Align2::LEFT_BOTTOM, caption, FontId::proportional(12.0), ink);
+    // Elsewhere it would run into the scale bar.
+    if rect.width() > 560.0 {
+        painter.text(beside, Align2::LEFT_BOTTOM, caption, FontId::proportional(12.0), ink);
+    }
     scale_bar(painter, rect, camera, ink);
 }
 

@@ -35,6 +35,8 @@ const HOVER_BELOW: usize = 400_000;
 pub struct Shown {
     /// The segment that was clicked.
     pub picked: Option<Pick>,
+    /// The line of sight through the click: from where, and its direction.
+    pub sight: Option<(DVec3, DVec3)>,
     /// Whether the view was clicked, on a bead or not.
     pub clicked: bool,
     /// The segment under the resting pointer.
@@ -140,7 +142,8 @@ impl View3d {
             self.camera.fit_points(&scene.outline().into_iter().chain(arm.flatten()).collect::<Vec<_>>(), size);
             self.fit = false;
         }
-        let mut shown = Shown { picked: None, clicked: response.clicked(), hovered: None, rendered: false, response };
+        let clicked = response.clicked();
+        let mut shown = Shown { picked: None, sight: None, clicked, hovered: None, rendered: false, response };
         let Some(state) = state else {
             self.say_no_adapter(ui, rect, style.dark);
             return shown;
@@ -156,6 +159,7 @@ impl View3d {
         if shown.clicked {
             let pos = shown.response.interact_pointer_pos();
             shown.picked = pos.and_then(|pos| pick(scene, style, &self.camera, size, at(pos)));
+            shown.sight = pos.map(|pos| self.camera.ray(at(pos), size));
         }
         if let Some(pos) = shown.response.hover_pos().filter(|_| !moving && scene.segments() < HOVER_BELOW) {
             let camera = self.camera;

@@ -117,7 +117,7 @@ fn the_arm_stands_at_the_chosen_bead_and_tells_its_joints() {
     };
     let first = joints(&harness);
     assert_eq!(first.len(), 6, "{first:?}");
-    assert!(harness.query_all_by_label_contains("least margin here").next().is_some());
+    assert!(harness.query_all_by_label_contains("margin: ").next().is_some());
     // Another bead, other angles; another arm, others again.
     harness.state_mut().view().chosen = Some((9, 0, 40));
     harness.run_steps(2);
