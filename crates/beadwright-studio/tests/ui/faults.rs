@@ -111,6 +111,14 @@ fn a_message_does_not_move_the_view() {
 }
 
 #[test]
+fn the_messages_are_not_covered() {
+    let folder = tempfile::tempdir().unwrap();
+    let harness = example(folder.path(), "cross");
+    let (text, play) = (harness.get_by_label("No warnings.").rect(), harness.get_by_label_contains("Play").rect());
+    assert!(text.top() > play.bottom() && text.bottom() < 800.0, "{text:?} below {play:?}");
+}
+
+#[test]
 fn the_number_of_findings_does_not_move_the_tabs() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
