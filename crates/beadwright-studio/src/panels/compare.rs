@@ -109,7 +109,7 @@ pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
 
 /// Some of the totals: their name, and the value of each plan.
 fn table(studio: &Studio, ui: &mut Ui, names: [&str; 2], own: &[Row], theirs: &[Row]) {
-    Grid::new("differences").num_columns(3).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
+    Grid::new(("differences", own.first())).num_columns(3).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
         ui.label("");
         names.into_iter().for_each(|name| drop(ui.strong(name)));
         ui.end_row();
