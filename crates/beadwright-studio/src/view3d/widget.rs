@@ -19,7 +19,7 @@ const SETTLE: f64 = 0.2;
 const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
 
 /// Rough segments that are drawn in a twentieth of a second: with a graphics card, without one.
-const IN_TIME: [usize; 2] = [1_500_000, 40_000];
+const IN_TIME: [usize; 2] = [1_500_000, 20_000];
 
 /// Of a part, at least that many layers are drawn while it moves.
 const LEAST_LAYERS: usize = 8;
