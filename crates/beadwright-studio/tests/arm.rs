@@ -33,7 +33,7 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
                     let wanted = base_from_part.apply(at);
                     assert!(tip.distance(wanted) < 0.01, "{name}: {tip} instead of {wanted}");
                     // The torch stands straight over the bead, and the base on the floor of the cell.
-                    let end = found.links.iter().filter(|link| link.solid == Solid::Torch).next_back().unwrap().ends[1];
+                    let end = found.links.iter().rfind(|link| link.solid == Solid::Torch).unwrap().ends[1];
                     let beside = (end - at).truncate().length();
                     assert!(beside < 0.01 && end.z > at.z, "{name}: the nozzle is {beside} mm beside the bead");
                     let base = found.links.iter().find(|link| link.solid == Solid::Base).unwrap();

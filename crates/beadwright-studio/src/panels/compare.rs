@@ -7,7 +7,7 @@ use crate::planner::Failure;
 use crate::studio::Studio;
 use crate::view3d::Style;
 use beadwright::fill;
-use eframe::egui::{ComboBox, Grid, Ui};
+use eframe::egui::{ComboBox, Grid, ScrollArea, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
@@ -100,10 +100,10 @@ pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
     let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
     let names = [studio.plans.own.header.as_ref().map_or("", |header| &header.strategy), &other.strategy];
     // Two tables side by side leave more room for the views.
-    ui.columns(2, |columns| {
-        for (column, rows) in columns.iter_mut().zip(own.chunks(own.len().div_ceil(2).max(1))) {
-            table(studio, column, names, rows, &theirs);
-        }
+    ScrollArea::horizontal().show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            own.chunks(own.len().div_ceil(2).max(1)).for_each(|rows| table(studio, ui, names, rows, &theirs));
+        });
     });
 }
 
