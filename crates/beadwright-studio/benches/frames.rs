@@ -2,7 +2,7 @@
 //!
 //! The part is the vase, planned with a built-in profile, side by side until there are enough segments.
 //! *Far* shows all of it, *near* is four times nearer, where every segment is drawn; *moving* is what a drag shows.
-//! Prints a line for 200,000 and one for 1,000,000 segments, or for the numbers given. Works on any adapter.
+//! Prints a line for 10,000, 100,000 and 1,000,000 segments, or for the numbers given. Works on any adapter.
 
 use beadwright::plan::plan;
 
@@ -26,7 +26,7 @@ const FRAMES: usize = 9;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let wanted: Vec<usize> = std::env::args().skip(1).filter_map(|arg| arg.parse().ok()).collect();
-    let wanted = if wanted.is_empty() { vec![200_000, 1_000_000] } else { wanted };
+    let wanted = if wanted.is_empty() { vec![10_000, 100_000, 1_000_000] } else { wanted };
     let state = match headless() {
         Ok(state) => state,
         Err(error) => {
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let profile = Profile::built_in("cmt-al2319-kuka")?;
     let import = model::import(&example::find("vase").ok_or("there is no vase")?.stl(), &Task::default())?;
     let layers = plan("vase", &import.mesh, &profile, &Task::default())?.layers;
-    println!("segments  build  upload  frame far  moving  near  pick longest  VmHWM MiB");
+    println!("segments  build  upload  frame far  moving  near  pick longest  B/segment  VmHWM MiB");
     for segments in wanted {
         measure(&state, &layers, &Torch::of(&profile.weld_settings()), segments)?;
     }
@@ -71,13 +71,14 @@ fn measure(state: &RenderState, layers: &[Layer], torch: &Torch, segments: usize
     let near = median(&mut view, false)?;
     let longest = longest_pick(&scene, &style, &view, size);
     println!(
-        "{:8}  {:5.0}  {:6.0}  {:9.1}  {:6.1}  {:4.0}  {longest:12.1}  {:9}",
+        "{:8}  {:5.0}  {:6.0}  {:9.1}  {:6.1}  {:4.0}  {longest:12.1}  {:9.1}  {:9}",
         scene.segments(),
         build.as_secs_f64() * 1e3,
         upload * 1e3,
         full * 1e3,
         moving * 1e3,
         near * 1e3,
+        scene.bytes() as f64 / scene.segments() as f64,
         peak_mib(),
     );
     Ok(())

@@ -2,10 +2,12 @@
 
 use crate::actions::Action;
 use crate::export::Export;
+use crate::heat;
 use crate::jobs::{self, Ask};
 use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view3d::StandardView;
+use beadwright::robot::Cell;
 use eframe::egui::ViewportCommand;
 use std::path::Path;
 
@@ -41,9 +43,9 @@ impl Studio {
                 }
                 self.view.playing = false;
             }
-            Action::Solid => self.view.mode = Mode::Solid,
-            Action::Layer => self.view.mode = Mode::Layer,
-            Action::Compare => self.view.mode = Mode::Compare,
+            Action::Solid => self.view.switch(Mode::Solid),
+            Action::Layer => self.view.switch(Mode::Layer),
+            Action::Compare => self.view.switch(Mode::Compare),
             Action::Fit => {
                 self.flat.fit();
                 self.solid.fit();
@@ -81,6 +83,10 @@ impl Studio {
                 self.window.settings.language = language;
                 self.window.store.keep_settings(&self.window.settings);
             }
+            Action::AllParameters(all) => {
+                self.window.settings.all_parameters = all;
+                self.window.store.keep_settings(&self.window.settings);
+            }
             Action::SetValue(key, value) => self.set_value(&key, &value),
             Action::ResetValue(key) => self.reset_values(&[key]),
             Action::ResetValues(keys) => self.reset_values(&keys),
@@ -90,6 +96,8 @@ impl Studio {
             Action::CompareWith(strategy) => self.compare_with(Some(strategy)),
             Action::Dismiss(index) => drop(self.window.messages.remove(index)),
             Action::LookCloser => self.look_closer(),
+            Action::Heat => self.begin_heat(),
+            Action::TakeCell(name) => self.take_cell(name),
             Action::Reach => self.begin_reach(),
             Action::BringBack => {
                 if let Some(project) = self.open.lost.take() {
@@ -116,7 +124,23 @@ impl Studio {
     fn begin_reach(&mut self) {
         if let Some(profile) = self.plans.own.profile.clone() {
             let (cell, layers) = (self.view.cell.clone(), self.plans.own.layers.clone());
+            self.jobs.cell = Cell::built_in(&cell).ok();
             self.jobs.reach_job = Some(jobs::reach(&self.window.ctx, cell, layers, profile));
+        }
+    }
+
+    /// Computes how warm the metal is where passes begin.
+    fn begin_heat(&mut self) {
+        if let Some(profile) = self.plans.own.profile.clone() {
+            self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
+        }
+    }
+
+    /// Takes another robot cell; what was computed for the former is forgotten.
+    fn take_cell(&mut self, name: &str) {
+        if self.view.cell != name {
+            name.clone_into(&mut self.view.cell);
+            (self.jobs.cell, self.jobs.reach, self.jobs.reach_job) = (None, None, None);
         }
     }
 

@@ -72,6 +72,8 @@ pub enum Action {
     ResetValue(String),
     /// Removes several values from the profile.
     ResetValues(Vec<String>),
+    /// Lists all parameters, or only the basic ones.
+    AllParameters(bool),
     /// Loads the text of another profile.
     SetProfile(&'static str),
     /// Places the part.
@@ -84,6 +86,10 @@ pub enum Action {
     Dismiss(usize),
     /// Computes the pockets and skeleton regions of the layer in view.
     LookCloser,
+    /// Takes another robot cell.
+    TakeCell(&'static str),
+    /// Computes temperatures.
+    Heat,
     /// Computes what the robot can reach.
     Reach,
     /// Restores the project of a run that crashed.

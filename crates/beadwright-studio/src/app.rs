@@ -4,6 +4,7 @@ use crate::actions;
 use crate::jobs::{self, Answer};
 use crate::panels;
 use crate::studio::Studio;
+use crate::view3d::Colour;
 use eframe::egui::{self, ViewportCommand};
 
 impl Studio {
@@ -33,9 +34,32 @@ impl Studio {
             }
             None => {}
         }
+        match jobs::take(&mut self.jobs.heat_job) {
+            Some(Ok(Ok(temperatures))) if temperatures.iter().any(|layer| !layer.is_empty()) => {
+                for (layer, temperatures) in temperatures.into_iter().enumerate() {
+                    self.plans.own.scene.set_temperatures(layer, temperatures);
+                }
+            }
+            // Nothing to show; do not try again.
+            Some(Ok(Ok(_))) => self.view.colour = Colour::Kind,
+            Some(Ok(Err(error)) | Err(error)) => {
+                self.view.colour = Colour::Kind;
+                self.complain(error);
+            }
+            None => {}
+        }
         match jobs::take(&mut self.jobs.reach_job) {
-            Some(Ok(Ok(reach))) => self.jobs.reach = Some(reach),
-            Some(Ok(Err(error)) | Err(error)) => self.complain(error),
+            Some(Ok(Ok(reach))) => {
+                self.jobs.reach = Some(reach);
+                if self.view.robot {
+                    self.solid.fit();
+                }
+            }
+            Some(Ok(Err(error)) | Err(error)) => {
+                // Do not retry: it would only fail again.
+                self.view.robot = false;
+                self.complain(error);
+            }
             None => {}
         }
     }

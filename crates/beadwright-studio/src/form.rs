@@ -57,6 +57,25 @@ pub fn sections() -> &'static [Section] {
     SECTIONS.get_or_init(|| read(&Profile::schema()))
 }
 
+/// The keys shown before all others: those that change a part the most.
+pub const BASIC: [&str; 10] = [
+    "fill.strategy",
+    "layers.height",
+    "bead.width",
+    "process.wire_feed_speed",
+    "process.deposition_speed",
+    "fill.perimeters",
+    "fill.raster_angle",
+    "fill.machining_allowance",
+    "start_stop.interpass_time",
+    "travel.speed",
+];
+
+/// The field of a key.
+pub fn field(key: &str) -> Option<&'static Field> {
+    sections().iter().flat_map(|section| &section.fields).find(|field| field.key == key)
+}
+
 /// The sections that come first; the others follow by name.
 const FIRST: [&str; 13] = [
     "fill",
@@ -83,7 +102,7 @@ fn read(schema: &Value) -> Vec<Section> {
             Some(definition) if definition["properties"].is_object() => {
                 sections.extend(section(key, definition, text(property, "description"), defs));
             }
-            _ => top.fields.extend(field(key, key, property, false, defs)),
+            _ => top.fields.extend(field_of(key, key, property, false, defs)),
         }
     }
     let rank = |section: &Section| FIRST.iter().position(|f| *f == section.key).unwrap_or(FIRST.len());
@@ -106,13 +125,13 @@ fn section(key: &str, definition: &Value, about: String, defs: &Value) -> Vec<Se
             Some(found) if found["properties"].is_object() => {
                 inner.extend(section(&full, found, text(property, "description"), defs));
             }
-            _ => fields.extend(field(&full, name, property, !required.contains(&name.as_str()), defs)),
+            _ => fields.extend(field_of(&full, name, property, !required.contains(&name.as_str()), defs)),
         }
     }
     [vec![Section { key: key.to_owned(), about, fields }], inner].concat()
 }
 
-fn field(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) -> Option<Field> {
+fn field_of(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) -> Option<Field> {
     let kind = words(key).map(Kind::Choice).or_else(|| kind(property, defs))?;
     Some(Field {
         key: key.to_owned(),

@@ -9,22 +9,26 @@
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, and its results so far |
-//! | [`jobs`] | other background work: steps of the hybrid, reach, file dialogs |
+//! | [`jobs`], [`heat`] | other background work: steps of the hybrid, reach, file dialogs; temperatures |
 //! | [`form`] | the profile as a form |
+//! | [`arm`] | how the robot stands with the torch at a place |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
 //! | `files`, [`export`] | opening and writing files |
 //! | [`actions`] | what the user can do; menus and keys |
+//! | [`thumbnail`] | pictures of the examples |
 //! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
 
 mod act;
 pub mod actions;
 mod app;
+pub mod arm;
 pub mod export;
 mod files;
 pub mod fonts;
 pub mod form;
+pub mod heat;
 pub mod history;
 pub mod jobs;
 mod panels;
@@ -34,6 +38,7 @@ pub mod settings;
 pub mod state;
 pub mod studio;
 pub mod text;
+pub mod thumbnail;
 pub mod view;
 pub mod view2d;
 pub mod view3d;

@@ -3,6 +3,7 @@
 use beadwright_studio::Studio;
 use beadwright_studio::settings::Store;
 use beadwright_studio::view::{Mode, Side};
+use beadwright_studio::view3d::Section;
 use clap::{Parser, ValueEnum};
 use eframe::egui::ViewportBuilder;
 use std::path::PathBuf;
@@ -26,6 +27,15 @@ struct Arguments {
     /// Show heights and voids in the layer view.
     #[arg(long)]
     heights: bool,
+    /// Compare in 3-D.
+    #[arg(long)]
+    solid: bool,
+    /// A section through the middle of the part, square to this axis.
+    #[arg(long, value_name = "AXIS")]
+    section: Option<Axis>,
+    /// Show the arm of the robot cell.
+    #[arg(long)]
+    robot: bool,
     /// A second strategy to plan and show beside the first.
     #[arg(long, value_name = "STRATEGY")]
     compare_with: Option<String>,
@@ -50,6 +60,13 @@ enum Panel {
     Findings,
     Plots,
     Export,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Axis {
+    X,
+    Y,
+    Z,
 }
 
 /// A key and its value.
@@ -113,6 +130,11 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         Panel::Export => Side::Export,
     });
     view.show.heights |= arguments.heights;
+    view.robot |= arguments.robot;
+    view.compare_solid |= arguments.solid;
+    // Parts stand about x = y = 0, and what lies in front is cut away.
+    let section = |axis: Axis| Section { axis: axis as usize, at: 0.0, lower: matches!(axis, Axis::Y) };
+    view.section = arguments.section.map(section);
     arguments.layer.into_iter().for_each(|layer| view.look_at(layer as usize - 1));
     studio
 }

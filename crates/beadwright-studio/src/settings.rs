@@ -18,6 +18,8 @@ pub struct Settings {
     pub language: Language,
     /// Whether the window is light; dark otherwise.
     pub light: bool,
+    /// Whether all parameters are listed, not only the basic ones.
+    pub all_parameters: bool,
     /// Files that were opened, the newest first.
     pub recent: Vec<PathBuf>,
 }

@@ -3,6 +3,7 @@
 use crate::actions::Action;
 use crate::export::Export;
 use crate::form::Parsed;
+use crate::heat::Temperatures;
 use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
 use crate::planner::{Planner, Urgency};
@@ -12,11 +13,11 @@ use crate::state::PlanState;
 use crate::text::Language;
 use crate::view::ViewState;
 use crate::view2d::View2d;
-use crate::view3d::{Pick, Style, View3d};
+use crate::view3d::{Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
-use beadwright::robot::Reach;
+use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
 use eframe::egui_wgpu::RenderState;
 use eframe::egui_wgpu::wgpu::DeviceType;
@@ -32,8 +33,10 @@ pub struct Other {
     pub planner: Planner,
     /// Its plan.
     pub plan: PlanState,
-    /// Its view.
+    /// Its view of a layer.
     pub flat: View2d,
+    /// Its view in 3-D.
+    pub solid: View3d,
 }
 
 /// The window and what is remembered.
@@ -42,6 +45,8 @@ pub struct Window {
     pub(crate) render_state: Option<RenderState>,
     pub(crate) store: Store,
     pub(crate) settings: Settings,
+    /// Pictures of the examples, in their order, as far as they are drawn.
+    pub(crate) pictures: Vec<egui::TextureHandle>,
     /// Sentences on what went wrong or was done, newest last.
     pub(crate) messages: Vec<Message>,
     /// Whether there is a font with Chinese characters.
@@ -86,10 +91,20 @@ pub struct Jobs {
     pub(crate) exporting: Export,
     pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
     pub(crate) steps: Option<(usize, Vec<Steps>)>,
+    pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
+    /// The cell that this is about.
+    pub(crate) cell: Option<Cell>,
     /// Measured beads to look at.
     pub(crate) beads: Option<BeadLibrary>,
+}
+
+impl Jobs {
+    /// Whether nothing is being computed.
+    fn is_idle(&self) -> bool {
+        self.reach_job.is_none() && self.steps_job.is_none() && self.heat_job.is_none()
+    }
 }
 
 /// The program, as the panels show it. Panels change only the view; everything else they ask for by a queue.
@@ -127,6 +142,7 @@ impl Studio {
                 ctx,
                 store,
                 settings,
+                pictures: Vec::new(),
                 messages: Vec::new(),
                 closing: false,
             },
@@ -224,7 +240,7 @@ impl Studio {
     /// Whether nothing is running in the background.
     pub fn is_idle(&self) -> bool {
         let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy());
-        !self.plans.own.is_busy() && !other && self.jobs.reach_job.is_none() && self.jobs.steps_job.is_none()
+        !self.plans.own.is_busy() && !other && self.jobs.is_idle()
     }
 
     pub(crate) fn say(&mut self, text: impl Into<String>) {
@@ -242,23 +258,37 @@ impl Studio {
     /// What is shown now.
     pub(crate) fn style(&self) -> Style {
         let view = &self.view;
+        let arm = self.arm();
+        let at_arm = self.torch_place().filter(|_| arm.is_some()).map(|place| place.at);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
             colour: view.colour,
-            mesh: view.mesh,
+            mesh: view.mesh || view.laying,
             travels: view.show.travels,
             starts: view.show.starts,
             marks_from: if view.all_marks { 0 } else { view.last },
-            beads: view.show.beads,
+            // Beads would lie before the faces to be clicked.
+            beads: view.show.beads && !view.laying,
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
-            torch: view.torch,
+            section: view.section,
+            plate: self.plate().filter(|_| view.plate),
+            torch: view.torch.or(at_arm),
+            arm: arm.map(|arm| arm.links).unwrap_or_default(),
             highlight: view.chosen.and_then(|chosen| self.pick(chosen)),
             dark: !self.window.settings.light,
         }
     }
 
-    fn pick(&self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
+    /// The plate on which the part is built, where the profile tells of one.
+    pub(crate) fn plate(&self) -> Option<Plate> {
+        let plate = self.plans.own.profile.as_ref()?.substrate.as_ref()?;
+        let (low, high) = self.plans.own.part.as_ref()?.bounds();
+        let (low, high) = (low.truncate() - plate.margin, high.truncate() + plate.margin);
+        Some(Plate { low, high, thickness: plate.thickness })
+    }
+
+    pub(crate) fn pick(&self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
         let span = self.plans.own.scene.layer(layer)?.passes().get(pass)?;
         Some(Pick { layer, pass, segment: span.segments.start + piece })
     }
@@ -333,6 +363,7 @@ impl Studio {
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         (self.jobs.steps, self.jobs.steps_job) = (None, None);
+        self.jobs.heat_job = None;
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
             self.plans.planner.cancel();
@@ -360,6 +391,7 @@ impl Studio {
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
             flat: View2d::default(),
+            solid: View3d::default(),
         };
         if self.project().source.is_some() {
             other.plan.restart();

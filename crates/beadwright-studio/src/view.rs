@@ -1,7 +1,7 @@
 //! What is shown, and how. None of it belongs to the project.
 
 use crate::view2d::Show;
-use crate::view3d::{Colour, Scene};
+use crate::view3d::{Colour, Scene, Section};
 
 /// Which view fills the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -58,6 +58,16 @@ pub struct ViewState {
     pub all_marks: bool,
     /// Whether the projection is parallel, not in perspective.
     pub parallel: bool,
+    /// Whether the plate below the part is shown.
+    pub plate: bool,
+    /// Whether the robot's arm is shown.
+    pub robot: bool,
+    /// Whether the next click in 3-D chooses the face on which the part is laid.
+    pub laying: bool,
+    /// Whether strategies are compared in 3-D, not layer by layer.
+    pub compare_solid: bool,
+    /// The section through the part.
+    pub section: Option<Section>,
     /// What else is shown.
     pub show: Show,
     /// The chosen bead: layer, pass, piece.
@@ -74,6 +84,8 @@ pub struct ViewState {
     pub keys: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
     wanted: Option<usize>,
+    /// The layer wanted before the layer view went to that of the chosen bead, and the latter.
+    left: Option<(Option<usize>, usize)>,
 }
 
 impl Default for ViewState {
@@ -92,6 +104,11 @@ impl Default for ViewState {
             mesh: true,
             all_marks: false,
             parallel: false,
+            plate: true,
+            robot: false,
+            laying: false,
+            compare_solid: false,
+            section: None,
             show: Show::default(),
             chosen: None,
             dialect: "krl".to_owned(),
@@ -100,6 +117,7 @@ impl Default for ViewState {
             search: String::new(),
             keys: false,
             wanted: None,
+            left: None,
         }
     }
 }
@@ -107,7 +125,9 @@ impl Default for ViewState {
 impl ViewState {
     /// Shows all of a new part.
     pub fn reset(&mut self) {
-        *self = Self { wanted: None, first: 0, last: 0, progress: 1.0, chosen: None, torch: None, ..self.clone() };
+        let (first, last, progress) = (0, 0, 1.0);
+        let (wanted, left, chosen, torch, section, laying) = (None, None, None, None, None, false);
+        *self = Self { laying, wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
     }
 
     /// Keeps the range within the existing layers.
@@ -127,6 +147,23 @@ impl ViewState {
         self.wanted = Some(layer);
         self.torch = None;
         self.playing = false;
+    }
+
+    /// Switches to a view. Those of one layer show that of the chosen bead; back in 3-D, as many layers as before are seen.
+    pub fn switch(&mut self, mode: Mode) {
+        if mode == self.mode {
+            return;
+        }
+        self.mode = mode;
+        let elsewhere = self.chosen.map(|(layer, ..)| layer).filter(|layer| *layer != self.last && !self.playing);
+        match (mode, elsewhere, self.left.take()) {
+            (Mode::Solid, _, Some((wanted, layer))) if self.last == layer => self.wanted = wanted,
+            (Mode::Layer | Mode::Compare, Some(layer), _) => {
+                self.left = Some((self.wanted, layer));
+                self.look_at(layer);
+            }
+            _ => {}
+        }
     }
 
     /// Plays the torch from where it paused, or else from the start of the layer in view; or stops it.

@@ -23,11 +23,14 @@ fn an_example_is_planned_changed_looked_through_and_exported() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = studio(&folder.path().join("store"));
     click(&mut harness, "Examples");
-    click(&mut harness, "cross");
+    // In the menu, which lies over the examples of the start.
+    harness.query_all_by_label("cross").last().unwrap().click();
+    harness.run_steps(3);
     wait(&mut harness);
     let contour_passes = harness.state().plan().summary.as_ref().unwrap().metrics.passes;
 
-    harness.get_by_role_and_label(eframe::egui::Role::ComboBox, "Strategy").click();
+    // In the bar, or among the basic parameters.
+    harness.query_all_by_role_and_label(eframe::egui::Role::ComboBox, "Strategy").next().unwrap().click();
     harness.run_steps(3);
     click(&mut harness, "hybrid");
     wait(&mut harness);

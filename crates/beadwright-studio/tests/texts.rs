@@ -30,7 +30,9 @@ fn every_text_is_there_in_both_languages() {
 fn every_key_is_used_and_every_used_key_is_there() {
     let code = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
     let plain = |key: &&String| {
-        ["total ", "section ", "name ", "kind ", "hint ", "fdm "].iter().all(|kind| !key.starts_with(kind))
+        ["total ", "section ", "name ", "kind ", "hint ", "fdm ", "basic ", "why "]
+            .iter()
+            .all(|kind| !key.starts_with(kind))
     };
     for key in table().keys().filter(plain) {
         assert!(code.contains(&format!("\"{key}\"")), "{key} is used nowhere");
@@ -52,6 +54,16 @@ fn every_key_of_the_profile_has_a_name_in_both_languages() {
         for field in &section.fields {
             let key = format!("name {}", field.name);
             assert!(Language::Chinese.find(&key).is_some(), "{key}");
+        }
+    }
+}
+
+#[test]
+fn every_basic_parameter_is_one_of_the_profile_and_says_why() {
+    for key in beadwright_studio::form::BASIC {
+        assert!(beadwright_studio::form::field(key).is_some(), "{key} is no key of a profile");
+        for text in [format!("basic {key}"), format!("why {key}")] {
+            assert!(Language::Chinese.find(&text).is_some(), "{text} stands in no table");
         }
     }
 }

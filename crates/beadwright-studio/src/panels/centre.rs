@@ -1,35 +1,28 @@
 //! The views in the middle of the window.
 
-use super::{solid, totals};
+use super::{bead, compare, solid};
 use crate::actions::Action;
-use crate::planner::Failure;
 use crate::state::PlanState;
 use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view2d::{Drawing, View2d};
-use beadwright::fill;
 use beadwright::fill::hybrid::Steps;
-use eframe::egui::{CentralPanel, ComboBox, Grid, Panel, Ui};
+use eframe::egui::{CentralPanel, Panel, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     if studio.view.mode == Mode::Compare {
-        Panel::bottom("differences").show(ui, |ui| differences(studio, ui));
+        Panel::bottom("differences").show(ui, |ui| compare::differences(studio, ui));
     }
-    CentralPanel::default().show(ui, |ui| {
-        if studio.project().source.is_none() {
-            ui.centered_and_justified(|ui| ui.heading(studio.t("drop-here")));
-            return;
-        }
-        match studio.view.mode {
-            Mode::Solid => solid::show(studio, ui),
-            Mode::Layer => layer(studio, ui),
-            Mode::Compare => compare(studio, ui),
-        }
+    CentralPanel::default().show(ui, |ui| match studio.view.mode {
+        Mode::Solid => solid::show(studio, ui),
+        Mode::Layer => layer(studio, ui),
+        Mode::Compare => compare::show(studio, ui),
     });
 }
 
 fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
+    bead::show(studio, ui);
     look_closer(studio);
     let words = Words { label: studio.t("view-2d-label"), nothing: studio.t("nothing-laid") };
     let scale = Some(studio.t("bead-heights"));
@@ -51,12 +44,13 @@ fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
 
 /// What the view of a layer is called, and what is said of an empty one.
 #[derive(Clone, Copy)]
-struct Words {
-    label: &'static str,
-    nothing: &'static str,
+pub(super) struct Words {
+    pub(super) label: &'static str,
+    pub(super) nothing: &'static str,
 }
 
-fn flat(
+/// A layer of a plan; what was picked, if the view was clicked.
+pub(super) fn flat(
     plan: &PlanState,
     view: &mut View2d,
     ui: &mut Ui,
@@ -74,12 +68,13 @@ fn flat(
         pieces: (state.progress * count as f64).ceil() as usize,
         scale,
         nothing: words.nothing,
-        chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, _)| pass),
+        chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, piece)| (pass, piece)),
     };
     view.show(ui, subject, state.show, words.label).picked
 }
 
-fn bar(studio: &mut Studio, ui: &mut Ui) {
+/// What is shown of a layer.
+pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         let texts = ["show-beads", "show-paths", "show-travels", "show-starts", "show-heights", "show-regions"];
         let [beads, paths, travels, starts, heights, regions] = texts.map(|key| studio.t(key));
@@ -106,71 +101,4 @@ fn look_closer(studio: &mut Studio) {
     if studio.view.show.regions && !known && studio.jobs.steps_job.is_none() {
         studio.request(Action::LookCloser);
     }
-}
-
-fn compare(studio: &mut Studio, ui: &mut Ui) {
-    choose(studio, ui);
-    bar(studio, ui);
-    let nothing = studio.t("nothing-laid");
-    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| Words { label: studio.t(key), nothing });
-    ui.columns(2, |columns| {
-        let [left, right] = columns else { return };
-        left.strong(studio.plans.own.header.as_ref().map_or("", |header| &header.strategy));
-        let before = studio.flat.eye();
-        if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &[], own, None) {
-            studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
-        }
-        let Some(other) = &mut studio.plans.other else { return };
-        if let Some(Failure::Sentence(text)) = &other.plan.failure {
-            right.colored_label(right.visuals().error_fg_color, text);
-        }
-        right.strong(&other.strategy);
-        // Both views show the same place: when one is moved, the other follows.
-        if studio.flat.eye() != before {
-            other.flat.follow(&studio.flat);
-        }
-        let before = other.flat.eye();
-        flat(&other.plan, &mut other.flat, right, &studio.view, &[], theirs, None);
-        if other.flat.eye() != before {
-            studio.flat.follow(&other.flat);
-        }
-    });
-}
-
-fn choose(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.plans.other.as_ref().map_or_else(|| "–".to_owned(), |other| other.strategy.clone());
-    let mut chosen = None;
-    ui.horizontal(|ui| {
-        let label = ui.label(studio.t("other-strategy"));
-        let combo = ComboBox::from_id_salt("other-strategy").selected_text(&now).show_ui(ui, |ui| {
-            for strategy in fill::STRATEGIES {
-                if ui.selectable_label(now == strategy.name(), strategy.name()).clicked() {
-                    chosen = Some(strategy.name());
-                }
-            }
-        });
-        combo.response.labelled_by(label.id);
-    });
-    if let Some(strategy) = chosen.filter(|strategy| *strategy != now) {
-        studio.request(Action::CompareWith(strategy));
-    }
-}
-
-/// Totals of both plans side by side.
-fn differences(studio: &Studio, ui: &mut Ui) {
-    let Some(other) = &studio.plans.other else { return };
-    let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
-    Grid::new("differences").num_columns(3).spacing([28.0, 2.0]).striped(true).show(ui, |ui| {
-        ui.label("");
-        let now = studio.plans.own.header.as_ref().map_or("", |header| &header.strategy);
-        ui.strong(now);
-        ui.strong(&other.strategy);
-        ui.end_row();
-        for (name, value) in &own {
-            ui.label(totals::name_of(studio, name));
-            ui.label(value);
-            ui.label(theirs.iter().find(|(n, _)| n == name).map_or("…", |(_, value)| value));
-            ui.end_row();
-        }
-    });
 }

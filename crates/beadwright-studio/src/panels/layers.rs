@@ -18,7 +18,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 fn range(studio: &mut Studio, ui: &mut Ui, layers: usize) {
     let (mut first, mut last) = (studio.view.first + 1, studio.view.last + 1);
     // Views of a single layer have no lowest layer.
-    let solid = studio.view.mode == Mode::Solid;
+    let in_compare = studio.view.mode == Mode::Compare && studio.view.compare_solid;
+    let solid = studio.view.mode == Mode::Solid || in_compare;
     let texts = ["first-layer", "last-layer", "layer"].map(|key| studio.t(key));
     if solid {
         ui.add_enabled_ui(last > 1, |ui| {
@@ -40,10 +41,28 @@ fn torch(studio: &mut Studio, ui: &mut Ui) {
         studio.request(Action::Play);
     }
     let (rate, progress) = (studio.t("rate"), studio.t("progress"));
-    slider(ui, rate, 2, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
+    slider(ui, rate, 3, Slider::new(&mut studio.view.rate, 1.0..=1000.0).logarithmic(true).fixed_decimals(0));
+    pass(studio, ui);
     if slider(ui, progress, 1, Slider::new(&mut studio.view.progress, 0.0..=1.0).show_value(false)) {
         studio.view.playing = false;
         studio.view.torch = None;
+    }
+}
+
+/// The last pass shown of the highest layer.
+fn pass(studio: &mut Studio, ui: &mut Ui) {
+    let text = studio.t("last-pass");
+    let Some(beads) = studio.plans.own.scene.layer(studio.view.last).filter(|beads| !beads.is_empty()).cloned() else {
+        ui.add_enabled_ui(false, |ui| slider(ui, text, 2, Slider::new(&mut 0, 0..=0)));
+        return;
+    };
+    let shown = (studio.view.progress * beads.len() as f64).round() as usize;
+    let mut number = beads.pass_of(shown.max(1) - 1) + 1;
+    if slider(ui, text, 2, Slider::new(&mut number, 1..=beads.passes().len()))
+        && let Some(span) = beads.passes().get(number - 1)
+    {
+        studio.view.progress = span.segments.end as f64 / beads.len() as f64;
+        (studio.view.playing, studio.view.torch) = (false, None);
     }
 }
 

@@ -34,7 +34,9 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         ui.menu_button(studio.t("examples"), |ui| examples(studio, ui));
         ui.menu_button(studio.t("help"), |ui| items(studio, ui, &[Action::Keys]));
     });
-    ui.horizontal(|ui| bar(studio, ui));
+    if studio.project().source.is_some() {
+        ui.horizontal(|ui| bar(studio, ui));
+    }
 }
 
 fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
@@ -105,8 +107,9 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
     }
     ui.separator();
     for (mode, key) in [(Mode::Solid, "view-solid"), (Mode::Layer, "view-layer"), (Mode::Compare, "view-compare")] {
-        let text = studio.t(key);
-        ui.selectable_value(&mut studio.view.mode, mode, text);
+        if ui.selectable_label(studio.view.mode == mode, studio.t(key)).clicked() {
+            studio.view.switch(mode);
+        }
     }
     ui.separator();
     match studio.plans.own.progress {

@@ -21,7 +21,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
     let nothing = (!any(studio)).then(|| studio.t("no-messages"));
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    // A list that claims more than the panel has would let the panel above cover its beginning.
+    ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink(false).show(ui, |ui| {
         if let Some(text) = nothing {
             ui.weak(text);
         }

@@ -1,6 +1,9 @@
 //! The panels around the views, one file each.
 
+mod basic;
+mod bead;
 mod centre;
+mod compare;
 mod export;
 mod findings;
 mod layers;
@@ -9,21 +12,37 @@ mod messages;
 mod parameters;
 mod placement;
 mod plots;
+mod process;
 mod questions;
+mod robot;
+mod section;
 pub(crate) mod solid;
+mod start;
 mod totals;
 
 use crate::studio::Studio;
 use crate::view::Side;
-use eframe::egui::{Button, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};
+use eframe::egui::{Button, CentralPanel, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};
 
 /// The whole window.
 pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     Panel::top("menu").show(ui, |ui| menu::show(studio, ui));
+    let open = studio.project().source.is_some();
     // Always there and of one height once a part is open, so that the views do not move when there is something to say.
-    if messages::any(studio) || studio.project().source.is_some() {
+    if messages::any(studio) || open {
         Panel::bottom("messages").exact_size(messages::HEIGHT).show(ui, |ui| messages::show(studio, ui));
     }
+    if open {
+        around(studio, ui);
+        centre::show(studio, ui);
+    } else {
+        CentralPanel::default().show(ui, |ui| start::show(studio, ui));
+    }
+    questions::show(studio, ui);
+}
+
+/// What stands around the view of a part.
+fn around(studio: &mut Studio, ui: &mut Ui) {
     if studio.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
     }
@@ -34,8 +53,6 @@ pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
     });
     Panel::right("side").default_size(330.0).show(ui, |ui| side(studio, ui));
-    centre::show(studio, ui);
-    questions::show(studio, ui);
 }
 
 /// The size of a button with this text, so that the buttons beside it stay where they are when its own text changes.

@@ -1,5 +1,6 @@
 //! The profile as a form: units, ranges and meaning of every key.
 
+use super::{basic, process};
 use crate::actions;
 use crate::actions::Action;
 use crate::form::{self, Field, Kind, Section};
@@ -7,46 +8,39 @@ use crate::jobs::Ask;
 use crate::studio::Studio;
 use crate::text::Language;
 use beadwright::limit::Limit;
-use beadwright::profile::{BUILT_IN, Profile};
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.separator();
     ui.heading(studio.t("parameters"));
     let Some(parsed) = studio.parsed() else { return };
-    choose(studio, ui, &parsed.profile);
-    let label = ui.label(studio.t("search"));
-    ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
-    let fields = || form::sections().iter().flat_map(|section| &section.fields);
-    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| fields().all(|field| field.key != *key))
-    {
-        ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
-    }
-    let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
-    for section in form::sections() {
-        form.section(ui, section);
-    }
-}
-
-fn choose(studio: &mut Studio, ui: &mut Ui, profile: &Profile) {
-    ui.horizontal(|ui| {
-        let label = ui.label(studio.t("profile"));
-        let combo = ComboBox::from_id_salt("profile").selected_text(&profile.name).show_ui(ui, |ui| {
-            for (name, text) in BUILT_IN {
-                if ui.selectable_label(profile.name == name, name).clicked() {
-                    studio.request(Action::SetProfile(text));
-                }
-            }
-        });
-        combo.response.labelled_by(label.id).on_hover_text(&profile.description);
-    });
+    ui.horizontal(|ui| process::profile(studio, ui));
     if ui.button(studio.t("profile-file")).clicked() {
         studio.request(Action::Ask(Ask::OpenProfile));
     }
+    let label = ui.label(studio.t("search"));
+    ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
+    let mut all = studio.window.settings.all_parameters;
+    if ui.checkbox(&mut all, studio.t("all-parameters")).changed() {
+        studio.request(Action::AllParameters(all));
+    }
+    // A search looks at all.
+    let all = all || !studio.view.search.is_empty();
+    let shown = |key: &str| form::field(key).is_some() && (all || form::BASIC.contains(&key));
+    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| !shown(key)) {
+        ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
+    }
+    let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
+    if all {
+        form::sections().iter().for_each(|section| form.section(ui, section));
+    } else {
+        basic::show(&mut form, ui);
+    }
 }
 
-struct Form<'a> {
-    studio: &'a mut Studio,
+/// The profile while it is shown.
+pub(super) struct Form<'a> {
+    pub(super) studio: &'a mut Studio,
     values: &'a toml::Table,
     limits: &'a [Limit],
 }
@@ -56,9 +50,7 @@ impl Form<'_> {
         let search = self.studio.view.search.to_lowercase();
         let found = |f: &&Field| search.is_empty() || self.says(section, f, &search);
         let fields: Vec<&Field> = section.fields.iter().filter(found).collect();
-        // A dialect that has no section in this profile has no values to show.
-        let present = section.key.is_empty() || form::value(self.values, &section.key).is_some();
-        if fields.is_empty() || !present {
+        if fields.is_empty() || !self.has_section(&section.key) {
             return;
         }
         let title = match &*section.key {
@@ -79,6 +71,16 @@ impl Form<'_> {
                     fields.into_iter().for_each(|field| self.field(ui, field));
                 });
             });
+    }
+
+    /// Whether the profile has this section: a dialect that is not written has no values to show.
+    fn has_section(&self, section: &str) -> bool {
+        section.is_empty() || form::value(self.values, section).is_some()
+    }
+
+    /// Whether the profile has the section of this key.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.has_section(key.rsplit_once('.').map_or("", |(section, _)| section))
     }
 
     /// Whether a field has a text in its key, its meaning, the reason for its range, or a name in either language.
@@ -103,11 +105,17 @@ impl Form<'_> {
     }
 
     fn field(&mut self, ui: &mut Ui, field: &Field) {
+        let name = self.studio.language().word("name", &field.name);
+        self.row(ui, field, name);
+    }
+
+    /// A row of a grid: a name, and the widget of its field.
+    pub(super) fn row(&mut self, ui: &mut Ui, field: &Field, name: String) {
         let value = form::value(self.values, &field.key);
         let limit = form::limit(self.limits, &field.key);
         let hint = self.hint(field, limit);
         let refused = self.studio.open.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
-        let mut name = RichText::new(self.studio.language().word("name", &field.name));
+        let mut name = RichText::new(name);
         if refused {
             name = name.color(ui.visuals().error_fg_color);
         }

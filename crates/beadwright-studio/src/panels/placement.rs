@@ -3,14 +3,12 @@
 use crate::actions;
 use crate::actions::Action;
 use crate::studio::Studio;
+use crate::view::Mode;
 use beadwright::model::{Part, Placement, Units};
-use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Ui};
+use eframe::egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let Some(source) = studio.project().source.clone() else {
-        ui.label(studio.t("drop-here"));
-        return;
-    };
+    let Some(source) = studio.project().source.clone() else { return };
     ui.strong(source.label());
     CollapsingHeader::new(studio.t("placement")).show(ui, |ui| {
         let mut placement = studio.project().placement;
@@ -26,6 +24,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         ui.horizontal(|ui| {
             if ui.button(studio.t("lay-flat")).clicked() {
                 placement.turn = laid_flat(studio, &placement);
+            }
+            let (by_face, solid) = (studio.t("lay-by-face"), studio.plans.own.scene.mesh().is_some());
+            if ui.add_enabled(solid, Button::selectable(studio.view.laying, by_face)).clicked() {
+                studio.view.laying = !studio.view.laying;
+                studio.view.switch(Mode::Solid);
             }
             if ui.button(studio.t("reset")).clicked() {
                 placement = Placement { units: placement.units, ..Placement::default() };

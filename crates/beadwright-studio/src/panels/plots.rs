@@ -1,11 +1,12 @@
 //! Plots: figures for every layer, measured beads, the robot's joints.
 
+use super::process;
 use crate::actions::Action;
 use crate::jobs::Ask;
 use crate::studio::Studio;
 use beadwright::report::{bead_window, plot as page};
-use beadwright::robot::{Reach, cell};
-use eframe::egui::{ComboBox, Rangef, Ui};
+use beadwright::robot::Reach;
+use eframe::egui::{Rangef, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Most points drawn for a curve.
@@ -78,16 +79,7 @@ fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, 
 }
 
 fn joints(studio: &mut Studio, ui: &mut Ui) {
-    ui.horizontal(|ui| {
-        let label = ui.label(studio.t("cell"));
-        let now = studio.view.cell.clone();
-        let combo = ComboBox::from_id_salt("cell").selected_text(now).show_ui(ui, |ui| {
-            for (name, _) in cell::BUILT_IN {
-                ui.selectable_value(&mut studio.view.cell, name.to_owned(), name);
-            }
-        });
-        combo.response.labelled_by(label.id);
-    });
+    ui.horizontal(|ui| process::cell(studio, ui));
     let ready = studio.plans.own.summary.is_some() && studio.jobs.reach_job.is_none();
     if ui.add_enabled(ready, eframe::egui::Button::new(studio.t("reach-run"))).clicked() {
         studio.request(Action::Reach);

@@ -1,15 +1,20 @@
 //! The 3-D view with its bar and its legend.
 
+use super::{bead, robot, section};
+use crate::actions::Action;
 use crate::studio::Studio;
-use crate::view3d::{Colour, Pick, palette};
+use crate::view3d::{Colour, Pick, Style, face, palette};
+use beadwright::model::Placement;
 use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
+use glam::DVec3;
 
 /// What the colours can show, with their texts.
-const COLOURS: [(Colour, &str); 6] = [
+const COLOURS: [(Colour, &str); 7] = [
     (Colour::Kind, "colour-kind"),
     (Colour::Order, "colour-order"),
     (Colour::Speed, "colour-speed"),
+    (Colour::Width, "colour-width"),
     (Colour::HeightError, "colour-height"),
     (Colour::Time, "colour-time"),
     (Colour::Temperature, "colour-temperature"),
@@ -17,26 +22,56 @@ const COLOURS: [(Colour, &str); 6] = [
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(studio, ui));
-    ui.horizontal(|ui| legend(studio, ui));
-    let style = studio.style();
+    ui.horizontal_wrapped(|ui| {
+        colours(studio, ui);
+        legend(studio, ui);
+        ui.separator();
+        section::show(studio, ui);
+    });
+    bead::show(studio, ui);
+    robot::joints(studio, ui);
+    let (style, label) = (studio.style(), studio.t("view-3d-label"));
+    view(studio, ui, &style, label);
+}
+
+/// The picture, with what a click chooses.
+pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str) {
+    studio.solid.caption = caption(studio);
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
-    let label = studio.t("view-3d-label");
-    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, &style, label);
-    if shown.clicked {
+    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, style, label);
+    if studio.view.laying {
+        shown.sight.into_iter().for_each(|sight| lay(studio, sight));
+    } else if shown.clicked {
         studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
     }
 }
 
-fn bar(studio: &mut Studio, ui: &mut Ui) {
-    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "parallel"];
-    let [mesh, beads, travels, starts, all_marks, parallel] = texts.map(|key| studio.t(key));
+/// Lays the part onto the face that is seen there.
+fn lay(studio: &mut Studio, sight: (DVec3, DVec3)) {
+    let Some(normal) = studio.plans.own.scene.mesh().and_then(|mesh| face(mesh, sight)) else { return };
+    let placement = studio.project().placement;
+    studio.request(Action::Place(Placement { turn: placement.turned_onto(normal), ..placement }));
+    studio.view.laying = false;
+    studio.solid.fit();
+}
+
+/// What is shown.
+pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
+    let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "show-plate", "parallel"];
+    let [mesh, beads, travels, starts, all_marks, plate, parallel] = texts.map(|key| studio.t(key));
     ui.checkbox(&mut studio.view.mesh, mesh);
     ui.checkbox(&mut studio.view.show.beads, beads);
     ui.checkbox(&mut studio.view.show.travels, travels);
     ui.checkbox(&mut studio.view.show.starts, starts);
     ui.checkbox(&mut studio.view.all_marks, all_marks);
+    ui.checkbox(&mut studio.view.plate, plate);
+    robot::switch(studio, ui);
     ui.checkbox(&mut studio.view.parallel, parallel);
+}
+
+/// What the colours show.
+pub(super) fn colours(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
     let selected = studio.t(text(studio.view.colour));
@@ -47,6 +82,20 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
         }
     });
     combo.response.labelled_by(label.id);
+    warm(studio, ui);
+}
+
+/// Has temperatures computed when they are to be shown and the plan has none.
+fn warm(studio: &mut Studio, ui: &mut Ui) {
+    if studio.jobs.heat_job.is_some() {
+        ui.spinner();
+        ui.weak(studio.t("stage-heat"));
+        return;
+    }
+    let known = || studio.plans.own.scene.value_range(Colour::Temperature).is_some();
+    if studio.view.colour == Colour::Temperature && studio.plans.own.summary.is_some() && !known() {
+        studio.request(Action::Heat);
+    }
 }
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
@@ -62,9 +111,13 @@ fn legend(studio: &Studio, ui: &mut Ui) {
         }
         return;
     }
-    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else { return };
+    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else {
+        ui.weak(studio.t("no-values"));
+        return;
+    };
     let unit = match studio.view.colour {
         Colour::Speed => " mm/s",
+        Colour::Width => " mm",
         Colour::Time => " s",
         Colour::Temperature => " °C",
         Colour::HeightError => studio.t("unit-bead-heights"),
@@ -87,6 +140,15 @@ fn legend(studio: &Studio, ui: &mut Ui) {
 
 fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
+}
+
+/// The size of the plate, and what the grid on it shows.
+fn caption(studio: &Studio) -> String {
+    let plate = studio.plate().filter(|_| studio.view.plate).map(|plate| {
+        let size = plate.high - plate.low;
+        format!("{} {:.0} × {:.0} × {:.0} mm, ", studio.t("show-plate"), size.x, size.y, plate.thickness)
+    });
+    format!("{}{}", plate.unwrap_or_default(), studio.t("grid"))
 }
 
 /// The picked bead, its segment counted within its pass instead of within its layer.

@@ -66,8 +66,8 @@ pub struct Drawing<'a> {
     pub steps: &'a [Steps],
     /// Number of bead segments that are shown.
     pub pieces: usize,
-    /// The pass that is chosen.
-    pub chosen: Option<usize>,
+    /// The pass that is chosen, and its piece.
+    pub chosen: Option<(usize, usize)>,
     /// The caption of the scale of heights, where it is shown.
     pub scale: Option<&'a str>,
     /// What to say of a layer without passes.
@@ -168,6 +168,7 @@ impl View2d {
             subject.steps.iter().for_each(|steps| pen.regions(steps));
         }
         pen.passes(&subject, show);
+        pen.chosen(&subject);
         self.measures(&pen);
         pen.scale_bar();
         if subject.layer.passes.is_empty() {

@@ -10,14 +10,15 @@ use beadwright::pass::{PassKind, Segment};
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use glam::DVec2;
 
-const START: Color32 = Color32::from_rgb(0x1a, 0x9c, 0x4b);
-const END: Color32 = Color32::from_rgb(0xd9, 0x2d, 0x3a);
 const POCKET: Color32 = Color32::from_rgb(0x7e, 0x57, 0xc2);
 const REGION: Color32 = Color32::from_rgb(0x0f, 0x8b, 0x8d);
 
 /// The colour of a kind of pass.
 fn colour(kind: PassKind) -> Color32 {
-    let [r, g, b] = palette::kind(kind);
+    ink(palette::kind(kind))
+}
+
+fn ink([r, g, b]: palette::Rgb) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
@@ -69,6 +70,19 @@ impl Pen<'_> {
         }
     }
 
+    /// The chosen pass along its path, and its piece, in the colour that they have in 3-D.
+    pub(super) fn chosen(&self, subject: &Drawing<'_>) {
+        let Some((pass, piece)) = subject.chosen else { return };
+        let Some(pass) = subject.layer.passes.get(pass) else { return };
+        let ink = ink(palette::ACCENT);
+        let points = pass.points.iter().map(|p| self.at(p.truncate())).collect();
+        self.painter.add(Shape::line(points, Stroke::new(2.5, ink)));
+        if let Some(segment) = pass.segments().nth(piece) {
+            let line = [segment.from, segment.to].map(|p| self.at(p.truncate()));
+            self.painter.line_segment(line, Stroke::new(6.0, ink));
+        }
+    }
+
     pub(super) fn passes(&self, subject: &Drawing<'_>, show: Show) {
         let mut left = subject.pieces;
         let shown = subject.layer.passes.iter().map(|pass| {
@@ -80,12 +94,12 @@ impl Pen<'_> {
         // Beads would only hide the colours of the heights.
         if show.beads && !show.heights {
             for (i, (kind, pieces)) in shown.iter().enumerate() {
-                self.bead(*kind, pieces, subject.chosen == Some(i));
+                self.bead(*kind, pieces, subject.chosen.is_some_and(|(pass, _)| pass == i));
             }
             self.outlines(subject.layer);
         }
         let (mut torch, weak) = (None, Stroke::new(1.0, self.ui.visuals().weak_text_color()));
-        for (i, (kind, pieces)) in shown.iter().enumerate() {
+        for (kind, pieces) in &shown {
             let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else { break };
             let [start, end] = [first.from, last.to].map(|p| self.at(p.truncate()));
             if let (true, Some(from)) = (show.travels, torch) {
@@ -93,13 +107,12 @@ impl Pen<'_> {
             }
             if show.paths {
                 let ink = if show.heights { Color32::BLACK } else { colour(*kind) };
-                let width = if subject.chosen == Some(i) { 3.0 } else { 1.5 };
                 let points = pieces.iter().map(|s| s.to).map(|p| self.at(p.truncate()));
-                self.painter.add(Shape::line([start].into_iter().chain(points).collect(), Stroke::new(width, ink)));
+                self.painter.add(Shape::line([start].into_iter().chain(points).collect(), Stroke::new(1.5, ink)));
             }
             if show.starts {
-                self.painter.circle_filled(start, 3.5, START);
-                self.painter.circle_filled(end, 2.5, END);
+                self.painter.circle_filled(start, 3.5, self::ink(palette::START));
+                self.painter.circle_filled(end, 2.5, self::ink(palette::END));
             }
             torch = Some(end);
         }

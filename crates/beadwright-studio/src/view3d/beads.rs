@@ -237,6 +237,15 @@ impl LayerBeads {
         self.beads.is_empty()
     }
 
+    /// Memory that the segments take, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let beads = (self.beads.capacity() + self.rough.capacity()) * size_of::<Bead>();
+        let numbers = self.speeds.capacity() + self.ends.capacity() + self.cap_segments.capacity();
+        let caps = self.caps.capacity() * size_of::<Cap>();
+        let boxes = self.boxes.capacity() * size_of::<(Vec3, Vec3)>();
+        beads + 4 * (numbers + self.rough_segments.capacity()) + caps + boxes
+    }
+
     /// Time for the layer, with the travel to its first pass, s.
     pub fn seconds(&self) -> f64 {
         self.seconds
@@ -263,6 +272,12 @@ impl LayerBeads {
     /// Slowest and fastest speed of the torch, mm/s.
     pub(super) fn speed_range(&self) -> (f32, f32) {
         self.speeds.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+    }
+
+    /// Narrowest and widest bead, mm.
+    pub(super) fn width_range(&self) -> (f32, f32) {
+        let widths = self.beads.iter().map(Bead::width);
+        widths.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), w| (low.min(w), high.max(w)))
     }
 
     /// Lowest and highest corner of the beads, mm.

@@ -8,8 +8,9 @@
 //! | `beads` | one layer as it is drawn and timed |
 //! | `scene` | the model and the layers planned so far |
 //! | `style`, [`palette`] | what is shown and in which colours |
+//! | `section` | a plane that cuts away what lies beyond it |
 //! | `camera` | where the eye is |
-//! | `pick` | which segment is under the pointer |
+//! | `pick`, `face` | which segment, which face of the model is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |
 //! | `widget` | the pointer turns and picks; frames are kept |
 //! | `overlay` | axes and scale bar |
@@ -17,19 +18,23 @@
 
 mod beads;
 mod camera;
+mod face;
 mod gpu;
 mod headless;
 mod overlay;
 pub mod palette;
 mod pick;
 mod scene;
+mod section;
 mod style;
 mod widget;
 
 pub use beads::{Bead, LayerBeads, PassSpan};
 pub use camera::{Camera, StandardView};
+pub use face::face;
 pub use headless::headless;
 pub use pick::{Pick, pick};
 pub use scene::{Position, Scene};
-pub use style::{Colour, Style};
+pub use section::Section;
+pub use style::{Colour, Plate, Style};
 pub use widget::{Shown, Timing, View3d};

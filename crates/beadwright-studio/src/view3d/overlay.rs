@@ -10,8 +10,8 @@ const AXIS: f32 = 26.0;
 /// Greatest length of the scale bar, points.
 const LONGEST_BAR: f64 = 140.0;
 
-/// Paints axes at the lower left and a scale bar at the lower right.
-pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, dark: bool) {
+/// Paints axes at the lower left, a caption beside them, and a scale bar at the lower right.
+pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, caption: &str, dark: bool) {
     if rect.width() < 160.0 || rect.height() < 120.0 {
         return;
     }
@@ -20,6 +20,11 @@ pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, dark: bool) 
     let ground = if dark { Color32::from_black_alpha(110) } else { Color32::from_white_alpha(150) };
     painter.circle_filled(corner, 40.0, ground);
     axes(painter, corner, camera, ink);
+    let beside = pos2(rect.left() + 100.0, rect.bottom() - 12.0);
+    // Elsewhere it would run into the scale bar.
+    if rect.width() > 560.0 {
+        painter.text(beside, Align2::LEFT_BOTTOM, caption, FontId::proportional(12.0), ink);
+    }
     scale_bar(painter, rect, camera, ink);
 }
 

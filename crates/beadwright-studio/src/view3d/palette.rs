@@ -9,16 +9,24 @@ pub type Rgb = [u8; 3];
 /// Number of colours in a map.
 pub(super) const STEPS: usize = 256;
 
+/// The colour of what is chosen.
+pub const ACCENT: Rgb = [255, 51, 143];
+
+/// The colours of starts and ends of passes.
+pub const START: Rgb = [40, 190, 200];
+/// See [`START`].
+pub const END: Rgb = [222, 62, 54];
+
 /// The kinds of passes, in the order of their colours.
 pub const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
 
-/// The colour of a kind of pass.
+/// The colour of a kind of pass. Those without red, green or blue cones tell them apart too (`tests/colours.rs`).
 pub fn kind(kind: PassKind) -> Rgb {
     match kind {
-        PassKind::Contour => [66, 140, 214],
-        PassKind::Infill => [240, 158, 56],
-        PassKind::Skeleton => [58, 176, 116],
-        PassKind::Wall => [160, 112, 214],
+        PassKind::Contour => [52, 100, 230],
+        PassKind::Infill => [252, 168, 48],
+        PassKind::Skeleton => [14, 194, 140],
+        PassKind::Wall => [170, 133, 204],
     }
 }
 
@@ -34,7 +42,9 @@ pub fn at(colour: Colour, part: f64, dark: bool) -> Rgb {
         Colour::HeightError => diverging(part),
         Colour::Temperature => ember(if dark { 0.15 + 0.85 * part } else { part }),
         // The dark end would vanish on a dark background, the bright end on a bright one.
-        Colour::Order | Colour::Speed | Colour::Time => viridis(if dark { 0.12 + 0.88 * part } else { 0.95 * part }),
+        Colour::Order | Colour::Speed | Colour::Width | Colour::Time => {
+            viridis(if dark { 0.12 + 0.88 * part } else { 0.95 * part })
+        }
     }
 }
 

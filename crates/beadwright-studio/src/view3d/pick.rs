@@ -24,6 +24,8 @@ pub struct Pick {
 struct Ray {
     origin: Vec3,
     way: Vec3,
+    /// The part of it that no section cuts away, mm.
+    kept: (f32, f32),
 }
 
 /// The nearest of the shown segments at a point of the picture; `size` and `at` in screen points.
@@ -32,7 +34,8 @@ pub fn pick(scene: &Scene, style: &Style, camera: &Camera, size: DVec2, at: DVec
         return None;
     }
     let (origin, way) = camera.ray(at, size);
-    let ray = Ray { origin: origin.as_vec3(), way: way.as_vec3() };
+    let kept = style.section.map_or(Some((0.0, f64::INFINITY)), |section| section.kept(origin, way))?;
+    let ray = Ray { origin: origin.as_vec3(), way: way.as_vec3(), kept: (kept.0 as f32, kept.1 as f32) };
     let mut layers: Vec<(f32, usize, &LayerBeads, usize)> = scene
         .present()
         .map(|(index, layer)| (index, layer, style.shown(index, layer.len())))
@@ -77,7 +80,7 @@ fn nearest(layer: &LayerBeads, shown: usize, ray: &Ray) -> Option<(f32, usize)> 
 impl Ray {
     /// Distance at which it enters a box, mm; `None` if it misses.
     fn enters(&self, (low, high): (Vec3, Vec3)) -> Option<f32> {
-        let (mut first, mut last) = (0.0_f32, f32::INFINITY);
+        let (mut first, mut last) = self.kept;
         for axis in 0..3 {
             let (origin, way) = (self.origin[axis], self.way[axis]);
             if way.abs() < 1e-12 {
@@ -103,8 +106,18 @@ impl Ray {
         let middle = Vec3::new(0.0, 0.0, height / 2.0);
         let a = (bead.from() - middle - origin) * stretch;
         let b = (bead.to() - middle - origin) * stretch;
-        Some(near + enters_capsule(self.way * stretch, a, b, width / 2.0)?)
+        let entry = near + enters_capsule(self.way * stretch, a, b, width / 2.0)?;
+        // Where the near side is cut away, the section shows the inside.
+        let first = entry.max(self.kept.0);
+        let inside = || distance_to(self.way * stretch * (first - near), a, b) <= width / 2.0;
+        (first <= self.kept.1 && (entry >= self.kept.0 || inside())).then_some(first)
     }
+}
+
+/// How far a point is from the line from `a` to `b`.
+fn distance_to(point: Vec3, a: Vec3, b: Vec3) -> f32 {
+    let part = ((point - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+    point.distance(a.lerp(b, part))
 }
 
 /// The first `t` at which `t · way` enters the capsule from `a` to `b`.

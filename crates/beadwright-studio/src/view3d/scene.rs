@@ -1,7 +1,7 @@
 //! What can be shown: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
-use super::style::Colour;
+use super::style::{Colour, Style};
 use beadwright::model::Mesh;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -19,6 +19,8 @@ pub struct Scene {
     mesh: Option<Arc<Mesh>>,
     layers: Vec<Option<Arc<LayerBeads>>>,
     values: Vec<Option<Values>>,
+    /// By pass, where the plan does not have them.
+    temperatures: Vec<Option<Values>>,
     version: u64,
     mesh_version: u64,
 }
@@ -53,6 +55,7 @@ impl Scene {
     pub fn clear_layers(&mut self) {
         self.layers.clear();
         self.values.clear();
+        self.temperatures.clear();
         self.version = fresh_id();
     }
 
@@ -67,8 +70,9 @@ impl Scene {
         let count = self.layers.len().max(index + 1);
         self.layers.resize(count, None);
         self.values.resize(count, None);
+        self.temperatures.resize(count, None);
         self.layers[index] = Some(beads);
-        self.values[index] = None;
+        (self.values[index], self.temperatures[index]) = (None, None);
         self.version = fresh_id();
     }
 
@@ -76,6 +80,14 @@ impl Scene {
     pub fn set_values(&mut self, index: usize, values: Arc<[f32]>) {
         if let Some(place) = self.values.get_mut(index) {
             *place = Some(Values { id: fresh_id(), of: values });
+            self.version = fresh_id();
+        }
+    }
+
+    /// Sets the temperature of the metal where each pass of an existing layer begins, °C.
+    pub fn set_temperatures(&mut self, index: usize, temperatures: Arc<[f32]>) {
+        if let Some(place) = self.temperatures.get_mut(index) {
+            *place = Some(Values { id: fresh_id(), of: temperatures });
             self.version = fresh_id();
         }
     }
@@ -102,6 +114,10 @@ impl Scene {
 
     pub(super) fn values(&self, index: usize) -> Option<&Values> {
         self.values.get(index)?.as_ref()
+    }
+
+    pub(super) fn temperatures(&self, index: usize) -> Option<&Values> {
+        self.temperatures.get(index)?.as_ref()
     }
 
     pub(super) fn version(&self) -> u64 {
@@ -142,6 +158,28 @@ impl Scene {
         (0..SIDES).flat_map(|side| [corner(side).extend(low.z), corner(side).extend(high.z)]).collect()
     }
 
+    /// Temperature of the metal where a pass begins, °C, where it is known.
+    pub fn temperature(&self, layer: usize, pass: usize) -> Option<f32> {
+        let planned = self.layer(layer)?.passes().get(pass)?.temperature;
+        planned.or_else(|| self.temperatures(layer)?.of.get(pass).copied())
+    }
+
+    /// The highest layer that a style shows.
+    pub(super) fn top(&self, style: &Style) -> Option<usize> {
+        self.present().map(|(i, _)| i).rfind(|i| style.layers.contains(i))
+    }
+
+    /// Number of layers that a style shows, and of their rough segments.
+    pub(super) fn rough(&self, style: &Style) -> (usize, usize) {
+        let shown = self.present().filter(|(i, _)| style.layers.contains(i));
+        shown.fold((0, 0), |(layers, rough), (_, layer)| (layers + 1, rough + layer.rough.len()))
+    }
+
+    /// Memory that the layers take, bytes.
+    pub fn bytes(&self) -> usize {
+        self.present().map(|(_, layer)| layer.bytes()).sum()
+    }
+
     /// Number of segments.
     pub fn segments(&self) -> usize {
         self.present().map(|(_, layer)| layer.len()).sum()
@@ -170,19 +208,25 @@ impl Scene {
         None
     }
 
+    /// The range of all layers together, from that of each.
+    fn range(&self, of: fn(&LayerBeads) -> (f32, f32)) -> Option<(f64, f64)> {
+        let ranges = self.present().filter(|(_, layer)| !layer.is_empty()).map(|(_, layer)| of(layer));
+        let range = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
+        range.map(|(low, high)| (f64::from(low), f64::from(high)))
+    }
+
     /// The values at the two ends of a colour map; `None` for kinds, and where there is nothing to show.
     pub fn value_range(&self, colour: Colour) -> Option<(f64, f64)> {
         match colour {
             Colour::Kind => None,
             Colour::Order => Some((0.0, self.segments() as f64)),
             Colour::Time => Some((0.0, self.total_seconds())),
-            Colour::Speed => {
-                let ranges = self.present().filter(|(_, l)| !l.is_empty()).map(|(_, l)| l.speed_range());
-                let range = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
-                range.map(|(low, high)| (f64::from(low), f64::from(high)))
-            }
+            Colour::Speed => self.range(LayerBeads::speed_range),
+            Colour::Width => self.range(LayerBeads::width_range),
             Colour::Temperature => {
-                let all = self.present().flat_map(|(_, layer)| layer.passes()).filter_map(|pass| pass.temperature);
+                let of_layer =
+                    |(i, layer): (usize, &Arc<LayerBeads>)| (0..layer.passes().len()).map(move |pass| (i, pass));
+                let all = self.present().flat_map(of_layer).filter_map(|(layer, pass)| self.temperature(layer, pass));
                 let range = all.map(f64::from).map(|t| (t, t)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
                 range.map(|(low, high)| (low, high.max(low + 1.0)))
             }

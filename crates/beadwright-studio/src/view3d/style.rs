@@ -1,7 +1,9 @@
 //! Which parts of the scene are shown, and in which colours.
 
 use super::pick::Pick;
-use glam::DVec3;
+use super::section::Section;
+use beadwright::robot::body::Capsule;
+use glam::{DVec2, DVec3};
 use std::ops::RangeInclusive;
 
 /// What the colour of a bead means.
@@ -14,12 +16,25 @@ pub enum Colour {
     Order,
     /// The deposition speed, mm/s.
     Speed,
+    /// The width of the bead, mm.
+    Width,
     /// The height error, mm, as given to [`super::Scene::set_values`].
     HeightError,
     /// The time since the start of the program, s.
     Time,
     /// The temperature of the metal where the pass begins, °C.
     Temperature,
+}
+
+/// The plate on which the part is built; its top is z = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plate {
+    /// Lowest x and y, mm.
+    pub low: DVec2,
+    /// Highest x and y, mm.
+    pub high: DVec2,
+    /// Thickness, mm.
+    pub thickness: f64,
 }
 
 /// What is shown and how. A picture is rendered again only when this, the camera, the size or the scene changed.
@@ -41,6 +56,12 @@ pub struct Style {
     pub layers: RangeInclusive<usize>,
     /// How many segments of the last of those layers are shown; all where `None`.
     pub segments_of_last: Option<usize>,
+    /// A plane that cuts away what lies beyond it.
+    pub section: Option<Section>,
+    /// The plate below the part.
+    pub plate: Option<Plate>,
+    /// The links of the robot's arm; in the part's space.
+    pub arm: Vec<Capsule>,
     /// Where the torch is drawn, mm.
     pub torch: Option<DVec3>,
     /// The highlighted pass, and a segment in it.
@@ -60,6 +81,9 @@ impl Default for Style {
             beads: true,
             layers: 0..=usize::MAX,
             segments_of_last: None,
+            section: None,
+            plate: None,
+            arm: Vec::new(),
             torch: None,
             highlight: None,
             dark: true,

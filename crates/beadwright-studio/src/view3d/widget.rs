@@ -9,7 +9,7 @@ use super::style::Style;
 use super::{gpu, overlay};
 use eframe::egui::{self, Color32, PointerButton, Rect, Sense, Ui, WidgetInfo, pos2};
 use eframe::egui_wgpu::{RenderState, wgpu};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::time::Instant;
 
 /// The picture stays coarse this long after the last turn of the mouse wheel, s.
@@ -17,6 +17,12 @@ const SETTLE: f64 = 0.2;
 
 /// Scenes with more segments are drawn coarsely while they move: with a graphics card, without one.
 const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
+
+/// Rough segments that are drawn in a twentieth of a second: with a graphics card, without one.
+const IN_TIME: [usize; 2] = [1_500_000, 20_000];
+
+/// Of a part, at least that many layers are drawn while it moves.
+const LEAST_LAYERS: usize = 8;
 
 /// Scenes with fewer segments get four samples per pixel even without a graphics card, once they stand still.
 const SMOOTH_BELOW: usize = 60_000;
@@ -29,6 +35,8 @@ const HOVER_BELOW: usize = 400_000;
 pub struct Shown {
     /// The segment that was clicked.
     pub picked: Option<Pick>,
+    /// The line of sight through the click: from where, and its direction.
+    pub sight: Option<(DVec3, DVec3)>,
     /// Whether the view was clicked, on a bead or not.
     pub clicked: bool,
     /// The segment under the resting pointer.
@@ -73,6 +81,8 @@ pub struct View3d {
     pub camera: Camera,
     /// The text shown where there is no graphics adapter.
     pub no_adapter: String,
+    /// A line at the foot of the picture.
+    pub caption: String,
     gpu: Option<Gpu>,
     /// The fine and the coarse picture.
     frames: [Option<Frame>; 2],
@@ -88,6 +98,7 @@ impl Default for View3d {
             no_adapter: "The 3-D view needs a graphics adapter with Vulkan, Metal, Direct3D 12 or OpenGL; none was \
                          found. Everything else works without it."
                 .to_owned(),
+            caption: String::new(),
             gpu: None,
             frames: [None, None],
             fit: true,
@@ -101,6 +112,11 @@ impl View3d {
     /// Fits the scene into the picture when it is next shown, or as soon as there is one.
     pub fn fit(&mut self) {
         self.fit = true;
+    }
+
+    /// Keeps the camera where it is, also when the view is shown for the first time.
+    pub fn hold(&mut self) {
+        self.fit = false;
     }
 
     /// The widget: it takes all available space. `label` is its name for screen readers.
@@ -121,10 +137,13 @@ impl View3d {
             self.fit = true;
         }
         if self.fit && scene.bounds().is_some() {
-            self.camera.fit_points(&scene.outline(), size);
+            let reach = |radius: f64| [-radius, radius].map(DVec3::splat);
+            let arm = style.arm.iter().flat_map(|link| link.ends.map(|end| reach(link.radius).map(|by| end + by)));
+            self.camera.fit_points(&scene.outline().into_iter().chain(arm.flatten()).collect::<Vec<_>>(), size);
             self.fit = false;
         }
-        let mut shown = Shown { picked: None, clicked: response.clicked(), hovered: None, rendered: false, response };
+        let clicked = response.clicked();
+        let mut shown = Shown { picked: None, sight: None, clicked, hovered: None, rendered: false, response };
         let Some(state) = state else {
             self.say_no_adapter(ui, rect, style.dark);
             return shown;
@@ -135,11 +154,12 @@ impl View3d {
         shown.rendered = rendered;
         let painter = ui.painter().with_clip_rect(rect);
         painter.image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
-        overlay::paint(&painter, rect, &self.camera, style.dark);
+        overlay::paint(&painter, rect, &self.camera, &self.caption, style.dark);
         let at = |pos: egui::Pos2| DVec2::new(f64::from(pos.x - rect.left()), f64::from(pos.y - rect.top()));
         if shown.clicked {
             let pos = shown.response.interact_pointer_pos();
             shown.picked = pos.and_then(|pos| pick(scene, style, &self.camera, size, at(pos)));
+            shown.sight = pos.map(|pos| self.camera.ray(at(pos), size));
         }
         if let Some(pos) = shown.response.hover_pos().filter(|_| !moving && scene.segments() < HOVER_BELOW) {
             let camera = self.camera;
@@ -192,8 +212,11 @@ impl View3d {
         // From far away, rough beads look the same as exact ones.
         let pixel = camera.height() / f64::from(pixels[1]);
         let exact = scene.segments() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
-        let quality =
-            if coarse { coarse_quality() } else { fine_quality(gpu.software, moving, scene.segments(), exact) };
+        let quality = if coarse {
+            coarse_quality(gpu.software, scene.rough(style))
+        } else {
+            fine_quality(gpu.software, moving, scene.segments(), exact)
+        };
         // A software renderer draws a quarter of the pixels while the view moves.
         let pixels = if coarse && gpu.software { pixels.map(|n| n.div_ceil(2)) } else { pixels };
         let key = Key { camera, pixels, style: style.clone(), version: scene.version(), quality };
@@ -217,8 +240,8 @@ impl View3d {
     fn hover(&mut self, key: Key, pos: egui::Pos2, search: impl FnOnce() -> Option<Pick>) -> Option<Pick> {
         if let Some((of, at, found)) = &self.hovered
             && *at == pos
-            && (of.camera, of.version, &of.style.layers, of.style.segments_of_last)
-                == (key.camera, key.version, &key.style.layers, key.style.segments_of_last)
+            && (of.camera, of.version, &of.style.layers, of.style.segments_of_last, of.style.section)
+                == (key.camera, key.version, &key.style.layers, key.style.segments_of_last, key.style.section)
         {
             return *found;
         }
@@ -247,7 +270,7 @@ impl View3d {
     ) -> Result<(u32, u32, Vec<u8>), String> {
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         let target = gpu.target(size, 4);
-        let quality = Quality { strips: 4, samples: 4, exact: true, caps: true };
+        let quality = Quality { strips: 4, samples: 4, exact: true, caps: true, every: 1 };
         gpu.draw(scene, style, &self.camera, quality, &target);
         Ok((target.pixels[0], target.pixels[1], gpu.read(&target)?))
     }
@@ -283,16 +306,18 @@ fn rough_error(scene: &Scene) -> f64 {
     bead.map_or(0.0, |bead| f64::from(ROUGH * bead.width()))
 }
 
-fn coarse_quality() -> Quality {
-    Quality { strips: 2, samples: 1, exact: false, caps: true }
+/// While it moves, one layer stands for several as soon as there are more rough `segments` than can be drawn in time.
+fn coarse_quality(software: bool, (layers, segments): (usize, usize)) -> Quality {
+    let every = segments.div_ceil(IN_TIME[usize::from(software)]).clamp(1, (layers / LEAST_LAYERS).max(1));
+    Quality { strips: 2, samples: 1, exact: false, caps: every == 1, every }
 }
 
 fn fine_quality(software: bool, moving: bool, segments: usize, exact: bool) -> Quality {
     if !software {
-        return Quality { strips: 4, samples: 4, exact: true, caps: true };
+        return Quality { strips: 4, samples: 4, exact: true, caps: true, every: 1 };
     }
     let samples = if !moving && segments < SMOOTH_BELOW { 4 } else { 1 };
-    Quality { strips: 2, samples, exact, caps: true }
+    Quality { strips: 2, samples, exact, caps: true, every: 1 }
 }
 
 /// Registers a picture with egui, replacing the previous one.

@@ -7,6 +7,7 @@ use beadwright::report::rows;
 use beadwright::task::Task;
 use beadwright_studio::view::Mode;
 use eframe::egui::{Key, Role};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 /// Length and passes of the cross under a strategy, as the library plans it.
@@ -74,4 +75,50 @@ fn a_finding_leads_to_its_bead() {
     click(&mut harness, "Totals");
     let length = harness.state().plan().layers[layer].passes[pass].length();
     assert!(sees(&harness, &format!("{length:.2} mm")));
+}
+
+#[test]
+fn two_strategies_are_seen_in_3d_with_one_camera() {
+    if !super::window::has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    harness.state_mut().compare_with(Some("zigzag"));
+    wait(&mut harness);
+    harness.key_press(Key::F4);
+    harness.run_steps(2);
+    click(&mut harness, "In 3-D");
+    harness.remove_cursor();
+    harness.run_steps(4);
+    let views = ["3-D view", "3-D view, other strategy"];
+    let picture = |harness: &mut Harness<'static, beadwright_studio::Studio>, view: &str| {
+        let rect = harness.get_by_label(view).rect();
+        let whole = harness.render().unwrap();
+        let (x, y) = (rect.left().ceil() as u32, rect.top().ceil() as u32);
+        let size = [rect.width() as u32 - 2, rect.height() as u32 - 2];
+        image::imageops::crop_imm(&whole, x, y, size[0], size[1]).to_image()
+    };
+    // The plate is the same, at the same place; the beads are others.
+    let alike = |harness: &mut Harness<'static, beadwright_studio::Studio>| {
+        let [own, other] = views.map(|view| picture(harness, view));
+        let same = own.pixels().zip(other.pixels()).filter(|(a, b)| a == b).count();
+        same as f64 / f64::from(own.width() * own.height())
+    };
+    let before = alike(&mut harness);
+    assert!((0.4..0.98).contains(&before), "{before:.2} of the pixels are the same");
+    // When either is turned, the other follows.
+    for view in views {
+        let (middle, was) = (harness.get_by_label(view).rect().center(), picture(&mut harness, views[0]));
+        harness.drag_at(middle);
+        harness.run_steps(1);
+        harness.hover_at(middle + eframe::egui::vec2(60.0, 10.0));
+        harness.run_steps(2);
+        harness.drop_at(middle + eframe::egui::vec2(60.0, 10.0));
+        harness.remove_cursor();
+        harness.run_steps(6);
+        let now = alike(&mut harness);
+        assert!((0.4..0.98).contains(&now), "{view} turned: {now:.2} of the pixels are the same");
+        assert!(picture(&mut harness, views[0]) != was, "{view} was not turned");
+    }
 }

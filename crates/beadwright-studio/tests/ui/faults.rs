@@ -111,12 +111,19 @@ fn a_message_does_not_move_the_view() {
 }
 
 #[test]
+fn the_messages_are_not_covered() {
+    let folder = tempfile::tempdir().unwrap();
+    let harness = example(folder.path(), "cross");
+    let (text, play) = (harness.get_by_label("No warnings.").rect(), harness.get_by_label_contains("Play").rect());
+    assert!(text.top() > play.bottom() && text.bottom() < 800.0, "{text:?} below {play:?}");
+}
+
+#[test]
 fn the_number_of_findings_does_not_move_the_tabs() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = studio(folder.path());
+    let mut harness = example(folder.path(), "cross");
     let places = |harness: &Harness<'static, Studio>| ["Plots", "Export"].map(|tab| harness.get_by_label(tab).rect());
     let before = places(&harness);
-    harness.state_mut().open_example("cross");
     harness.state_mut().set_value("check.max_void", "0.001");
     wait(&mut harness);
     assert!(!harness.state().plan().findings.as_ref().unwrap().is_empty());
@@ -147,6 +154,10 @@ fn plots_without_values_and_empty_layers_say_so() {
     // One above the other, with air between.
     std::fs::write(&path, crosses(&[|p| p, |p| p.with_z(p.z + 40.0)])).unwrap();
     let mut harness = studio(&folder.path().join("store"));
+    // A file without a part has no values.
+    std::fs::write(folder.path().join("none.stl"), "solid none").unwrap();
+    harness.state_mut().open(&folder.path().join("none.stl"));
+    wait(&mut harness);
     click(&mut harness, "Plots");
     assert_eq!(harness.query_all_by_label("There are no values yet.").count(), 4);
     harness.state_mut().open(&path);

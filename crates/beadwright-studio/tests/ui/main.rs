@@ -2,15 +2,18 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod background;
+mod basic;
 mod compare;
 mod edit;
 mod export;
 mod faults;
 mod files;
 mod flat;
+mod linked;
 mod pictures;
 mod placement;
 mod play;
+mod start;
 #[path = "../window/mod.rs"]
 mod window;
 mod words;

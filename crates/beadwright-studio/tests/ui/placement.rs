@@ -1,8 +1,10 @@
 //! Where the part stands.
 
-use super::window::{click, crosses, studio, type_number, wait};
+use super::window::{click, click_at, crosses, example, sees, studio, type_number, wait};
 use beadwright_studio::Studio;
+use eframe::egui::Key;
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 
 fn size(harness: &Harness<'static, Studio>) -> DVec3 {
@@ -44,4 +46,31 @@ fn a_part_is_laid_flat_scaled_and_turned() {
     click(&mut harness, "Reset");
     wait(&mut harness);
     assert!(near(size(&harness), DVec3::new(100.0, 20.0, 100.0)), "{}", size(&harness));
+}
+
+#[test]
+fn the_part_is_laid_on_the_face_that_is_clicked() {
+    if !super::window::has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    click(&mut harness, "Placement");
+    // Seen from the front, the end of an arm is in the middle: the cross stands on it. From above it is the upper side.
+    for (key, wanted) in [(Key::Num1, DVec3::new(100.0, 20.0, 100.0)), (Key::Num7, DVec3::new(100.0, 100.0, 20.0))] {
+        click(&mut harness, "Reset");
+        wait(&mut harness);
+        harness.key_press(key);
+        harness.run_steps(3);
+        click(&mut harness, "… by face");
+        assert!(sees(&harness, "Click the face that is to lie below."));
+        let middle = harness.get_by_label("3-D view").rect().center();
+        click_at(&mut harness, middle);
+        wait(&mut harness);
+        assert!(!sees(&harness, "Click the face that is to lie below."));
+        assert!(near(size(&harness), wanted), "{}", size(&harness));
+    }
+    // It lies upside down.
+    let turn = harness.state().project().placement.turn;
+    assert!(turn.abs().max_element() > 179.9, "{turn}");
 }

@@ -21,9 +21,12 @@ fn the_window_speaks_chinese() {
     }
     click(&mut harness, "中文");
     harness.run_steps(3);
-    for label in ["文件", "编辑", "视图", "参数", "总计", "填充策略"] {
-        assert!(harness.query_all_by_label_contains(label).next().is_some(), "{label} is not there");
-    }
+    let there = |harness: &egui_kittest::Harness<'static, beadwright_studio::Studio>, labels: &[&str]| {
+        for label in labels {
+            assert!(harness.query_all_by_label_contains(label).next().is_some(), "{label} is not there");
+        }
+    };
+    there(&harness, &["文件", "编辑", "视图", "将零件拖到此处", "机器人单元"]);
     assert!(!sees(&harness, "File"));
     // It is remembered.
     drop(harness);
@@ -32,6 +35,7 @@ fn the_window_speaks_chinese() {
     harness.state_mut().open_example("cross");
     super::window::wait(&mut harness);
     assert!(sees(&harness, "完成") && sees(&harness, "沉积长度"));
+    there(&harness, &["参数", "总计", "填充策略", "焊道宽度"]);
     // And back again.
     click(&mut harness, "视图");
     // The dialect of the program is a language too.
@@ -67,10 +71,20 @@ fn the_window_is_dark_or_light() {
 
 #[test]
 fn every_sign_of_the_window_is_in_the_built_in_fonts() {
-    let code: String = ["app", "panels/layers", "panels/menu", "panels/messages", "panels/parameters", "panels/plots"]
-        .map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/{name}.rs")))
-        .map(|path| std::fs::read_to_string(path).unwrap())
-        .concat();
+    let code: String = [
+        "app",
+        "panels/layers",
+        "panels/menu",
+        "panels/start",
+        "panels/solid",
+        "panels/basic",
+        "panels/messages",
+        "panels/parameters",
+        "panels/plots",
+    ]
+    .map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("src/{name}.rs")))
+    .map(|path| std::fs::read_to_string(path).unwrap())
+    .concat();
     let ctx = Context::default();
     beadwright_studio::fonts::set(&ctx);
     ctx.begin_pass(RawInput::default());

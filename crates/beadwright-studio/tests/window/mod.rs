@@ -74,6 +74,12 @@ pub(crate) fn click(harness: &mut Harness<'static, Studio>, label: &str) {
     harness.run_steps(3);
 }
 
+/// Opens the list of a choice.
+pub(crate) fn open_list(harness: &mut Harness<'static, Studio>, label: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, label).click();
+    harness.run_steps(3);
+}
+
 /// Whether this text is to be seen.
 pub(crate) fn sees(harness: &Harness<'static, Studio>, label: &str) -> bool {
     harness.query_all_by_label(label).next().is_some()

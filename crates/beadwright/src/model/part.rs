@@ -232,8 +232,8 @@ impl Placement {
         stand::least_overhang(mesh).map_or(self.turn, |face| self.turned_onto(face))
     }
 
-    /// The turn after which a face that now points along `normal` lies below.
-    fn turned_onto(&self, normal: DVec3) -> DVec3 {
+    /// The turn, °, after which a face that now points along `normal` (of length 1) lies below.
+    pub fn turned_onto(&self, normal: DVec3) -> DVec3 {
         let [x, y, z] = self.turn.map(f64::to_radians).to_array();
         let now = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z)) * now;

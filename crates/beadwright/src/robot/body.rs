@@ -73,11 +73,49 @@ pub(super) struct Contact {
 }
 
 /// A line with a thickness.
-#[derive(Debug, Clone, Copy)]
-struct Capsule {
-    solid: Solid,
-    ends: [DVec3; 2],
-    radius: f64,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// What it stands for.
+    pub solid: Solid,
+    /// Its two ends, mm.
+    pub ends: [DVec3; 2],
+    /// Its radius, mm.
+    pub radius: f64,
+}
+
+/// Arm and torch for angles of the joints, °: in the robot's frame, moved by `part_from_base`.
+pub fn capsules(
+    arm: &Arm,
+    body: &Body,
+    flange_from_tool: &Frame,
+    joints: &Joints,
+    part_from_base: &Frame,
+) -> Vec<Capsule> {
+    let [foot, shoulder, elbow, wrist] = arm.links(joints);
+    let flange = arm.forward(joints);
+    let Body { base, upper_arm, forearm, hand, torch, stick_out, .. } = *body;
+    let tip = flange_from_tool.position;
+    let along = flange_from_tool.rotation * DVec3::Z;
+    // The neck bends where the wire's line is nearest to the flange's axis; a straight torch has its whole length there.
+    let (sideways, bent) = (along.truncate(), along.truncate().length_squared());
+    let back = if bent > 1e-6 { tip.truncate().dot(sideways) / bent } else { tip.z };
+    let neck = tip - along * back.clamp(0.0, tip.length());
+    let nozzle = tip - along * (stick_out + torch).min(tip.distance(neck));
+    // Capsules are round at their ends, links are not: the forearm ends at the wrist, the torch begins at the flange.
+    let shortened = |from: DVec3, to: DVec3, by: f64| to - (to - from).normalize_or_zero() * by.min(from.distance(to));
+    let capsule = |solid, from: DVec3, to: DVec3, radius| Capsule {
+        solid,
+        ends: [from, to].map(|end| part_from_base.apply(end)),
+        radius,
+    };
+    vec![
+        capsule(Solid::Torch, flange.position, flange.apply(neck), torch),
+        capsule(Solid::Torch, flange.apply(neck), flange.apply(nozzle), torch),
+        capsule(Solid::Hand, wrist, shortened(wrist, flange.position, hand), hand),
+        capsule(Solid::Forearm, elbow, shortened(elbow, wrist, forearm), forearm),
+        capsule(Solid::UpperArm, shoulder, elbow, upper_arm),
+        capsule(Solid::Base, foot, shoulder, base),
+    ]
 }
 
 /// Cells in which the standing metal is kept, mm.
@@ -124,7 +162,7 @@ impl<'a> Room<'a> {
     /// The deepest contact of each pair of solids, with a table turned like this.
     pub(super) fn contacts(&self, joints: &Joints, turned_table: &Frame) -> Vec<Contact> {
         let part_from_base = turned_table.inverse().then(&self.part_from_base);
-        let capsules = self.capsules(joints, &part_from_base);
+        let capsules = capsules(self.arm, self.body, &self.flange_from_tool, joints, &part_from_base);
         let mut found: Vec<Contact> = Vec::new();
         let mut note = |solids: [Solid; 2], gap: f64| {
             let contact = Contact { solids, depth: -gap };
@@ -147,36 +185,6 @@ impl<'a> Room<'a> {
             }
         }
         found
-    }
-
-    /// Arm and torch in the part's frame.
-    fn capsules(&self, joints: &Joints, part_from_base: &Frame) -> Vec<Capsule> {
-        let [foot, shoulder, elbow, wrist] = self.arm.links(joints);
-        let flange = self.arm.forward(joints);
-        let Body { base, upper_arm, forearm, hand, torch, stick_out, .. } = *self.body;
-        let tip = self.flange_from_tool.position;
-        let along = self.flange_from_tool.rotation * DVec3::Z;
-        // The neck bends where the wire's line is nearest to the flange's axis; a straight torch has its whole length there.
-        let (sideways, bent) = (along.truncate(), along.truncate().length_squared());
-        let back = if bent > 1e-6 { tip.truncate().dot(sideways) / bent } else { tip.z };
-        let neck = tip - along * back.clamp(0.0, tip.length());
-        let nozzle = tip - along * (stick_out + torch).min(tip.distance(neck));
-        // Capsules are round at their ends, links are not: the forearm ends at the wrist, the torch begins at the flange.
-        let shortened =
-            |from: DVec3, to: DVec3, by: f64| to - (to - from).normalize_or_zero() * by.min(from.distance(to));
-        let capsule = |solid, from: DVec3, to: DVec3, radius| Capsule {
-            solid,
-            ends: [from, to].map(|end| part_from_base.apply(end)),
-            radius,
-        };
-        vec![
-            capsule(Solid::Torch, flange.position, flange.apply(neck), torch),
-            capsule(Solid::Torch, flange.apply(neck), flange.apply(nozzle), torch),
-            capsule(Solid::Hand, wrist, shortened(wrist, flange.position, hand), hand),
-            capsule(Solid::Forearm, elbow, shortened(elbow, wrist, forearm), forearm),
-            capsule(Solid::UpperArm, shoulder, elbow, upper_arm),
-            capsule(Solid::Base, foot, shoulder, base),
-        ]
     }
 
     /// How far a capsule stays from the table, mm; below 0 where it is in it.

@@ -12,6 +12,7 @@ struct BeadVertex {
     // The part of the normal that `place` gives, and the normal in the middle.
     @location(2) side: vec3<f32>,
     @location(3) front: vec3<f32>,
+    @location(4) at: vec3<f32>,
 }
 
 fn bead_colour(value: f32) -> vec3<f32> {
@@ -56,7 +57,7 @@ fn ribbon(
     }
     let axis = normalize(along + other);
     var half_width = abs(from_width.w) * 0.5 / dot(axis, along);
-    var half_height = abs(to_height.w) * 0.5;
+    var half_height = abs(to_height.w) * 0.5 * globals.ground.w;
     let centre = top - vec3(0.0, 0.0, half_height);
 
     let level = vec2(-axis.y, axis.x);
@@ -93,6 +94,7 @@ fn ribbon(
     out.place = vec2(across * round, 0.0);
     out.side = (n * (edge.x / flat_width) + z * (edge.y / half_height)) * half_height * across * round;
     out.front = (n * (middle.x / flat_width) + z * (middle.y / half_height)) * half_height;
+    out.at = world;
     return out;
 }
 
@@ -129,12 +131,25 @@ fn cap(
     out.place = place * round;
     out.side = rim / shape * round;
     out.front = front / shape;
+    out.at = centre + half * spot;
     return out;
+}
+
+fn lit(in: BeadVertex) -> vec4<f32> {
+    let lift = sqrt(max(0.0, 1.0 - dot(in.place, in.place)));
+    let normal = normalize(in.side + in.front * lift);
+    return vec4(shaded(in.colour, normal), 1.0);
 }
 
 @fragment
 fn bead(in: BeadVertex) -> @location(0) vec4<f32> {
-    let lift = sqrt(max(0.0, 1.0 - dot(in.place, in.place)));
-    let normal = normalize(in.side + in.front * lift);
-    return vec4(shaded(in.colour, normal), 1.0);
+    return lit(in);
+}
+
+@fragment
+fn cut_bead(in: BeadVertex) -> @location(0) vec4<f32> {
+    if is_cut(in.at) {
+        discard;
+    }
+    return lit(in);
 }

@@ -166,8 +166,8 @@ impl Chunk {
         self.dots.write(card, begin.dots, &dots);
     }
 
-    /// What the style shows of this chunk.
-    pub(super) fn ranges(&self, scene: &Scene, style: &Style) -> Ranges {
+    /// What the style shows of this chunk; of rough beads, one layer of `every`.
+    pub(super) fn ranges(&self, scene: &Scene, style: &Style, every: usize) -> Ranges {
         let first = self.slots.partition_point(|slot| slot.layer < *style.layers.start());
         let last = self.slots.partition_point(|slot| slot.layer <= *style.layers.end());
         if first >= last {
@@ -185,7 +185,10 @@ impl Chunk {
         let marks = |of: fn(&Counts) -> usize| of(&unmarked) as u32..of(&end).max(of(&unmarked)) as u32;
         Ranges {
             beads: self.pieces(first..last, range(|c| c.beads), |c| c.beads),
-            rough: self.pieces(first..last, range(|c| c.rough), |c| c.rough),
+            rough: match scene.top(style) {
+                Some(layer) if every > 1 => self.sparse(first..last, range(|c| c.rough), layer, every),
+                _ => self.pieces(first..last, range(|c| c.rough), |c| c.rough),
+            },
             caps: range(|c| c.caps),
             travels: marks(|c| c.travels),
             dots: marks(|c| c.dots),
@@ -200,6 +203,19 @@ impl Chunk {
                 pieces.push(start..end);
                 start = end;
             }
+        }
+        pieces
+    }
+
+    /// The rough beads of one layer of `every`, counted down from the top one.
+    fn sparse(&self, slots: Range<usize>, rough: Range<u32>, top: usize, every: usize) -> Vec<Range<u32>> {
+        let (mut pieces, mut start) = (Vec::new(), rough.start);
+        for slot in &self.slots[slots] {
+            let end = (slot.ends.rough as u32).min(rough.end);
+            if end > start && (top - slot.layer.min(top)).is_multiple_of(every) {
+                pieces.push(start..end);
+            }
+            start = end;
         }
         pieces
     }

@@ -14,14 +14,16 @@ struct Globals {
     screen: vec4<f32>,
     // Lowest value of the colour map, 1 / its range, width of a strip of a bead (2 = all of it), roundness.
     values: vec4<f32>,
-    // Centre and half size of the ground grid, mm.
+    // Centre and half size of the ground grid, mm; how many layers a bead stands for.
     ground: vec4<f32>,
     // Colour of beads without a value.
     missing: vec4<f32>,
     // Colour laid over beads, and how much of it.
     accent: vec4<f32>,
+    // Normal and offset of the section: what lies beyond is cut away.
+    section: vec4<f32>,
     // Colours of all that is no bead.
-    roles: array<vec4<f32>, 8>,
+    roles: array<vec4<f32>, 11>,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;
@@ -30,6 +32,11 @@ struct Globals {
 // Direction from a point to the viewer.
 fn to_viewer(at: vec3<f32>) -> vec3<f32> {
     return normalize(globals.eye.xyz - at * globals.eye.w);
+}
+
+// Whether a point is cut away.
+fn is_cut(at: vec3<f32>) -> bool {
+    return dot(globals.section.xyz, at) > globals.section.w;
 }
 
 // Size of a pixel at a point, mm.

@@ -19,7 +19,7 @@ pub(super) struct Shot<'a> {
     pub style: &'a Style,
     pub quality: Quality,
     pub from_above: bool,
-    pub torch_vertices: u32,
+    pub solid_vertices: u32,
 }
 
 impl Shot<'_> {
@@ -27,7 +27,7 @@ impl Shot<'_> {
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Self { gpu, pipelines, scene, style, quality, .. } = *self;
         let mut drawn: Vec<(&Chunk, Ranges)> =
-            gpu.chunks.iter().map(|chunk| (chunk, chunk.ranges(scene, style))).collect();
+            gpu.chunks.iter().map(|chunk| (chunk, chunk.ranges(scene, style, quality.every))).collect();
         if self.from_above {
             // Drawing hidden beads first would shade them for nothing, so the top layers come first.
             drawn.reverse();
@@ -47,10 +47,10 @@ impl Shot<'_> {
                 .for_each(|(chunk, range)| draw_beads(pass, pipelines, gpu.fan(quality), chunk, range, quality));
             self.draw_highlight(pass);
         }
-        if let Some(torch) = gpu.torch.from(0).filter(|_| self.torch_vertices > 0) {
+        if let Some(solids) = gpu.solids.from(0).filter(|_| self.solid_vertices > 0) {
             pass.set_pipeline(&pipelines.solid);
-            pass.set_vertex_buffer(0, torch);
-            pass.draw(0..self.torch_vertices, 0..1);
+            pass.set_vertex_buffer(0, solids);
+            pass.draw(0..self.solid_vertices, 0..1);
         }
         for (chunk, range) in &drawn {
             draw_points(pass, &pipelines.dot, chunk.dots.from(0).filter(|_| style.starts), 0..4, range.dots.clone());
@@ -111,6 +111,10 @@ fn draw_beads(
         pass.set_vertex_buffer(3, values);
         for beads in pieces {
             pass.draw(0..2 * (quality.strips + 1), beads.clone());
+        }
+        if pipelines.cut {
+            pass.set_pipeline(&pipelines.face);
+            pieces.iter().for_each(|beads| pass.draw(0..4, beads.clone()));
         }
     }
     if let (Some(caps), Some(values)) = (chunk.caps.from(0), chunk.cap_values.from(0))

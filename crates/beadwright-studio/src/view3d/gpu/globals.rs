@@ -1,5 +1,6 @@
 //! The data passed to all shaders for one picture.
 
+use super::Quality;
 use crate::view3d::camera::Camera;
 use crate::view3d::palette;
 use crate::view3d::scene::Scene;
@@ -15,6 +16,8 @@ pub(super) mod role {
     pub(in crate::view3d) const END: u32 = 3;
     pub(in crate::view3d) const TORCH: u32 = 4;
     pub(in crate::view3d) const NOZZLE: u32 = 5;
+    pub(in crate::view3d) const PLATE: u32 = 8;
+    pub(in crate::view3d) const ARM: u32 = 9;
 }
 
 /// See `common.wgsl`.
@@ -31,8 +34,12 @@ pub(super) struct Globals {
     ground: [f32; 4],
     missing: [f32; 4],
     pub accent: [f32; 4],
-    roles: [[f32; 4]; 8],
+    section: [f32; 4],
+    roles: [[f32; 4]; ROLES],
 }
+
+/// Number of roles; the last one is the inside of a model that is cut.
+const ROLES: usize = 11;
 
 /// How much rounder than they are beads are shaded: 0 as they are, 1 as circles.
 const ROUNDNESS: f64 = 0.6;
@@ -41,8 +48,8 @@ const ROUNDNESS: f64 = 0.6;
 const NUDGE: [f64; 2] = [3e-4, 2e-6];
 
 impl Globals {
-    /// For a picture of that many pixels, with ribbons of that many strips.
-    pub(super) fn new(scene: &Scene, style: &Style, camera: &Camera, pixels: [u32; 2], strips: u32) -> Self {
+    /// For a picture of that many pixels.
+    pub(super) fn new(scene: &Scene, style: &Style, camera: &Camera, pixels: [u32; 2], quality: Quality) -> Self {
         let size = DVec2::new(f64::from(pixels[0]), f64::from(pixels[1]));
         let back = camera.back();
         let light = (back * 0.62 + camera.up() * 0.58 - camera.right() * 0.46).normalize();
@@ -58,10 +65,11 @@ impl Globals {
             gloss: (light + back).normalize().extend(0.0).as_vec4().into(),
             back: back.extend(0.0).as_vec4().into(),
             screen: v4(size.x, size.y, camera.height() / size.y * at_one, nudge),
-            values: v4(low, per_range, 2.0 / f64::from(strips), ROUNDNESS),
-            ground: ground(scene),
+            values: v4(low, per_range, 2.0 / f64::from(quality.strips), ROUNDNESS),
+            ground: ground(scene, quality.every),
             missing: rgba(palette::missing(style.dark), 1.0),
             accent: [0.0; 4],
+            section: section(style),
             roles: roles(style.dark),
         }
     }
@@ -77,25 +85,34 @@ fn values(scene: &Scene, colour: Colour) -> (f64, f64) {
     if high > low { (low, 1.0 / (high - low)) } else { (low - 0.5, 1.0) }
 }
 
-/// Centre and half size of the grid: well beyond the part.
-fn ground(scene: &Scene) -> [f32; 4] {
+/// Centre and half size of the grid, well beyond the part; and how many layers a bead stands for.
+fn ground(scene: &Scene, every: usize) -> [f32; 4] {
     let (low, high) = scene.bounds().unwrap_or((DVec3::splat(-50.0), DVec3::splat(50.0)));
     let middle = (low + high) / 2.0;
     let half = (high - low).truncate().length() * 0.9 + 60.0;
-    [middle.x as f32, middle.y as f32, half as f32, 0.0]
+    [middle.x as f32, middle.y as f32, half as f32, every as f32]
 }
 
-fn roles(dark: bool) -> [[f32; 4]; 8] {
+/// Normal and offset of the section, mm: what lies beyond is cut away. Nothing lies beyond where there is none.
+fn section(style: &Style) -> [f32; 4] {
+    let plane = style.section.map(|section| section.plane());
+    plane.map_or([0.0; 4], |(normal, offset)| normal.extend(offset).as_vec4().into())
+}
+
+fn roles(dark: bool) -> [[f32; 4]; ROLES] {
     let by_theme = |on_dark, on_light| if dark { on_dark } else { on_light };
     [
         rgba(by_theme([214, 220, 230], [70, 80, 96]), 0.55),
         rgba(by_theme([190, 200, 214], [40, 50, 64]), if dark { 0.45 } else { 0.5 }),
-        rgba([38, 178, 84], 1.0),
-        rgba([222, 62, 54], 1.0),
+        rgba(palette::START, 1.0),
+        rgba(palette::END, 1.0),
         rgba([196, 200, 206], 1.0),
         rgba([208, 138, 84], 1.0),
         rgba(by_theme([160, 176, 198], [172, 188, 210]), 1.0),
         rgba(by_theme([150, 158, 170], [96, 104, 118]), if dark { 0.34 } else { 0.42 }),
+        rgba(by_theme([74, 80, 90], [206, 211, 219]), 1.0),
+        rgba([232, 128, 52], 1.0),
+        rgba(by_theme([104, 122, 148], [126, 146, 178]), 1.0),
     ]
 }
 

@@ -4,6 +4,7 @@ struct MarkVertex {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
     @location(1) place: vec2<f32>,
+    @location(2) at: vec3<f32>,
 }
 
 @vertex
@@ -11,12 +12,25 @@ fn line(@location(0) at: vec3<f32>, @location(1) role: u32) -> MarkVertex {
     var out: MarkVertex;
     out.clip = nudged(globals.clip_from_world * vec4(at, 1.0), 1.0);
     out.colour = globals.roles[role];
+    out.at = at;
     return out;
+}
+
+fn ink(in: MarkVertex) -> vec4<f32> {
+    return vec4(in.colour.rgb * in.colour.a, in.colour.a);
 }
 
 @fragment
 fn line_colour(in: MarkVertex) -> @location(0) vec4<f32> {
-    return vec4(in.colour.rgb * in.colour.a, in.colour.a);
+    return ink(in);
+}
+
+@fragment
+fn cut_line(in: MarkVertex) -> @location(0) vec4<f32> {
+    if is_cut(in.at) {
+        discard;
+    }
+    return ink(in);
 }
 
 // A round dot of a few pixels: it lies on the bead, or faces a viewer who looks from the side.
@@ -37,16 +51,29 @@ fn dot_mark(
     out.clip = nudged(globals.clip_from_world * vec4(at + normal * 0.3 + offset, 1.0), 2.0);
     out.colour = globals.roles[role];
     out.place = place;
+    out.at = at;
     return out;
 }
 
 @fragment
 fn dot_colour(in: MarkVertex) -> @location(0) vec4<f32> {
+    return disc(in);
+}
+
+fn disc(in: MarkVertex) -> vec4<f32> {
     let r = length(in.place);
     if r > 1.0 {
         discard;
     }
     return vec4(select(in.colour.rgb, vec3(1.0), r > 0.72), 1.0);
+}
+
+@fragment
+fn cut_dot(in: MarkVertex) -> @location(0) vec4<f32> {
+    if is_cut(in.at) {
+        discard;
+    }
+    return disc(in);
 }
 
 struct GroundVertex {

@@ -5,7 +5,8 @@
 //! | `chunks` | the layers in print order |
 //! | `values` | what their colours are made from |
 //! | `draw` | the order in which things are drawn |
-//! | `surface` | the model and the torch |
+//! | `surface` | the model |
+//! | `solids` | plate, torch and arm |
 //! | `growing` | a buffer that can grow |
 //! | `globals` | the data passed to all shaders |
 //! | `pipelines` | how each kind of thing is drawn |
@@ -17,6 +18,7 @@ mod draw;
 mod globals;
 mod growing;
 mod pipelines;
+mod solids;
 mod surface;
 mod target;
 mod values;
@@ -46,6 +48,8 @@ pub(super) struct Quality {
     pub exact: bool,
     /// Whether ends and corners are round.
     pub caps: bool,
+    /// Of that many layers one is drawn, as high as all of them; the top one always is.
+    pub every: usize,
 }
 
 /// Plain beads, a highlighted pass and a highlighted segment.
@@ -53,9 +57,6 @@ const LOOKS: usize = 3;
 
 /// How strongly the highlight colour is blended over the beads.
 const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
-
-/// The highlight colour.
-const ACCENT: [f32; 3] = [1.0, 0.20, 0.56];
 
 /// Everything stored on the graphics card.
 #[derive(Debug)]
@@ -76,7 +77,7 @@ pub(super) struct Gpu {
     synced: Option<(u64, Colour)>,
     surface: Option<Surface>,
     surface_version: Option<u64>,
-    torch: Growing,
+    solids: Growing,
 }
 
 impl Gpu {
@@ -118,7 +119,7 @@ impl Gpu {
             synced: None,
             surface: None,
             surface_version: None,
-            torch: Growing::new("torch"),
+            solids: Growing::new("plate, torch and arm"),
         }
     }
 
@@ -155,20 +156,22 @@ impl Gpu {
     /// Renders a picture.
     pub(super) fn draw(&mut self, scene: &Scene, style: &Style, camera: &Camera, quality: Quality, target: &Target) {
         self.sync(scene, style);
-        let mut globals = Globals::new(scene, style, camera, target.pixels, quality.strips);
+        let mut globals = Globals::new(scene, style, camera, target.pixels, quality);
         for (buffer, part) in self.globals.iter().zip(ACCENTS) {
-            let [r, g, b] = ACCENT;
+            let [r, g, b] = palette::ACCENT.map(|c| f32::from(c) / 255.0);
             globals.accent = [r, g, b, part];
             self.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
         }
-        let torch = style.torch.map(surface::torch).unwrap_or_default();
-        self.torch.write((&self.device, &self.queue), 0, &torch);
-        if !self.pipelines.iter().any(|p| p.samples == target.samples) {
-            self.pipelines.push(Pipelines::new(&self.device, &self.layout, target.samples));
+        let solids = solids::solids(style);
+        self.solids.write((&self.device, &self.queue), 0, &solids);
+        let wanted = |p: &Pipelines| (p.samples, p.cut) == (target.samples, style.section.is_some());
+        if !self.pipelines.iter().any(wanted) {
+            let cut = style.section.is_some();
+            self.pipelines.push(Pipelines::new(&self.device, &self.layout, target.samples, cut));
         }
         let mut encoder =
             self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("3-D view") });
-        if let Some(pipelines) = self.pipelines.iter().find(|p| p.samples == target.samples) {
+        if let Some(pipelines) = self.pipelines.iter().find(|p| wanted(p)) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("3-D view"),
                 color_attachments: &[Some(draw::colour(target, style.dark))],
@@ -176,8 +179,8 @@ impl Gpu {
                 ..Default::default()
             });
             pass.set_bind_group(0, &self.bindings[0], &[]);
-            let (from_above, torch_vertices) = (camera.pitch > 0.0, torch.len() as u32);
-            Shot { gpu: self, pipelines, scene, style, quality, from_above, torch_vertices }.draw(&mut pass);
+            let (from_above, solid_vertices) = (camera.pitch > 0.0, solids.len() as u32);
+            Shot { gpu: self, pipelines, scene, style, quality, from_above, solid_vertices }.draw(&mut pass);
         }
         self.queue.submit([encoder.finish()]);
     }

@@ -5,12 +5,16 @@ use super::target::{COLOUR, DEPTH};
 use crate::view3d::beads::{Bead, Cap};
 use eframe::egui_wgpu::wgpu::{self, VertexFormat, VertexStepMode};
 
-/// The pipelines for pictures with a given number of samples per pixel.
+/// The pipelines for pictures with a given number of samples per pixel, cut by a section or not.
 #[derive(Debug)]
 pub(super) struct Pipelines {
     pub samples: u32,
+    /// Whether they cut away what lies beyond the section.
+    pub cut: bool,
     pub ribbon: wgpu::RenderPipeline,
     pub cap: wgpu::RenderPipeline,
+    /// Where the section cuts a bead.
+    pub face: wgpu::RenderPipeline,
     pub line: wgpu::RenderPipeline,
     pub dot: wgpu::RenderPipeline,
     pub ground: wgpu::RenderPipeline,
@@ -37,12 +41,15 @@ const TRIANGLES: wgpu::PrimitiveTopology = wgpu::PrimitiveTopology::TriangleList
 const LINES: wgpu::PrimitiveTopology = wgpu::PrimitiveTopology::LineList;
 
 impl Pipelines {
-    pub(super) fn new(device: &wgpu::Device, bindings: &wgpu::BindGroupLayout, samples: u32) -> Self {
+    pub(super) fn new(device: &wgpu::Device, bindings: &wgpu::BindGroupLayout, samples: u32, cut: bool) -> Self {
         let module = |label, text: &'static str| {
             let source = wgpu::ShaderSource::Wgsl(text.into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
         };
-        let beads = module("beads", concat!(include_str!("common.wgsl"), include_str!("beads.wgsl")));
+        let beads = module(
+            "beads",
+            concat!(include_str!("common.wgsl"), include_str!("beads.wgsl"), include_str!("faces.wgsl")),
+        );
         let marks = module("marks", concat!(include_str!("common.wgsl"), include_str!("marks.wgsl")));
         let surface = module("surface", concat!(include_str!("common.wgsl"), include_str!("surface.wgsl")));
         let make = |recipe: &Recipe<'_>| pipeline(device, bindings, samples, recipe);
@@ -55,15 +62,22 @@ impl Pipelines {
             [points(&POINT, VertexStepMode::Instance)],
             [buffer(12, VertexStepMode::Vertex, &PLAIN)],
         );
+        // Only what is cut pays for it: its fragments cannot be passed over before they are shaded.
+        let either = |whole, part| if cut { part } else { whole };
+        let bead = either("bead", "cut_bead");
+        let (line_colour, dot_colour) = (either("line_colour", "cut_line"), either("dot_colour", "cut_dot"));
+        let (opaque, glass) = (either("opaque", "cut_opaque"), either("glass", "cut_glass"));
         Self {
             samples,
-            ribbon: lay(&beads, "ribbon", "bead", &ribbon, STRIP, true),
-            cap: lay(&beads, "cap", "bead", &cap, TRIANGLES, true),
-            line: lay(&marks, "line", "line_colour", &line, LINES, false),
-            dot: lay(&marks, "dot_mark", "dot_colour", &dot, STRIP, true),
+            cut,
+            ribbon: lay(&beads, "ribbon", bead, &ribbon, STRIP, true),
+            cap: lay(&beads, "cap", bead, &cap, TRIANGLES, true),
+            face: lay(&beads, "face", "cut_face", &ribbon, STRIP, true),
+            line: lay(&marks, "line", line_colour, &line, LINES, false),
+            dot: lay(&marks, "dot_mark", dot_colour, &dot, STRIP, true),
             ground: lay(&marks, "ground", "ground_colour", &[], STRIP, false),
-            opaque: lay(&surface, "surface", "opaque", &plain, TRIANGLES, true),
-            glass: lay(&surface, "surface", "glass", &plain, TRIANGLES, false),
+            opaque: lay(&surface, "surface", opaque, &plain, TRIANGLES, true),
+            glass: lay(&surface, "surface", glass, &plain, TRIANGLES, false),
             solid: lay(&surface, "solid", "opaque", &line, TRIANGLES, true),
         }
     }

@@ -1,10 +1,9 @@
-//! The model and the torch as triangles.
+//! The model as triangles.
 
-use super::chunks::Point;
 use super::globals::role;
 use beadwright::model::{Mesh, NO_NEIGHBOUR};
 use eframe::egui_wgpu::wgpu::{self, util::DeviceExt as _};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Edges whose faces meet at a smaller angle are not drawn: 30°.
 const SMOOTH_COS: f64 = 0.866;
@@ -42,7 +41,7 @@ impl Surface {
     }
 }
 
-/// The ends of the sharp edges of the surface, as [`Point`]s.
+/// The ends of the sharp edges of the surface, as points of lines.
 fn edges(mesh: &Mesh) -> Vec<[u32; 4]> {
     let corner = |i: u32| mesh.vertices.get(i as usize).copied().unwrap_or_default();
     let normal = |t: &[u32; 3]| {
@@ -65,30 +64,4 @@ fn edges(mesh: &Mesh) -> Vec<[u32; 4]> {
         }
     }
     ends
-}
-
-/// A torch pointing down with its tip at a given place, mm, as triangles.
-pub(super) fn torch(tip: DVec3) -> Vec<Point> {
-    /// Height above the tip and radius, mm: the wire, the gas nozzle, the neck.
-    const PROFILE: [(f32, f32, u32); 6] = [
-        (0.0, 0.6, role::NOZZLE),
-        (12.0, 0.6, role::NOZZLE),
-        (12.0, 7.0, role::NOZZLE),
-        (30.0, 9.5, role::TORCH),
-        (75.0, 9.5, role::TORCH),
-        (75.0, 0.0, role::TORCH),
-    ];
-    const SIDES: usize = 20;
-    let at = |i: usize, (height, radius, _): (f32, f32, u32)| {
-        let (sin, cos) = (i as f32 * std::f32::consts::TAU / SIDES as f32).sin_cos();
-        tip.as_vec3() + Vec3::new(radius * cos, radius * sin, height)
-    };
-    let mut points = Vec::with_capacity(SIDES * 6 * (PROFILE.len() - 1));
-    for ring in PROFILE.windows(2) {
-        for i in 0..SIDES {
-            let [a, b, c, d] = [at(i, ring[0]), at(i + 1, ring[0]), at(i, ring[1]), at(i + 1, ring[1])];
-            points.extend([a, b, c, b, d, c].map(|v| Point { at: v.into(), role: ring[0].2 }));
-        }
-    }
-    points
 }

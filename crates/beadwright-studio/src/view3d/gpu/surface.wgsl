@@ -26,9 +26,32 @@ fn opaque(in: SurfaceVertex) -> @location(0) vec4<f32> {
     return vec4(shaded(globals.roles[in.role].rgb, facing(in.at)), 1.0);
 }
 
-// Clearer where it is looked at squarely, as glass is.
+// Where the model is cut, its inside is seen: in one colour, as if it were solid.
+@fragment
+fn cut_opaque(in: SurfaceVertex, @builtin(front_facing) outside: bool) -> @location(0) vec4<f32> {
+    let lit = shaded(globals.roles[in.role].rgb, facing(in.at));
+    if is_cut(in.at) {
+        discard;
+    }
+    return vec4(select(globals.roles[10].rgb, lit, outside), 1.0);
+}
+
+@fragment
+fn cut_glass(in: SurfaceVertex) -> @location(0) vec4<f32> {
+    let colour = clear(in);
+    if is_cut(in.at) {
+        discard;
+    }
+    return colour;
+}
+
 @fragment
 fn glass(in: SurfaceVertex) -> @location(0) vec4<f32> {
+    return clear(in);
+}
+
+// Clearer where it is looked at squarely, as glass is.
+fn clear(in: SurfaceVertex) -> vec4<f32> {
     let normal = facing(in.at);
     let square = abs(dot(normal, to_viewer(in.at)));
     let alpha = mix(0.42, 0.10, square);

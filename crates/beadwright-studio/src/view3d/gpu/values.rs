@@ -29,7 +29,11 @@ pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, c
             let (here, ends) = (begin, slot.ends);
             begin = ends;
             let Some(layer) = scene.layer(slot.layer) else { continue };
-            let supplied = scene.values(slot.layer).filter(|_| colour == Colour::HeightError);
+            let supplied = match colour {
+                Colour::HeightError => scene.values(slot.layer),
+                Colour::Temperature => scene.temperatures(slot.layer),
+                _ => None,
+            };
             let key = ValueKey {
                 colour,
                 segments_before: if colour == Colour::Order { segments } else { 0 },
@@ -77,6 +81,7 @@ impl Run {
 fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: &mut Vec<f32>) {
     match key.colour {
         Colour::Speed => out.extend(&layer.speeds),
+        Colour::Width => out.extend(layer.beads.iter().map(|bead| bead.width())),
         Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
         Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
         Colour::HeightError => out.extend((0..layer.len()).map(|i| {
@@ -84,8 +89,9 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
             if value.is_finite() { value } else { MISSING }
         })),
         Colour::Temperature => {
-            for pass in layer.passes() {
-                out.extend(std::iter::repeat_n(pass.temperature.unwrap_or(MISSING), pass.segments.len()));
+            for (i, pass) in layer.passes().iter().enumerate() {
+                let known = pass.temperature.or_else(|| supplied?.get(i).copied());
+                out.extend(std::iter::repeat_n(known.unwrap_or(MISSING), pass.segments.len()));
             }
         }
         Colour::Kind => {
