@@ -8,19 +8,22 @@
 //! | [`studio`] | the program: where everything is put together |
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
-//! | [`planner`], [`state`] | planning in the background, and its results so far |
+//! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`] | other background work: steps of the hybrid, reach, file dialogs |
 //! | [`form`] | the profile as a form |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
 //! | `files`, [`export`] | opening and writing files |
+//! | [`disk`] | where files lie: on the disk; in a browser, what the user has handed over, and downloads |
+//! | `web` | the page in a browser |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
 
 mod act;
 pub mod actions;
 mod app;
+pub mod disk;
 pub mod export;
 mod files;
 pub mod fonts;
@@ -37,5 +40,7 @@ pub mod text;
 pub mod view;
 pub mod view2d;
 pub mod view3d;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 
 pub use studio::Studio;

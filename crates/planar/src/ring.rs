@@ -2,13 +2,14 @@
 
 use crate::{boolean, polyline};
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 /// A closed loop of points, mm; the first point is not repeated at the end.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ring(Vec<DVec2>);
 
 /// One outer ring, counter-clockwise, with clockwise holes.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Polygon {
     /// The outer boundary, counter-clockwise.
     pub outer: Ring,
