@@ -11,9 +11,6 @@ use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Document, HtmlCanvasElement, HtmlElement, Response, UrlSearchParams, Window};
 
-/// A font with Chinese characters that may lie beside the page.
-const FONT: &str = "chinese.ttf";
-
 /// Starts the page; a worker, which has no window, waits for its orders instead.
 pub fn main() {
     std::panic::set_hook(Box::new(|panic| {
@@ -38,14 +35,17 @@ fn told() -> js_sys::Function {
 async fn start(window: Window) -> Result<(), JsValue> {
     let document = window.document().ok_or("there is no page")?;
     let canvas: HtmlCanvasElement = document.get_element_by_id("studio").ok_or("there is no canvas")?.unchecked_into();
-    if let Some(font) = font(&window).await {
+    let body = document.body().ok_or("there is no page")?;
+    if let Some(name) = body.get_attribute("data-font")
+        && let Some(font) = font(&window, &name).await
+    {
         crate::fonts::hand_over(font);
     }
     let wanted = UrlSearchParams::new_with_str(&window.location().search()?)?;
     let page = document.clone();
     let app: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(Page::new(cc, page, &wanted))));
     eframe::WebRunner::new().start(canvas, options(), app).await?;
-    document.body().ok_or("there is no page")?.set_class_name("ready");
+    body.set_class_name("ready");
     Ok(())
 }
 
@@ -57,9 +57,9 @@ fn options() -> eframe::WebOptions {
     eframe::WebOptions { wgpu_options, ..eframe::WebOptions::default() }
 }
 
-/// The Chinese font, if there is one.
-async fn font(window: &Window) -> Option<Vec<u8>> {
-    let response: Response = JsFuture::from(window.fetch_with_str(FONT)).await.ok()?.unchecked_into();
+/// A font with Chinese characters that lies beside the page; without it the page stays English.
+async fn font(window: &Window, name: &str) -> Option<Vec<u8>> {
+    let response: Response = JsFuture::from(window.fetch_with_str(name)).await.ok()?.unchecked_into();
     let bytes = response.ok().then(|| response.array_buffer().ok()).flatten()?;
     Some(Uint8Array::new(&JsFuture::from(bytes).await.ok()?).to_vec())
 }
