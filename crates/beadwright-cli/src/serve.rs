@@ -53,7 +53,8 @@ fn answer(request: Request, folder: &Path) -> std::io::Result<()> {
         Some((kind, bytes)) => {
             let mut response = Response::from_data(bytes);
             // A page that was built anew is shown anew.
-            for (name, value) in [("Content-Type", kind), ("Cache-Control", "no-cache"), ("X-Content-Type-Options", "nosniff")]
+            for (name, value) in
+                [("Content-Type", kind), ("Cache-Control", "no-cache"), ("X-Content-Type-Options", "nosniff")]
             {
                 response.add_header(header(name, value)?);
             }

@@ -86,16 +86,17 @@ impl Page {
         Self { studio, status, body: document.body(), said: String::new() }
     }
 
-    /// One sentence on how things stand.
+    /// How things stand, and what was last told.
     fn sentence(&self) -> String {
-        let plan = self.studio.plan();
-        let part = self.studio.project().part();
-        match (&plan.progress, &plan.findings, self.studio.messages().last()) {
-            (_, _, Some(message)) => message.text.clone(),
-            (Some((stage, _)), ..) => format!("{part}: {}, {} layers", stage.name(), plan.layers.len()),
-            (None, Some(findings), _) => format!("{part}: {} layers, {} findings", plan.layers.len(), findings.len()),
-            (None, None, _) => "Drop a model here, or open an example.".to_owned(),
-        }
+        let (plan, part) = (self.studio.plan(), self.studio.project().part());
+        let stands = match (&plan.progress, &plan.findings) {
+            (Some((stage, _)), _) => format!("{part}: {}, {} layers", stage.name(), plan.layers.len()),
+            (None, Some(findings)) => format!("{part}: {} layers, {} findings", plan.layers.len(), findings.len()),
+            (None, None) if plan.part.is_some() => format!("{part}: stopped"),
+            (None, None) => "No part is planned".to_owned(),
+        };
+        let told = self.studio.messages().last().map_or(String::new(), |message| format!(" {}", message.text));
+        format!("{stands}.{told}")
     }
 
     fn tell(&mut self) {

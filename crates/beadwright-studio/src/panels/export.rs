@@ -19,10 +19,13 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
-    let label = ui.label(studio.t("folder"));
-    let hint = studio.t("folder-hint");
-    let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
-    ui.add(edit).labelled_by(label.id);
+    // A browser asks itself where downloads go.
+    if cfg!(not(target_arch = "wasm32")) {
+        let label = ui.label(studio.t("folder"));
+        let hint = studio.t("folder-hint");
+        let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
+        ui.add(edit).labelled_by(label.id);
+    }
     let (planned, judged) = (
         studio.plans.own.summary.is_some() && studio.plans.own.is_of_last_request(),
         studio.plans.own.total.is_some() && studio.plans.own.is_of_last_request(),
