@@ -45,8 +45,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             studio.request(Action::Export(what));
         }
     }
+    // Browsers do not let a program wait for its pictures; they save what they show themselves.
     let pictured = studio.window.render_state.is_some() && studio.plans.own.layer_count() > 0;
-    if ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked() {
+    if cfg!(not(target_arch = "wasm32")) && ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked()
+    {
         studio.request(Action::Ask(Ask::SavePicture));
     }
 }

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
-use web_sys::{ErrorEvent, MessageEvent, WorkerOptions, WorkerType};
+use web_sys::{Event as PageEvent, MessageEvent, WorkerOptions, WorkerType};
 
 /// The file that starts a worker, beside the page.
 const SCRIPT: &str = "worker.js";
@@ -115,7 +115,7 @@ struct Worker {
     /// The model file that it has.
     file: Option<(PathBuf, Option<Stamp>)>,
     _on_message: Closure<dyn FnMut(MessageEvent)>,
-    _on_error: Closure<dyn FnMut(ErrorEvent)>,
+    _on_error: Closure<dyn FnMut(PageEvent)>,
 }
 
 impl Worker {
@@ -131,9 +131,10 @@ impl Worker {
             bell(to.borrow().events.last().map_or(super::Urgency::Soon, |(_, event)| event.urgency()));
         });
         let (to, bell) = (inbox.clone(), notify.clone());
-        let on_error = Closure::new(move |error: ErrorEvent| {
-            let reason = error.message();
-            to.borrow_mut().end(if reason.is_empty() { "worker.js cannot be loaded" } else { &reason });
+        let on_error = Closure::new(move |error: PageEvent| {
+            // Only errors of a script that runs say what they are.
+            let reason = Reflect::get(&error, &"message".into()).ok().and_then(|reason| reason.as_string());
+            to.borrow_mut().end(reason.as_deref().unwrap_or("worker.js cannot be loaded"));
             bell(super::Urgency::Now);
         });
         worker.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
