@@ -2,6 +2,7 @@
 //!
 //! The address may say what to open: `?open=propeller` an example part, `?fill.strategy=zigzag` a value of the profile.
 
+use crate::planner::Failure;
 use crate::settings::Store;
 use crate::studio::Studio;
 use eframe::egui;
@@ -89,6 +90,9 @@ impl Page {
     /// How things stand, and what was last told.
     fn sentence(&self) -> String {
         let (plan, part) = (self.studio.plan(), self.studio.project().part());
+        if let Some(Failure::Units(text) | Failure::Height(text) | Failure::Sentence(text)) = &plan.failure {
+            return text.clone();
+        }
         let stands = match (&plan.progress, &plan.findings) {
             (Some((stage, _)), _) => format!("{part}: {}, {} layers", stage.name(), plan.layers.len()),
             (None, Some(findings)) => format!("{part}: {} layers, {} findings", plan.layers.len(), findings.len()),
