@@ -103,9 +103,11 @@ impl Page {
         format!("{stands}.{told}")
     }
 
-    fn tell(&mut self) {
+    /// Tells it where it has changed, and whether it has.
+    fn tell(&mut self) -> bool {
         let sentence = self.sentence();
-        if sentence != self.said {
+        let changed = sentence != self.said;
+        if changed {
             if let Some(status) = &self.status {
                 status.set_inner_text(&sentence);
             }
@@ -115,12 +117,16 @@ impl Page {
         if let Some(body) = &self.body {
             let _ = body.toggle_attribute_with_force("data-changed", self.studio.is_changed());
         }
+        changed
     }
 }
 
 impl eframe::App for Page {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         self.studio.ui(ui, frame);
-        self.tell();
+        if self.tell() {
+            // The strip of messages finds its height in a second picture.
+            ui.ctx().request_repaint();
+        }
     }
 }

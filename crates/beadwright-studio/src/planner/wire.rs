@@ -37,7 +37,7 @@ enum Sent {
 enum Body {
     Solid {
         mesh: Mesh,
-        repair: RepairReport,
+        repair: Box<RepairReport>,
         format: String,
         units: Option<Units>,
         objects: Vec<Object>,
@@ -198,7 +198,7 @@ impl Body {
     fn of(part: &Part) -> Self {
         match part.clone() {
             Part::Mesh(Import { mesh, repair, format, units, objects, notes }) => {
-                Self::Solid { mesh, repair, format: format.to_owned(), units, objects, notes }
+                Self::Solid { mesh, repair: Box::new(repair), format: format.to_owned(), units, objects, notes }
             }
             Part::Curves { curves, height, warnings } => Self::Curves { curves, height, warnings },
         }
@@ -209,7 +209,7 @@ impl Body {
             Self::Solid { mesh, repair, format, units, objects, notes } => {
                 // A few bytes for each part, kept for as long as the page is open.
                 let format = String::leak(format);
-                Part::Mesh(Import { mesh, repair, format, units, objects, notes })
+                Part::Mesh(Import { mesh, repair: *repair, format, units, objects, notes })
             }
             Self::Curves { curves, height, warnings } => Part::Curves { curves, height, warnings },
         }
