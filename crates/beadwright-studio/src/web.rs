@@ -103,11 +103,9 @@ impl Page {
         format!("{stands}.{told}")
     }
 
-    /// Tells it where it has changed, and whether it has.
-    fn tell(&mut self) -> bool {
+    fn tell(&mut self) {
         let sentence = self.sentence();
-        let changed = sentence != self.said;
-        if changed {
+        if sentence != self.said {
             if let Some(status) = &self.status {
                 status.set_inner_text(&sentence);
             }
@@ -117,16 +115,12 @@ impl Page {
         if let Some(body) = &self.body {
             let _ = body.toggle_attribute_with_force("data-changed", self.studio.is_changed());
         }
-        changed
     }
 }
 
 impl eframe::App for Page {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         self.studio.ui(ui, frame);
-        if self.tell() {
-            // The strip of messages finds its height in a second picture.
-            ui.ctx().request_repaint();
-        }
+        self.tell();
     }
 }
