@@ -26,6 +26,7 @@ mod reach;
 mod remedy;
 mod reproduce;
 mod say;
+mod serve;
 mod several;
 mod simulate;
 mod studio;

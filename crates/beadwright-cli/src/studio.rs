@@ -1,12 +1,20 @@
-//! `beadwright studio`: starts the desktop program installed beside this one.
+//! `beadwright studio`: starts the desktop program installed beside this one, or serves its page to a browser.
 
+use crate::serve;
 use anyhow::{Context, bail};
 use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 #[derive(clap::Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct Arguments {
+    /// Show the studio in a browser instead: serve its page on this machine, at this port (0: any that is free).
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8320")]
+    serve: Option<u16>,
+    /// The folder of that page, instead of the one beside this program.
+    #[arg(long, value_name = "DIR", requires = "serve")]
+    pages: Option<PathBuf>,
     /// Passed unchanged to the desktop program: a model, a project, options; --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     args: Vec<OsString>,
@@ -14,6 +22,10 @@ pub(crate) struct Arguments {
 
 /// Runs it to its end and returns its exit status.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    if let Some(port) = arguments.serve {
+        serve::run(port, arguments.pages.as_deref())?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let own = std::env::current_exe().context("the place of this program is not known")?;
     let program = own.with_file_name(format!("beadwright-studio{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {

@@ -91,9 +91,7 @@ impl eframe::App for Studio {
             self.act(action);
         }
         let dropped = self.window.ctx.input(|input| input.raw.dropped_files.clone());
-        for path in dropped.iter().map(|file| file.path()) {
-            self.open(path);
-        }
+        self.open_dropped(dropped);
         panels::show(self, ui);
         for action in std::mem::take(&mut self.queue) {
             self.act(action);

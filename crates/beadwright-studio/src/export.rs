@@ -1,8 +1,9 @@
 //! Exports programs, plan and report. The bytes are those of `beadwright plan`, since the library makes them.
 
+use crate::disk;
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
-use beadwright::files::{self, Folder, PLAN, PlanFiles, Programs, Start};
+use beadwright::files::{PLAN, PlanFiles, Programs, Start};
 use beadwright::plan::Summary;
 use std::path::Path;
 
@@ -45,12 +46,8 @@ impl Export {
     /// # Errors
     /// A sentence: the error of [`Self::chunks`], or the file that cannot be written.
     pub fn write(&self, state: &PlanState, folder: &Path) -> Result<Vec<String>, String> {
-        let chunks = self.chunks(state)?;
-        let written = Folder::new(folder).and_then(|mut folder| {
-            folder.extend(chunks)?;
-            Ok(folder.commit()?.files)
-        });
-        written.map_err(|error| format!("{error}."))
+        let part = state.header.as_ref().map_or("plan", |header| &header.part);
+        disk::write_folder(folder, part, self.chunks(state)?)
     }
 }
 
@@ -90,7 +87,7 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     if !dialects.is_empty() {
         allowed(summary)?;
     }
-    let posts = files::posts(dialects, Path::new("")).map_err(|error| error.to_string())?;
+    let posts = disk::posts(dialects)?;
     let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
     let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, Start::default());
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {

@@ -1,12 +1,14 @@
 //! Opening and writing files: models, projects, programs, pictures.
 
+use crate::disk;
 use crate::export::Export;
 use crate::jobs::{self, Ask};
 use crate::project::{Project, Source};
 use crate::studio::Studio;
 use beadwright::bead::library::BeadLibrary;
-use beadwright::files::write_file;
 use beadwright::profile::Profile;
+use eframe::egui::DroppedFileHandle;
+use std::io::Cursor;
 use std::path::Path;
 
 impl Studio {
@@ -25,6 +27,19 @@ impl Studio {
         self.window.store.keep_settings(&self.window.settings);
     }
 
+    /// Opens files dropped on the window.
+    pub(crate) fn open_dropped(&mut self, files: Vec<DroppedFileHandle>) {
+        #[cfg(not(target_arch = "wasm32"))]
+        for file in files {
+            self.open(file.path());
+        }
+        // Browsers read files later.
+        #[cfg(target_arch = "wasm32")]
+        if !files.is_empty() {
+            self.jobs.dialog = Some(jobs::receive(&self.window.ctx, files));
+        }
+    }
+
     /// Opens one of the example parts.
     pub fn open_example(&mut self, name: &str) {
         self.open.file = None;
@@ -39,7 +54,7 @@ impl Studio {
 
     fn open_project(&mut self, path: &Path) {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let project = read_text(path);
+        let project = disk::text(path);
         let project = project.and_then(|text| Project::read(&text, path.parent()).map_err(|error| named(&error)));
         match project {
             Ok(project) => {
@@ -53,7 +68,7 @@ impl Studio {
     /// Writes the project file.
     pub fn save_to(&mut self, path: &Path) {
         let written = self.project().write(path.parent());
-        let written = written.and_then(|text| write_file(path, text.as_bytes()).map_err(|error| format!("{error}.")));
+        let written = written.and_then(|text| disk::write(path, text.as_bytes()));
         match written {
             Ok(()) => {
                 self.open.saved = self.project().clone();
@@ -108,7 +123,7 @@ impl Studio {
             Ask::SavePicture => self.save_picture(path),
             Ask::OpenBeads => self.open_beads(path),
             Ask::OpenProfile => {
-                let text = read_text(path);
+                let text = disk::text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
                 match checked {
                     Ok(text) => self.set_profile("profile", Ok(text)),
@@ -125,7 +140,7 @@ impl Studio {
     /// Shows a bead library, as `beadwright bead fit` writes it.
     pub fn open_beads(&mut self, path: &Path) {
         let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        match read_text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
+        match disk::text(path).and_then(|text| BeadLibrary::parse(&text).map_err(|error| named(&error))) {
             Ok(library) => self.jobs.beads = Some(library),
             Err(error) => self.complain(error),
         }
@@ -139,16 +154,14 @@ impl Studio {
         let picture = self.solid.picture(render_state, &self.plans.own.scene, &style, SIZE);
         let written = picture.and_then(|(width, height, pixels)| {
             let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);
-            let saved = image::save_buffer_with_format(path, &pixels, width, height, colours, format);
-            saved.map_err(|error| format!("{error}."))
+            let mut bytes = Cursor::new(Vec::new());
+            let drawn = image::write_buffer_with_format(&mut bytes, &pixels, width, height, colours, format);
+            drawn.map_err(|error| format!("{}: {error}.", path.display()))?;
+            disk::write(path, bytes.get_ref())
         });
         match written {
             Ok(()) => self.say(format!("{} {}", self.t("written"), path.display())),
-            Err(error) => self.complain(format!("{}: {error}", path.display())),
+            Err(error) => self.complain(error),
         }
     }
-}
-
-fn read_text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}.", path.display()))
 }

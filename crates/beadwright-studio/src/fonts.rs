@@ -3,7 +3,24 @@
 use eframe::egui::{Context, FontData, FontDefinitions, FontFamily};
 use std::sync::Arc;
 
+/// A font handed over by the page, since a browser shows none of the system's.
+#[cfg(target_arch = "wasm32")]
+static HANDED: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
+
+/// Keeps the bytes of a font with Chinese characters for [`set`].
+#[cfg(target_arch = "wasm32")]
+pub fn hand_over(bytes: Vec<u8>) {
+    // The first one stays.
+    let _ = HANDED.set(bytes);
+}
+
+#[cfg(target_arch = "wasm32")]
+fn chinese() -> Option<FontData> {
+    HANDED.get().cloned().map(FontData::from_owned)
+}
+
 /// Font families with Chinese characters that are usual on each system.
+#[cfg(not(target_arch = "wasm32"))]
 const FAMILIES: [&str; 10] = [
     "Noto Sans CJK SC",
     "Noto Sans SC",
@@ -37,6 +54,7 @@ pub fn set(ctx: &Context) -> bool {
 }
 
 /// A system font with Chinese characters.
+#[cfg(not(target_arch = "wasm32"))]
 fn chinese() -> Option<FontData> {
     let mut database = fontdb::Database::new();
     database.load_system_fonts();

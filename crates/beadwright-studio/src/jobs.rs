@@ -1,4 +1,16 @@
-//! Small background jobs: each gives one answer, to be fetched when it is ready.
+//! Small background jobs: each gives one answer, to be fetched when it is ready. On the desktop they have threads; in a
+//! browser, where only planning has a worker, they hold up the page for as long as they take.
+
+#[cfg(target_arch = "wasm32")]
+#[path = "jobs/browser.rs"]
+mod place;
+#[cfg(not(target_arch = "wasm32"))]
+#[path = "jobs/desktop.rs"]
+mod place;
+
+pub use place::ask;
+#[cfg(target_arch = "wasm32")]
+pub use place::receive;
 
 use beadwright::fill::hybrid::Steps;
 use beadwright::layer::Layer;
@@ -9,8 +21,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, TryRecvError};
 
 /// A background job that gives one answer.
 pub struct Job<T>(Receiver<Result<T, String>>);
@@ -25,26 +36,16 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 
 fn sentence(panic: &(dyn Any + Send)) -> String {
     let words = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    let reason = words.unwrap_or("no reason was given");
+    fault(words.unwrap_or("no reason was given"))
+}
+
+/// A sentence on a fault of this program.
+pub fn fault(reason: &str) -> String {
     format!(
         "Beadwright has a fault that stopped this work: {reason}. Please report it at {}/issues with the model and the \
          project; the program goes on.",
         env!("CARGO_PKG_REPOSITORY")
     )
-}
-
-impl<T: Send + 'static> Job<T> {
-    /// Starts work on a thread of its own; the window is drawn again when it is done.
-    pub fn start(ctx: &Context, work: impl FnOnce() -> T + Send + 'static) -> Self {
-        let (sender, receiver) = channel();
-        let ctx = ctx.clone();
-        std::thread::spawn(move || {
-            if sender.send(caught(work)).is_ok() {
-                ctx.request_repaint();
-            }
-        });
-        Self(receiver)
-    }
 }
 
 /// Takes the answer of a finished job, or the sentence of one that panicked, and forgets the job.
@@ -87,29 +88,6 @@ pub struct Answer {
     pub path: Option<PathBuf>,
     /// Whether somebody can have seen it: a desktop without file dialogs answers at once.
     pub seen: bool,
-}
-
-/// Nobody reads and closes a dialog faster than this.
-const QUICKEST: Duration = Duration::from_millis(350);
-
-/// Asks in the system's own dialog.
-pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
-    let dialog = rfd::AsyncFileDialog::new();
-    let named = |extension: &str| dialog.clone().set_file_name(format!("{name}.{extension}"));
-    let models = ["stl", "STL", "igs", "iges", "IGS", "IGES", "bwp"];
-    // The dialog is created here, because some systems require the main thread, and waited for on another thread.
-    let answer: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match what {
-        Ask::Open => Box::pin(dialog.clone().add_filter("STL, IGES, BWP", &models).pick_file()),
-        Ask::OpenProfile | Ask::OpenBeads => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
-        Ask::Folder => Box::pin(dialog.clone().pick_folder()),
-        Ask::SaveProject => Box::pin(named("bwp").save_file()),
-        Ask::SavePicture => Box::pin(named("png").save_file()),
-    };
-    let asked = Instant::now();
-    Job::start(ctx, move || {
-        let path = pollster::block_on(answer).map(|file| file.path().to_owned());
-        Answer { what, path, seen: asked.elapsed() > QUICKEST }
-    })
 }
 
 /// The steps of the hybrid on every island of a layer: pockets and skeleton regions.

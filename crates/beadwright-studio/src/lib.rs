@@ -8,7 +8,7 @@
 //! | [`studio`] | the program: where everything is put together |
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
-//! | [`planner`], [`state`] | planning in the background, and its results so far |
+//! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`] | other background work: steps of the hybrid, reach, file dialogs; temperatures |
 //! | [`form`] | the profile as a form |
 //! | [`arm`] | how the robot stands with the torch at a place |
@@ -16,6 +16,8 @@
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
 //! | `files`, [`export`] | opening and writing files |
+//! | [`disk`] | where files lie: on the disk; in a browser, what the user has handed over, and downloads |
+//! | `web` | the page in a browser |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`thumbnail`] | pictures of the examples |
 //! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
@@ -24,6 +26,7 @@ mod act;
 pub mod actions;
 mod app;
 pub mod arm;
+pub mod disk;
 pub mod export;
 mod files;
 pub mod fonts;
@@ -42,5 +45,7 @@ pub mod thumbnail;
 pub mod view;
 pub mod view2d;
 pub mod view3d;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 
 pub use studio::Studio;

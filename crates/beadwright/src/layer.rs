@@ -4,9 +4,10 @@ use crate::pass::Pass;
 use crate::warning::Warning;
 use glam::DVec2;
 use planar::{Join, Polygon, Region};
+use serde::{Deserialize, Serialize};
 
 /// How warm the metal is on which a pass is laid, °C.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Temperature {
     /// Where the pass begins, just before.
     pub start: f64,
@@ -15,7 +16,7 @@ pub struct Temperature {
 }
 
 /// One layer, ready to be deposited.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Layer {
     /// Index from 0.
     pub index: usize,

@@ -5,10 +5,10 @@ use crate::layer::Layer;
 use crate::process::Cost;
 use crate::profile::Profile;
 use crate::weld::{Pause, Torch, path};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Totals of a plan, or of some of its layers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// Layers with at least one pass.
     pub layers: usize,
@@ -61,7 +61,7 @@ pub struct Metrics {
 }
 
 /// What the totals need from the profile.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 struct Rates {
     /// Metal laid, mm³/s.
     metal: f64,

@@ -31,7 +31,7 @@ impl PassKind {
 }
 
 /// A value along a path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Along {
     /// The same everywhere.
     Same(f64),
@@ -92,7 +92,7 @@ impl Along {
 }
 
 /// One path with the arc on, in the part's space.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
     /// What it is for.
     pub kind: PassKind,

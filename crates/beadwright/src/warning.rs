@@ -6,11 +6,11 @@ mod about;
 pub use about::About;
 
 use glam::DVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// What happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WarningKind {
     /// A hole in the surface was bridged; the size is the widest gap, mm.
@@ -66,7 +66,7 @@ impl WarningKind {
 }
 
 /// One event on one layer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Warning {
     /// What happened.
     pub kind: WarningKind,
@@ -79,7 +79,7 @@ pub struct Warning {
 }
 
 /// All events of one kind.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WarningSummary {
     /// What happened.
     pub kind: WarningKind,
@@ -94,7 +94,7 @@ pub struct WarningSummary {
 }
 
 /// The events of a run, summed up by kind.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Warnings(BTreeMap<WarningKind, WarningSummary>);
 
 impl Warnings {

@@ -2,13 +2,14 @@
 
 use crate::{boolean, polyline};
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 /// A closed loop of points, mm; the first point is not repeated at the end.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ring(Vec<DVec2>);
 
 /// One outer ring, counter-clockwise, with clockwise holes.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Polygon {
     /// The outer boundary, counter-clockwise.
     pub outer: Ring,
@@ -191,6 +192,16 @@ impl Region {
     /// Whether `p` lies inside.
     pub fn contains(&self, p: DVec2) -> bool {
         self.0.iter().any(|polygon| polygon.contains(p))
+    }
+
+    /// The region turned about the origin; `direction` is the unit vector that x is turned to.
+    pub fn turned(&self, direction: DVec2) -> Self {
+        let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| direction.rotate(*p)).collect());
+        let polygon = |polygon: &Polygon| Polygon {
+            outer: ring(&polygon.outer),
+            holes: polygon.holes.iter().map(ring).collect(),
+        };
+        Self(self.0.iter().map(polygon).collect())
     }
 
     /// Drops polygons and holes smaller than `least`, mm².

@@ -19,10 +19,13 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
-    let label = ui.label(studio.t("folder"));
-    let hint = studio.t("folder-hint");
-    let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
-    ui.add(edit).labelled_by(label.id);
+    // A browser asks itself where downloads go.
+    if cfg!(not(target_arch = "wasm32")) {
+        let label = ui.label(studio.t("folder"));
+        let hint = studio.t("folder-hint");
+        let edit = TextEdit::singleline(&mut studio.view.folder).hint_text(hint).desired_width(f32::INFINITY);
+        ui.add(edit).labelled_by(label.id);
+    }
     let (planned, judged) = (
         studio.plans.own.summary.is_some() && studio.plans.own.is_of_last_request(),
         studio.plans.own.total.is_some() && studio.plans.own.is_of_last_request(),
@@ -42,8 +45,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             studio.request(Action::Export(what));
         }
     }
+    // Browsers do not let a program wait for its pictures; they save what they show themselves.
     let pictured = studio.window.render_state.is_some() && studio.plans.own.layer_count() > 0;
-    if ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked() {
+    if cfg!(not(target_arch = "wasm32")) && ui.add_enabled(pictured, Button::new(studio.t("export-picture"))).clicked()
+    {
         studio.request(Action::Ask(Ask::SavePicture));
     }
 }

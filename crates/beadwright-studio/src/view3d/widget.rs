@@ -10,7 +10,7 @@ use super::{gpu, overlay};
 use eframe::egui::{self, Color32, PointerButton, Rect, Sense, Ui, WidgetInfo, pos2};
 use eframe::egui_wgpu::{RenderState, wgpu};
 use glam::{DVec2, DVec3};
-use std::time::Instant;
+use web_time::Instant;
 
 /// The picture stays coarse this long after the last turn of the mouse wheel, s.
 const SETTLE: f64 = 0.2;

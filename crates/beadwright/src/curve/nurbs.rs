@@ -2,6 +2,7 @@
 
 use super::CurveError;
 use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// The highest degree supported; drawing programs write at most 25.
 pub const MAX_DEGREE: usize = 25;
@@ -12,7 +13,7 @@ const CLOSED: f64 = 1e-9;
 /// A rational B-spline curve: `C(u) = Σ N_i(u) w_i P_i / Σ N_i(u) w_i` (equation 1 of Li et al.).
 ///
 /// The knots may be any non-decreasing ones, clamped or not; the curve runs over [`Nurbs::domain`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nurbs {
     pub(super) degree: usize,
     pub(super) knots: Vec<f64>,

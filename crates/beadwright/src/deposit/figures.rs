@@ -145,6 +145,31 @@ impl Figures {
     }
 }
 
+/// All of [`Figures`], for `serde(with)`: with the sums that their own serialization, which is read by people, leaves out.
+pub mod whole {
+    use super::Figures;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Writes ten numbers.
+    ///
+    /// # Errors
+    /// Those of the format.
+    pub fn serialize<S: Serializer>(figures: &Figures, serializer: S) -> Result<S::Ok, S::Error> {
+        let Figures { area, void, low, overfill, outside, deposited_volume, min, max, sum, squares } = *figures;
+        [area, void, low, overfill, outside, deposited_volume, min, max, sum, squares].serialize(serializer)
+    }
+
+    /// Reads them.
+    ///
+    /// # Errors
+    /// Those of the format.
+    pub fn deserialize<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Figures, D::Error> {
+        let [area, void, low, overfill, outside, deposited_volume, min, max, sum, squares] =
+            Deserialize::deserialize(deserializer)?;
+        Ok(Figures { area, void, low, overfill, outside, deposited_volume, min, max, sum, squares })
+    }
+}
+
 /// Heights are added up side by side in so many sums, as the processor does; the order never changes.
 const LANES: usize = 8;
 

@@ -33,6 +33,7 @@ use glam::DVec2;
 use patch::Run;
 use picture::Canvas;
 use planar::{Bounds, Join, Polygon, Region};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Below this fraction of the nominal bead height a point is a void.
@@ -81,9 +82,10 @@ impl DepositSettings {
 }
 
 /// The verdict on a layer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// Areas and heights.
+    #[serde(with = "figures::whole")]
     pub figures: Figures,
     /// Connected voids, the largest first.
     pub voids: Vec<Patch>,

@@ -8,11 +8,11 @@ use super::{Mask, OVERFILL, VOID};
 use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};
 use glam::DVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Why metal piles up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
     /// A pass begins here, on other metal.
@@ -44,7 +44,7 @@ impl Cause {
 }
 
 /// A connected void or overfilled patch.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Patch {
     /// Index of the layer, from 0.
     pub layer: usize,

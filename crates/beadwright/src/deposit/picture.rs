@@ -6,6 +6,7 @@ use super::ridges::Ridges;
 use super::stroke::Nominal;
 use super::tiles::Square;
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A pixel without metal outside the outline.
@@ -18,7 +19,7 @@ pub const FIRST_HEIGHT: u8 = 2;
 pub const FULL_SCALE: f64 = 2.0;
 
 /// One byte per pixel, the lowest row first: [`EMPTY`], [`VOID_PIXEL`], or a height from [`FIRST_HEIGHT`] on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// Lower left corner of the lowest pixel, mm.
     pub low: DVec2,

@@ -51,7 +51,7 @@ pub use units::Units;
 use crate::task::{Cancelled, Task};
 use crate::text::{self, TextError};
 use glam::{DMat3, DVec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
@@ -61,7 +61,7 @@ pub const MAX_REACH_MM: f64 = 20_000.0;
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// A triangle mesh, mm, wound counter-clockwise seen from outside.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Mesh {
     /// Welded vertices, mm.
     pub vertices: Vec<DVec3>,
@@ -89,7 +89,7 @@ pub struct Import {
 }
 
 /// An object of a file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Object {
     /// Its name.
     pub name: String,

@@ -9,14 +9,14 @@
 use super::Mesh;
 use super::adjacency::{Adjacency, HalfEdge, ends};
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 
 /// Vertices on open edges closer than this fraction of the diagonal are one.
 const CRACK: f64 = 1e-5;
 
 /// What was found in a mesh and what was done about it.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct RepairReport {
     /// Why the file does not hold what it says, where a damaged file was accepted.
     pub damage: Option<String>,

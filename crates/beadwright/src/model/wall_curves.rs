@@ -5,6 +5,7 @@ use super::iges::IgesFile;
 use crate::curve::Nurbs;
 use glam::{DAffine3, DVec2};
 use planar::Bounds;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// A curve may rise by this over its length and still count as level, mm.
@@ -17,14 +18,14 @@ const SAME_HEIGHT_MM: f64 = 0.1;
 const PAIRS: usize = 64;
 
 /// The centre-lines of a wall.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WallCurves {
     /// Heights, ascending, and the curves there; the same number at every height.
     levels: Vec<(f64, Vec<Curve>)>,
 }
 
 /// One centre-line: curves that follow each other.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Curve {
     parts: Vec<Nurbs>,
     closed: bool,

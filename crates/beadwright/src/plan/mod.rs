@@ -50,7 +50,7 @@ use glam::{DVec2, DVec3};
 use planar::medial::Node;
 use planar::{Bounds, Polygon};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::convert::Infallible;
 use warm::{Heat, Warmth};
@@ -80,7 +80,7 @@ pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> 
 }
 
 /// What is the same for all layers of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the part, for files and headings.
     pub part: String,
@@ -104,7 +104,7 @@ pub struct Plan {
 }
 
 /// Totals and warnings of a plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The totals.
     pub metrics: Metrics,

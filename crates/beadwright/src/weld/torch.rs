@@ -9,7 +9,7 @@ use glam::DVec3;
 const WAIT_STEP: f64 = 0.01;
 
 /// Where the torch stands, and how long the layer has taken.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Torch {
     /// As it is in the present layer, and as the profile has it.
     process: Option<Process>,

@@ -1,0 +1,90 @@
+//! `beadwright studio --serve`: hands the studio's page to a browser on this machine, and to nobody else.
+
+use anyhow::{Context, bail, ensure};
+use std::fs;
+use std::io::Write;
+use std::path::{Component, Path, PathBuf};
+use tiny_http::{Header, Method, Request, Response, Server};
+
+/// Where the page lies beside the command: as installed, and as `web/build` makes it beside `target/release`.
+const PLACES: [&str; 2] = ["studio-web", "../studio-web"];
+/// What tells that a folder holds the page.
+const PAGE: &str = "index.html";
+
+/// Serves the page until the command is ended.
+pub(crate) fn run(port: u16, folder: Option<&Path>) -> anyhow::Result<()> {
+    let folder = folder.map_or_else(beside, |folder| Ok(folder.to_owned()))?;
+    ensure!(
+        folder.join(PAGE).is_file(),
+        "{}: there is no {PAGE}, so this is not the studio's page; build it with `crates/beadwright-studio/web/build`, which \
+         writes target/studio-web",
+        folder.display()
+    );
+    let server = Server::http(("127.0.0.1", port)).map_err(anyhow::Error::from_boxed);
+    let server = server.with_context(|| format!("port {port} cannot be used; name another, such as --serve 8321"))?;
+    println!("The studio is at http://{}/ until this command is ended (Ctrl-C).", server.server_addr());
+    std::io::stdout().flush()?;
+    for request in server.incoming_requests() {
+        // A browser that has left is no fault.
+        let _ = answer(request, &folder);
+    }
+    Ok(())
+}
+
+fn beside() -> anyhow::Result<PathBuf> {
+    let own = std::env::current_exe().context("the place of this program is not known")?;
+    let places = PLACES.map(|place| own.with_file_name(place));
+    match places.iter().find(|place| place.join(PAGE).is_file()) {
+        Some(place) => Ok(place.clone()),
+        None => bail!(
+            "the studio's page is not there: it was looked for at {} and {}; build it with \
+             `crates/beadwright-studio/web/build`, which writes target/studio-web, or name its folder with --pages",
+            places[0].display(),
+            places[1].display()
+        ),
+    }
+}
+
+fn answer(request: Request, folder: &Path) -> std::io::Result<()> {
+    if !matches!(request.method(), Method::Get | Method::Head) {
+        return request.respond(Response::from_string("Only GET and HEAD are answered.").with_status_code(405));
+    }
+    match wanted(request.url()).and_then(|path| Some((kind(&path)?, fs::read(folder.join(path)).ok()?))) {
+        Some((kind, bytes)) => {
+            let mut response = Response::from_data(bytes);
+            // A page that was built anew is shown anew.
+            for (name, value) in
+                [("Content-Type", kind), ("Cache-Control", "no-cache"), ("X-Content-Type-Options", "nosniff")]
+            {
+                response.add_header(header(name, value)?);
+            }
+            request.respond(response)
+        }
+        None => request.respond(Response::from_string("There is no such file.").with_status_code(404)),
+    }
+}
+
+/// The file that an address asks for, below the folder; nothing that leads out of it.
+fn wanted(address: &str) -> Option<PathBuf> {
+    let path = address.split(['?', '#']).next()?.strip_prefix('/')?;
+    // The page's files have plain names, so that what is coded in the address asks for none of them.
+    let plain = path.bytes().all(|b| b.is_ascii_alphanumeric() || b"._-/".contains(&b));
+    let path = Path::new(if path.is_empty() { PAGE } else { path });
+    let below = path.components().all(|part| matches!(part, Component::Normal(_)));
+    (plain && below).then(|| path.to_owned())
+}
+
+/// The type that a browser must be told, by the ending; nothing else is handed out.
+fn kind(path: &Path) -> Option<&'static str> {
+    Some(match path.extension()?.to_str()? {
+        "html" => "text/html; charset=utf-8",
+        "js" => "text/javascript; charset=utf-8",
+        "wasm" => "application/wasm",
+        "ttf" => "font/ttf",
+        _ => return None,
+    })
+}
+
+fn header(name: &str, value: &str) -> std::io::Result<Header> {
+    Header::from_bytes(name, value).map_err(|()| std::io::Error::other("a header that is none"))
+}

@@ -1,0 +1,141 @@
+//! The window on the desktop, and the arguments it starts with.
+
+use beadwright_studio::Studio;
+use beadwright_studio::settings::Store;
+use beadwright_studio::view::{Mode, Side};
+use beadwright_studio::view3d::Section;
+use clap::{Parser, ValueEnum};
+use eframe::egui::ViewportBuilder;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// See the part, the beads and the voids before any wire is burnt, change parameters, export the robot program.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    /// A model (STL, IGES) or a project (.bwp) to open; or the name of an example part, such as propeller.
+    file: Option<PathBuf>,
+    /// The view to start with.
+    #[arg(long, value_name = "VIEW")]
+    view: Option<View>,
+    /// The panel to start with.
+    #[arg(long, value_name = "PANEL")]
+    panel: Option<Panel>,
+    /// The highest layer to show, counted from 1.
+    #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
+    layer: Option<u32>,
+    /// Show heights and voids in the layer view.
+    #[arg(long)]
+    heights: bool,
+    /// Compare in 3-D.
+    #[arg(long)]
+    solid: bool,
+    /// A section through the middle of the part, square to this axis.
+    #[arg(long, value_name = "AXIS")]
+    section: Option<Axis>,
+    /// Show the arm of the robot cell.
+    #[arg(long)]
+    robot: bool,
+    /// A second strategy to plan and show beside the first.
+    #[arg(long, value_name = "STRATEGY")]
+    compare_with: Option<String>,
+    /// A value of the profile, such as fill.strategy=hybrid; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, String)>,
+    /// Folder for settings and the autosaved project, instead of the user's own.
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum View {
+    Solid,
+    Layer,
+    Compare,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Panel {
+    Totals,
+    Findings,
+    Plots,
+    Export,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// A key and its value.
+fn setting(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE")?;
+    Ok((key.to_owned(), value.to_owned()))
+}
+
+/// Opens the window and returns when it is closed.
+pub(crate) fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let viewport = ViewportBuilder::default()
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([800.0, 500.0])
+        .with_title("Beadwright Studio")
+        .with_app_id("beadwright-studio")
+        .with_drag_and_drop(true);
+    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    let app: eframe::AppCreator<'_> = Box::new(move |cc| Ok(Box::new(begin(cc, &arguments))));
+    match eframe::run_native("Beadwright Studio", options, app) {
+        Ok(()) => ExitCode::SUCCESS,
+        // Without a window, only the console can say so.
+        Err(error) => {
+            let reason = error.to_string();
+            let reason = reason.trim_end_matches('.');
+            eprintln!(
+                "error: the window cannot be opened: {reason}. It needs a screen, and a driver for Vulkan, Metal, Direct3D \
+                 12 or OpenGL; on Linux, mesa-vulkan-drivers does without a graphics card."
+            );
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
+    let store = arguments.store.clone().map_or_else(Store::of_user, Store::at);
+    let mut studio = Studio::new(cc, store);
+    // Before the first change, whose autosave would overwrite it.
+    studio.offer_lost();
+    for (key, value) in &arguments.set {
+        studio.set_value(key, value);
+    }
+    if let Some(file) = &arguments.file {
+        match file.to_str().filter(|name| !file.exists() && beadwright::example::find(name).is_some()) {
+            Some(example) => studio.open_example(example),
+            None => studio.open(file),
+        }
+    }
+    if let Some(strategy) = &arguments.compare_with {
+        studio.compare_with(Some(strategy));
+    }
+    let view = studio.view();
+    view.mode = arguments.view.map_or(view.mode, |view| match view {
+        View::Solid => Mode::Solid,
+        View::Layer => Mode::Layer,
+        View::Compare => Mode::Compare,
+    });
+    view.side = arguments.panel.map_or(view.side, |panel| match panel {
+        Panel::Totals => Side::Totals,
+        Panel::Findings => Side::Findings,
+        Panel::Plots => Side::Plots,
+        Panel::Export => Side::Export,
+    });
+    view.show.heights |= arguments.heights;
+    view.robot |= arguments.robot;
+    view.compare_solid |= arguments.solid;
+    // Parts stand about x = y = 0, and what lies in front is cut away.
+    let section = |axis: Axis| Section { axis: axis as usize, at: 0.0, lower: matches!(axis, Axis::Y) };
+    view.section = arguments.section.map(section);
+    arguments.layer.into_iter().for_each(|layer| view.look_at(layer as usize - 1));
+    studio
+}
