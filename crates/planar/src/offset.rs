@@ -137,7 +137,8 @@ mod tests {
         };
         let mut blob = |centre: DVec2, radius: f64, rough: f64, count: usize| {
             let waves: Vec<(f64, f64)> = (0..5).map(|_| (rough * next(), std::f64::consts::TAU * next())).collect();
-            let noise: Vec<f64> = (0..count).map(|_| if count % 2 == 0 { 0.1 * rough * next() } else { 0.0 }).collect();
+            let noise: Vec<f64> =
+                (0..count).map(|_| if count.is_multiple_of(2) { 0.1 * rough * next() } else { 0.0 }).collect();
             let at = |k: usize| {
                 let angle = std::f64::consts::TAU * k as f64 / count as f64;
                 let wave = |(i, (a, shift)): (usize, &(f64, f64))| a * (angle * (i + 2) as f64 + shift).sin();
