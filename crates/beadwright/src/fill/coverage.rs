@@ -30,8 +30,6 @@ pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
 
 /// What passes cover, on rows across a region.
 pub struct Coverage {
-    /// Direction of the rows.
-    along: DVec2,
     /// Height of the first row and distance of the rows, mm.
     first: f64,
     step: f64,
@@ -42,8 +40,7 @@ pub struct Coverage {
 impl Coverage {
     /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
     pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
-        let along = DVec2::from_angle(ASLANT);
-        let turned = |p: &DVec2| DVec2::new(along.x, -along.y).rotate(*p);
+        let turned = |p: &DVec2| DVec2::from_angle(-ASLANT).rotate(*p);
         let bounds = Bounds::of(region.polygons().iter().flat_map(|island| island.outer.points()).map(turned))?;
         let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
         let step = bounds.size().y / count as f64;
@@ -55,14 +52,13 @@ impl Coverage {
         }
         let mut covered = rows.covered;
         covered.iter_mut().for_each(|row| row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0)));
-        Some(Self { along, first, step, covered })
+        Some(Self { first, step, covered })
     }
 
     /// What is left bare of a region that lies within the one whose rows these are.
     pub fn bare(&self, region: &Region) -> Bare {
         let (mut found, mut widest) = (Bare::default(), 0.0);
-        let inside =
-            region.turned(DVec2::new(self.along.x, -self.along.y)).rows(self.first, self.step, self.covered.len());
+        let inside = region.turned(DVec2::from_angle(-ASLANT)).rows(self.first, self.step, self.covered.len());
         for (k, (inside, covered)) in inside.iter().zip(&self.covered).enumerate() {
             for span in inside.chunks_exact(2) {
                 for gap in gaps(span[0]..span[1], covered) {
@@ -70,7 +66,7 @@ impl Coverage {
                     found.area += length * self.step;
                     if length > widest {
                         let middle = DVec2::new(gap.start + length / 2.0, self.first + k as f64 * self.step);
-                        (widest, found.place) = (length, self.along.rotate(middle));
+                        (widest, found.place) = (length, DVec2::from_angle(ASLANT).rotate(middle));
                     }
                 }
             }
@@ -283,7 +279,7 @@ impl Strip {
 
 #[cfg(test)]
 mod tests {
-    use super::{Strip, bare};
+    use super::{ASLANT, Strip, bare};
     use crate::fill::Path;
     use crate::pass::{Along, PassKind};
     use glam::DVec2;
@@ -310,8 +306,9 @@ mod tests {
         let r = 2.0 * 1.01;
         let exact = 400.0 - 14.0 * 2.0 * r - std::f64::consts::PI * r * r;
         assert!((found.area / exact - 1.0).abs() < 2e-3, "{} for {exact}", found.area);
-        let nothing = bare(&[], &square(20.0), 4.0);
-        assert!((nothing.area / 400.0 - 1.0).abs() < 2e-3 && square(20.0).contains(nothing.place), "{nothing:?}");
+        let nothing = bare(&[], &square(20.0).turned(DVec2::from_angle(ASLANT)), 4.0);
+        let middle = DVec2::from_angle(-ASLANT).rotate(nothing.place).x;
+        assert!((nothing.area - 400.0).abs() < 1e-6 && (middle - 10.0).abs() < 1e-6, "{nothing:?}");
     }
 
     #[test]
