@@ -5,9 +5,9 @@ Solid prints, same layers and line widths for all: perimeters as the case says, 
 system time together, so other jobs on the machine hardly matter; each figure is the median of RUNS by CPU.
 
 Debian: apt-get install prusa-slicer cura-engine cura   (cura holds the definitions, else $CURA_DEFINITIONS)
-Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--json FILE] [--binary target/release/beadwright]
+Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--judged] [--json FILE] [--binary target/release/beadwright]
 """
-import argparse, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
+import argparse, concurrent.futures, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODELS = pathlib.Path(os.environ.get("BEADWRIGHT_MODELS", ROOT / "../shared/models"))
@@ -42,10 +42,11 @@ def model(name, scale, work):
     return path
 
 
-def ours(binary, part, bead, perimeters, work):
+def ours(binary, part, bead, perimeters, work, judged):
     profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
     (work / "profile.toml").write_text(profile)
-    return [binary, "plan", part, "-p", work / "profile.toml", "--no-deposit", "--allow-findings", "-o", work / "ours"]
+    judging = [] if judged else ["--no-deposit"]
+    return [binary, "plan", part, "-p", work / "profile.toml", *judging, "--allow-findings", "-o", work / "ours"]
 
 
 def prusa(part, bead, perimeters, work):
@@ -106,6 +107,7 @@ def main():
     arguments.add_argument("--cases", default="")
     arguments.add_argument("--json", type=pathlib.Path)
     arguments.add_argument("--binary", type=pathlib.Path)
+    arguments.add_argument("--judged", action="store_true", help="our plans with the deposit model on, as by default")
     arguments.add_argument("--alone", action="store_true", help="leave the peers out")
     given = arguments.parse_args()
     if not given.binary:
@@ -119,11 +121,12 @@ def main():
     for name, file, scale, bead, perimeters in CASES:
         if given.cases and name not in given.cases.split(","):
             continue
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(1) as other:
             work = pathlib.Path(folder)
-            part = model(file, scale, work)
+            # In another process: the memory of this one counts as that of what it starts.
+            part = other.submit(model, file, scale, work).result()
             row = {"case": name} | {peer: measured(of(part, bead, perimeters, work), given.runs) for peer, of in peers.items()}
-            row["beadwright"] = measured(ours(binary, part, bead, perimeters, work), given.runs)
+            row["beadwright"] = measured(ours(binary, part, bead, perimeters, work, given.judged), given.runs)
         rows.append(row)
         cells = [row[who] for who in [*peers, "beadwright"]]
         print(f"{name:<26}" + "".join(f"{c['cpu_s']:>14.2f}{c['peak_mb']:>8.0f}" if c else f"{'refused':>22}" for c in cells), flush=True)

@@ -4,6 +4,7 @@
 //! boxes along x and y would cover each other wherever they run aslant.
 
 use glam::DVec2;
+use std::ops::Range;
 
 /// From one point to another, mm.
 pub type Piece = [DVec2; 2];
@@ -15,9 +16,9 @@ const ROUNDING: f64 = 1e-9;
 pub struct Bands {
     /// Direction of the bands.
     axis: DVec2,
-    /// Where the first band begins and how wide each is, mm across the axis.
+    /// Where the first band begins, mm across the axis, and how many bands a millimetre has.
     low: f64,
-    width: f64,
+    per_mm: f64,
     /// The pieces in the frame of the axis.
     pieces: Vec<Piece>,
     /// Where each band begins in `items`.
@@ -48,30 +49,30 @@ impl Bands {
         // As wide as a piece reaches across on the average, so that each lies in few bands, and each band holds few.
         let mean = pieces.iter().map(|[a, b]| (a.y - b.y).abs()).sum::<f64>() / count;
         let width = mean.max(size.y / count).max(2.0 * rounding);
-        let mut bands = Self { axis, low: low.y, width, pieces, starts: Vec::new(), items: Vec::new() };
+        let mut bands = Self { axis, low: low.y, per_mm: width.recip(), pieces, starts: Vec::new(), items: Vec::new() };
         bands.sort(rounding, (size.y / width) as usize + 1);
         bands
     }
 
     fn sort(&mut self, rounding: f64, count: usize) {
-        let item = |(number, &[a, b]): (usize, &Piece)| Item {
-            low: a.min(b) - rounding,
-            high: a.max(b) + rounding,
-            number: number as u32,
+        let item = |(number, &[a, b]): (usize, &Piece)| {
+            let (low, high) = (a.min(b) - rounding, a.max(b) + rounding);
+            let bands = self.band(low.y).min(count - 1)..self.band(high.y).min(count - 1) + 1;
+            (Item { low, high, number: number as u32 }, bands)
         };
-        let of = |item: &Item| self.band(item.low.y).min(count - 1)..self.band(item.high.y).min(count - 1) + 1;
+        let all: Vec<(Item, Range<usize>)> = self.pieces.iter().enumerate().map(item).collect();
         let mut starts = vec![0; count + 2];
-        for item in self.pieces.iter().enumerate().map(item) {
-            of(&item).for_each(|band| starts[band + 2] += 1);
+        for (_, bands) in &all {
+            starts[bands.start + 2..bands.end + 2].iter_mut().for_each(|held| *held += 1);
         }
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
         let mut items = vec![Item::default(); starts[count + 1]];
-        for item in self.pieces.iter().enumerate().map(item) {
-            for band in of(&item) {
-                items[starts[band + 1]] = item;
-                starts[band + 1] += 1;
+        for (item, bands) in all {
+            for next in &mut starts[bands.start + 1..bands.end + 1] {
+                items[*next] = item;
+                *next += 1;
             }
         }
         starts.pop();
@@ -83,7 +84,7 @@ impl Bands {
     }
 
     fn band(&self, y: f64) -> usize {
-        ((y - self.low) / self.width).max(0.0) as usize
+        ((y - self.low) * self.per_mm).max(0.0) as usize
     }
 
     /// Visits every pair of pieces whose boxes meet, once.

@@ -110,15 +110,19 @@ impl Edges {
         let ([a, b], [c, d]) = (self.ends[i], self.ends[j]);
         if self.next[i] == j || self.next[j] == i {
             // Neighbours meet at their common end, unless one runs back over the other.
-            let along = side(a, b, c) == 0.0 && side(a, b, d) == 0.0;
-            return if along && (b - a).dot(d - c) < 0.0 { Meeting::Touch } else { Meeting::None };
+            let back = (b - a).dot(d - c) < 0.0 && side(a, b, c) == 0.0 && side(a, b, d) == 0.0;
+            return if back { Meeting::Touch } else { Meeting::None };
         }
         if !(a.min(b).cmple(c.max(d)) & c.min(d).cmple(a.max(b))).all() {
             return Meeting::None;
         }
-        let sides = [side(c, d, a), side(c, d, b), side(a, b, c), side(a, b, d)];
         let apart = |from: f64, to: f64| from != 0.0 && to != 0.0 && (from > 0.0) == (to > 0.0);
-        if apart(sides[0], sides[1]) || apart(sides[2], sides[3]) {
+        let (from, to) = (side(c, d, a), side(c, d, b));
+        if apart(from, to) {
+            return Meeting::None;
+        }
+        let sides = [from, to, side(a, b, c), side(a, b, d)];
+        if apart(sides[2], sides[3]) {
             return Meeting::None;
         }
         if sides.contains(&0.0) {
