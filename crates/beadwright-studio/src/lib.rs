@@ -9,7 +9,7 @@
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
-//! | [`jobs`], [`heat`] | other background work: steps of the hybrid, reach, file dialogs; temperatures |
+//! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
 //! | [`form`] | the profile as a form |
 //! | [`arm`] | how the robot stands with the torch at a place |
 //! | [`view`] | what is shown, and how |
@@ -39,6 +39,7 @@ pub mod planner;
 pub mod project;
 pub mod settings;
 pub mod state;
+pub mod steps;
 pub mod studio;
 pub mod text;
 pub mod thumbnail;

@@ -10,12 +10,12 @@ use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
+use crate::steps::Looked;
 use crate::text::Language;
 use crate::view::ViewState;
 use crate::view2d::View2d;
-use crate::view3d::{Pick, Plate, Style, View3d};
+use crate::view3d::{Camera, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
-use beadwright::fill::hybrid::Steps;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -33,6 +33,8 @@ pub struct Other {
     pub planner: Planner,
     /// Its plan.
     pub plan: PlanState,
+    /// Its steps in the layer in view.
+    pub looked: Looked,
     /// Its view of a layer.
     pub flat: View2d,
     /// Its view in 3-D.
@@ -89,8 +91,8 @@ pub struct Jobs {
     pub(crate) typed: Option<(Ask, String)>,
     /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
-    pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
-    pub(crate) steps: Option<(usize, Vec<Steps>)>,
+    /// The steps of the strategy in the layer in view.
+    pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
@@ -103,7 +105,7 @@ pub struct Jobs {
 impl Jobs {
     /// Whether nothing is being computed.
     fn is_idle(&self) -> bool {
-        self.reach_job.is_none() && self.steps_job.is_none() && self.heat_job.is_none()
+        self.reach_job.is_none() && !self.looked.is_busy() && self.heat_job.is_none()
     }
 }
 
@@ -237,9 +239,14 @@ impl Studio {
         &mut self.view
     }
 
+    /// From where the 3-D view is seen.
+    pub fn camera(&self) -> Camera {
+        self.solid.camera
+    }
+
     /// Whether nothing is running in the background.
     pub fn is_idle(&self) -> bool {
-        let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy());
+        let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy() || other.looked.is_busy());
         !self.plans.own.is_busy() && !other && self.jobs.is_idle()
     }
 
@@ -362,7 +369,7 @@ impl Studio {
         self.view.chosen = None;
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
-        (self.jobs.steps, self.jobs.steps_job) = (None, None);
+        self.jobs.looked.forget();
         self.jobs.heat_job = None;
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
@@ -375,6 +382,7 @@ impl Studio {
         self.plans.planner.plan(self.open.project.now(), self.view.last);
         let project = self.open.project.now().clone();
         if let Some(other) = &mut self.plans.other {
+            other.looked.forget();
             other.plan.restart();
             other.planner.plan(&with_strategy(project, &other.strategy), self.view.last);
         }
@@ -390,6 +398,7 @@ impl Studio {
             strategy: strategy.to_owned(),
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
+            looked: Looked::default(),
             flat: View2d::default(),
             solid: View3d::default(),
         };

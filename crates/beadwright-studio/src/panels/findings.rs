@@ -1,5 +1,6 @@
 //! What the checks found; a click goes there.
 
+use super::words;
 use crate::studio::Studio;
 use crate::view::Mode;
 use beadwright::check::{CHECKS, Finding};
@@ -28,20 +29,21 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let word = studio.t(if serious { "serious" } else { "remark" });
         let colour = if serious { ui.visuals().error_fg_color } else { ui.visuals().warn_fg_color };
         let title = format!("{} ({}, {word})", check.name, found.len());
-        CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name).default_open(true).show(
-            ui,
-            |ui| {
-                ui.weak(format!("{}: {}.", studio.t("why"), check.why));
-                ui.weak(format!("{}: {}.", studio.t("remedy"), check.remedy));
-                let groups = grouped(&found);
-                for group in groups.iter().take(LISTED) {
-                    listed(studio, ui, group);
-                }
-                if groups.len() > LISTED {
-                    ui.weak(format!("… {}", groups.len() - LISTED));
-                }
-            },
-        );
+        let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
+        let opened = title.default_open(true).show(ui, |ui| {
+            for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
+                let line = ui.weak(format!("{}: {text}.", studio.t(key)));
+                words::explained(studio, line, text);
+            }
+            let groups = grouped(&found);
+            for group in groups.iter().take(LISTED) {
+                listed(studio, ui, group);
+            }
+            if groups.len() > LISTED {
+                ui.weak(format!("… {}", groups.len() - LISTED));
+            }
+        });
+        words::explained(studio, opened.header_response, check.name);
     }
 }
 
@@ -60,8 +62,11 @@ fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
 fn one(studio: &mut Studio, ui: &mut Ui, finding: &Finding) {
     let text = sentence(finding);
     if finding.layer.is_none() {
-        ui.label(text);
-    } else if ui.link(text).on_hover_text(studio.t("go-there")).clicked() {
+        words::explained(studio, ui.label(&text), &text);
+        return;
+    }
+    let link = ui.link(&text).on_hover_text(studio.t("go-there"));
+    if words::explained(studio, link, &text).clicked() {
         go_to(studio, finding);
     }
 }

@@ -15,11 +15,14 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             ui.menu_button(studio.t("recent"), |ui| recent(studio, ui));
             ui.separator();
             items(studio, ui, &[Action::Save, Action::SaveAs, Action::ExportProgram]);
-            ui.separator();
-            items(studio, ui, &[Action::Quit]);
+            // A page is closed by its browser.
+            if !cfg!(target_arch = "wasm32") {
+                ui.separator();
+                items(studio, ui, &[Action::Quit]);
+            }
         });
         ui.menu_button(studio.t("edit"), |ui| {
-            items(studio, ui, &[Action::Undo, Action::Redo, Action::Plan, Action::Stop]);
+            items(studio, ui, &[Action::Undo, Action::Redo, Action::PlaceTool, Action::Plan, Action::Stop]);
         });
         ui.menu_button(studio.t("view"), |ui| {
             items(studio, ui, &[Action::Solid, Action::Layer, Action::Compare]);
@@ -45,7 +48,7 @@ fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
             Action::Undo => studio.open.project.can_undo(),
             Action::Redo => studio.open.project.can_redo(),
             Action::ExportProgram | Action::Play => studio.plans.own.summary.is_some(),
-            Action::Save | Action::SaveAs | Action::Plan => studio.project().source.is_some(),
+            Action::Save | Action::SaveAs | Action::Plan | Action::PlaceTool => studio.project().source.is_some(),
             Action::Stop => studio.plans.own.is_busy(),
             _ => true,
         };

@@ -126,7 +126,8 @@ fn keys(studio: &mut Studio, ui: &Ui) {
     let mut open = studio.view.keys;
     Window::new(studio.t("keys")).open(&mut open).show(ui.ctx(), |ui| {
         Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for entry in &ENTRIES {
+            let page = cfg!(target_arch = "wasm32");
+            for entry in ENTRIES.iter().filter(|entry| !page || entry.action != Action::Quit) {
                 ui.label(studio.t(entry.text));
                 ui.monospace(entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default());
                 ui.end_row();

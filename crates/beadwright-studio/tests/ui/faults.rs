@@ -8,7 +8,7 @@ use beadwright::profile::Profile;
 use beadwright_studio::Studio;
 use beadwright_studio::jobs::Ask;
 use beadwright_studio::project::{Project, Source};
-use beadwright_studio::view2d::{Drawing, Show, View2d};
+use beadwright_studio::view2d::{Drawing, Named, Show, View2d};
 use eframe::egui::epaint::Primitive;
 use eframe::egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::Harness;
@@ -36,7 +36,7 @@ fn slivers_draw_no_spikes() {
     let layer = Layer { islands: vec![Polygon { outer: square(-50.0, 50.0), holes: slivers() }], ..Layer::default() };
     let mut view = View2d::default();
     let draw = move |ui: &mut eframe::egui::Ui| {
-        let (steps, pieces, nothing) = (&[], 0, "nothing");
+        let (steps, pieces, nothing) = ((&[][..], Named::default()), 0, "nothing");
         let drawing = Drawing { layer: &layer, judgement: None, steps, pieces, chosen: None, scale: None, nothing };
         view.show(ui, drawing, Show::default(), "layer");
     };

@@ -89,7 +89,7 @@ fn a_layer_without_regions_is_looked_at_once() {
     harness.state_mut().view().look_at(14);
     harness.key_press(Key::F3);
     harness.run_steps(3);
-    click(&mut harness, "Pockets and skeleton regions");
+    click(&mut harness, "Steps");
     wait(&mut harness);
     for _ in 0..20 {
         harness.run_steps(1);

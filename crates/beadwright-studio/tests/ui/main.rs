@@ -11,6 +11,7 @@ mod files;
 mod flat;
 mod linked;
 mod pictures;
+mod place;
 mod placement;
 mod play;
 mod start;
