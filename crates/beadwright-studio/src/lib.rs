@@ -20,7 +20,7 @@
 //! | `web` | the page in a browser |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`thumbnail`] | pictures of the examples |
-//! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
+//! | [`settings`], [`text`], [`fonts`], [`theme`] | what is remembered; texts; fonts; colours |
 
 mod act;
 pub mod actions;
@@ -42,6 +42,7 @@ pub mod state;
 pub mod steps;
 pub mod studio;
 pub mod text;
+pub mod theme;
 pub mod thumbnail;
 pub mod view;
 pub mod view2d;

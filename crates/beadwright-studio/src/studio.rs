@@ -12,6 +12,7 @@ use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::steps::Looked;
 use crate::text::Language;
+use crate::theme;
 use crate::view::ViewState;
 use crate::view2d::View2d;
 use crate::view3d::{Camera, Pick, Plate, Style, View3d};
@@ -410,14 +411,7 @@ impl Studio {
     }
 
     pub(crate) fn apply_theme(&self) {
-        for theme in [egui::Theme::Dark, egui::Theme::Light] {
-            self.window.ctx.style_mut_of(theme, |style| {
-                let visuals = &mut style.visuals;
-                visuals.weak_text_color = Some(egui::Color32::from_gray(if visuals.dark_mode { 150 } else { 95 }));
-                // Makes text fields stand out without a frame.
-                visuals.extreme_bg_color = egui::Color32::from_gray(if visuals.dark_mode { 8 } else { 226 });
-            });
-        }
+        theme::set(&self.window.ctx);
         self.window.ctx.set_theme(if self.window.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
     }
 }

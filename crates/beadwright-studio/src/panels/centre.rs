@@ -3,9 +3,9 @@
 use super::{bead, compare, solid};
 use crate::actions::Action;
 use crate::state::PlanState;
+use crate::steps::Looked;
 use crate::studio::Studio;
 use crate::view::Mode;
-use crate::steps::Looked;
 use crate::view2d::{Drawing, Named, View2d};
 use eframe::egui::{CentralPanel, Ui};
 

@@ -43,7 +43,8 @@ fn in_layers(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
     look_closer(studio);
     let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| words(studio, key));
     let before = studio.flat.eye();
-    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &studio.jobs.looked, own, None) {
+    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &studio.jobs.looked, own, None)
+    {
         studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
     }
     let Some(other) = &mut studio.plans.other else { return };

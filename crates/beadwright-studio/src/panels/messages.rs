@@ -3,7 +3,8 @@
 use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
-use eframe::egui::{Color32, RichText, ScrollArea, Ui};
+use crate::theme;
+use eframe::egui::{RichText, ScrollArea, Ui};
 
 /// Height of the messages, points; longer lists scroll.
 pub(super) const HEIGHT: f32 = 52.0;
@@ -47,7 +48,8 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
         if ui.small_button("×").on_hover_text(hint).clicked() {
             close();
         }
-        let colour = if error { ui.visuals().error_fg_color } else { Color32::from_rgb(0x1a, 0x9c, 0x4b) };
+        let visuals = ui.visuals();
+        let colour = if error { visuals.error_fg_color } else { theme::good(visuals.dark_mode) };
         ui.colored_label(colour, text);
     });
 }

@@ -67,7 +67,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
     extent(&painter, &sight, part.bounds(), &gizmo, &shown);
     for (handle, name, colour) in HANDLES.into_iter().filter(|(handle, ..)| gizmo.can(*handle, &camera)) {
-        let Some(at) = sight.at(shown.tip(handle)).filter(|at| rect.contains(*at)) else { continue };
+        let held = studio.view.grip.is_some_and(|grip| grip.handle == handle);
+        let Some(at) = sight.at(shown.tip(handle)).filter(|at| held || rect.contains(*at)) else { continue };
         let (place, label) = (Rect::from_center_size(at, Vec2::splat(2.0 * HANDLE)), studio.t(name));
         let response = ui.interact(place, ui.scope_id().with(name), Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));

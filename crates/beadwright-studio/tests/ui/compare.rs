@@ -1,6 +1,6 @@
 //! Two strategies side by side, and findings that lead to their place.
 
-use super::window::{click, example, sees, wait};
+use super::window::{Window, click, example, press, sees, wait};
 use beadwright::fill::{hybrid, one_loop};
 use beadwright::plan;
 use beadwright::profile::Profile;
@@ -8,7 +8,6 @@ use beadwright::report::rows;
 use beadwright::task::Task;
 use beadwright_studio::view::Mode;
 use eframe::egui::{Key, Pos2, Rect, Role, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 
@@ -24,8 +23,7 @@ fn totals(strategy: &str) -> Vec<(&'static str, String)> {
 fn two_strategies_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    harness.key_press(Key::F4);
-    harness.run_steps(3);
+    press(&mut harness, Key::F4);
     assert_eq!(harness.state_mut().view().mode, Mode::Compare);
     harness.get_by_role_and_label(Role::ComboBox, "Other strategy").click();
     harness.run_steps(3);
@@ -47,8 +45,7 @@ fn two_strategies_are_compared() {
 fn a_strategy_that_cannot_be_compared_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    harness.key_press(Key::F4);
-    harness.run_steps(3);
+    press(&mut harness, Key::F4);
     harness.state_mut().compare_with(Some("no-such-strategy"));
     wait(&mut harness);
     assert!(harness.query_by_label_contains("the strategies are loop").is_some(), "no sentence");
@@ -88,13 +85,12 @@ fn two_strategies_are_seen_in_3d_with_one_camera() {
     let mut harness = example(folder.path(), "cross");
     harness.state_mut().compare_with(Some("zigzag"));
     wait(&mut harness);
-    harness.key_press(Key::F4);
-    harness.run_steps(2);
+    press(&mut harness, Key::F4);
     click(&mut harness, "In 3-D");
     harness.remove_cursor();
     harness.run_steps(4);
     let views = ["3-D view", "3-D view, other strategy"];
-    let picture = |harness: &mut Harness<'static, beadwright_studio::Studio>, view: &str| {
+    let picture = |harness: &mut Window, view: &str| {
         let rect = harness.get_by_label(view).rect();
         let whole = harness.render().unwrap();
         let (x, y) = (rect.left().ceil() as u32, rect.top().ceil() as u32);
@@ -102,7 +98,7 @@ fn two_strategies_are_seen_in_3d_with_one_camera() {
         image::imageops::crop_imm(&whole, x, y, size[0], size[1]).to_image()
     };
     // The plate is the same, at the same place; the beads are others.
-    let alike = |harness: &mut Harness<'static, beadwright_studio::Studio>| {
+    let alike = |harness: &mut Window| {
         let [own, other] = views.map(|view| picture(harness, view));
         let same = own.pixels().zip(other.pixels()).filter(|(a, b)| a == b).count();
         same as f64 / f64::from(own.width() * own.height())
@@ -140,8 +136,7 @@ fn the_steps_of_both_strategies_are_seen() {
     let mut harness = example(folder.path(), "cross");
     harness.state_mut().compare_with(Some("hybrid"));
     wait(&mut harness);
-    harness.key_press(Key::F4);
-    harness.run_steps(3);
+    press(&mut harness, Key::F4);
     // Only lines and marks of the steps are to be seen.
     for hidden in ["Beads", "Path", "Travels", "Starts and ends"] {
         click(&mut harness, hidden);
@@ -200,10 +195,14 @@ fn the_totals_of_a_comparison_fit_the_window() {
     harness.run_steps(4);
     let plan = harness.state().plan();
     let values = rows::totals(&plan.summary.as_ref().unwrap().metrics);
-    let cells: Vec<Rect> = values.iter().flat_map(|(_, value)| harness.query_all_by_label(value)).map(|n| n.rect()).collect();
+    let cells: Vec<Rect> =
+        values.iter().flat_map(|(_, value)| harness.query_all_by_label(value)).map(|n| n.rect()).collect();
     assert!(cells.len() >= 2 * values.len() - 2, "{} of {} totals are shown twice", cells.len(), values.len());
     for (i, cell) in cells.iter().enumerate() {
         assert!(cell.left() >= 0.0 && cell.right() <= 1280.0, "{cell} is cut off");
-        assert!(cells[..i].iter().all(|other| other == cell || !other.shrink(1.0).intersects(*cell)), "{cell} overlaps");
+        assert!(
+            cells[..i].iter().all(|other| other == cell || !other.shrink(1.0).intersects(*cell)),
+            "{cell} overlaps"
+        );
     }
 }

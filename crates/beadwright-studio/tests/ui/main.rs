@@ -9,6 +9,7 @@ mod export;
 mod faults;
 mod files;
 mod flat;
+mod keyboard;
 mod linked;
 mod pictures;
 mod place;

@@ -1,14 +1,10 @@
 //! The part is moved and turned by handles, from any side, and by arrow keys.
 
-use super::window::{click, example, has_adapter, sees, wait};
-use beadwright_studio::Studio;
+use super::window::{Window, button, click, drag, example, has_adapter, pull, sees, wait};
 use beadwright_studio::view3d::Camera;
-use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, vec2};
-use egui_kittest::Harness;
+use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
-
-type Window = Harness<'static, Studio>;
 
 /// Where a pinhole camera with 35° from top to bottom shows a place, mm.
 fn seen(camera: &Camera, rect: Rect, place: DVec3) -> Pos2 {
@@ -34,29 +30,6 @@ fn foot(harness: &Window) -> DVec2 {
 
 fn handle(harness: &Window, name: &str) -> Pos2 {
     harness.get_by_role_and_label(Role::Button, name).rect().center()
-}
-
-/// Presses the button at one place and moves to another, without letting go.
-fn pull(harness: &mut Window, from: Pos2, to: Pos2) {
-    harness.hover_at(from);
-    harness.run_steps(2);
-    button(harness, from, true);
-    harness.hover_at(from.lerp(to, 0.5));
-    harness.run_steps(2);
-    harness.hover_at(to);
-    harness.run_steps(2);
-}
-
-fn button(harness: &mut Window, pos: Pos2, pressed: bool) {
-    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
-    harness.run_steps(2);
-}
-
-fn drag(harness: &mut Window, from: Pos2, to: Pos2) {
-    pull(harness, from, to);
-    button(harness, to, false);
-    harness.remove_cursor();
-    wait(harness);
 }
 
 fn placing(folder: &std::path::Path) -> Window {
@@ -95,7 +68,8 @@ fn an_arrow_that_is_dragged_moves_the_part_by_what_is_seen() {
             let tip = (wanted + way * reach).extend(low.z);
             let from = handle(&harness, name);
             assert!(from.distance(seen(&camera, rect, tip)) < 0.01, "{name} is not where its place is seen");
-            drag(&mut harness, from, seen(&camera, rect, tip + (way * by).extend(0.0)));
+            let to = seen(&camera, rect, tip + (way * by).extend(0.0));
+            drag(&mut harness, from, to);
             wanted += way * by;
             let found = foot(&harness);
             assert!(found.distance(wanted) < 0.051, "view {number}: {name} by {by} leads to {found}, not {wanted}");

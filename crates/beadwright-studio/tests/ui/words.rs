@@ -1,6 +1,6 @@
 //! Languages and themes.
 
-use super::window::{click, example, has_adapter, sees, studio};
+use super::window::{Window, click, example, has_adapter, sees, studio};
 use beadwright_studio::settings::Store;
 use beadwright_studio::text::table;
 use eframe::egui::{Context, FontDefinitions, FontId, Key, Modifiers, RawInput, Theme};
@@ -21,7 +21,7 @@ fn the_window_speaks_chinese() {
     }
     click(&mut harness, "中文");
     harness.run_steps(3);
-    let there = |harness: &egui_kittest::Harness<'static, beadwright_studio::Studio>, labels: &[&str]| {
+    let there = |harness: &Window, labels: &[&str]| {
         for label in labels {
             assert!(harness.query_all_by_label_contains(label).next().is_some(), "{label} is not there");
         }
@@ -50,7 +50,7 @@ fn the_window_speaks_chinese() {
 fn the_window_is_dark_or_light() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    let brightness = |harness: &mut egui_kittest::Harness<'static, beadwright_studio::Studio>| {
+    let brightness = |harness: &mut Window| {
         let picture = harness.render().unwrap();
         let sum: u64 = picture.pixels().map(|p| u64::from(p.0[0]) + u64::from(p.0[1]) + u64::from(p.0[2])).sum();
         sum as f64 / (3.0 * f64::from(picture.width() * picture.height()))
