@@ -26,10 +26,11 @@ fn path(studio: &mut Studio, ui: &Ui) {
         ui.label(studio.t("path-text"));
         let label = ui.label(studio.t("path"));
         let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).labelled_by(label.id);
+        // Asked first: a field that is given the focus again has not lost it.
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if ui.memory(|memory| memory.focused().is_none()) {
             field.request_focus();
         }
-        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.horizontal(|ui| {
             if ui.add_enabled(!text.trim().is_empty(), Button::new(studio.t("take"))).clicked() || entered {
                 answer = Some(true);

@@ -4,7 +4,7 @@ use crate::studio::Studio;
 use eframe::egui::Response;
 
 /// Words that have a meaning of their own here.
-const WORDS: [&str; 5] = ["void", "low", "overfill", "outside", "closeness"];
+const WORDS: [&str; 4] = ["void", "low", "overfill", "outside"];
 
 /// The page on figures and findings.
 const PAGE: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/book/checks.md");

@@ -85,7 +85,7 @@ fn without_file_dialogs_a_path_is_typed() {
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::TextInput, "Path").type_text(path.to_str().unwrap());
     harness.run_steps(2);
-    click(&mut harness, "OK");
+    press(&mut harness, Key::Enter);
     wait(&mut harness);
     assert_eq!(harness.state().project().source, Some(Source::File(path)));
     assert!(harness.state().plan().is_complete());

@@ -3,6 +3,7 @@
 use super::window::{Window, example, press, studio, wait};
 use eframe::egui::{Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec2;
 use std::collections::BTreeSet;
 
 /// What a person acts upon.
@@ -60,6 +61,17 @@ fn tab_reaches_every_control() {
     press(&mut harness, Key::Escape);
     press(&mut harness, Key::M);
     go_round(&mut harness, "3-D with handles");
+    // Arrow keys belong to the handle that Tab has reached.
+    let shift = |harness: &Window| harness.state().project().placement.shift;
+    for (handle, moved) in [("Move along x", DVec2::new(1.0, 0.0)), ("Move along y", DVec2::new(1.0, 1.0))] {
+        while !harness.query_all_by(|node| node.is_focused()).any(|node| described(&node).contains(handle)) {
+            harness.key_press(Key::Tab);
+            harness.run_steps(1);
+        }
+        press(&mut harness, Key::ArrowUp);
+        assert_eq!(shift(&harness), moved, "{handle}");
+    }
+    wait(&mut harness);
     harness.state_mut().compare_with(Some("hybrid"));
     wait(&mut harness);
     for (key, view) in [(Key::F3, "layer"), (Key::F4, "compare")] {
