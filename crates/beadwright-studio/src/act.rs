@@ -95,7 +95,10 @@ impl Studio {
             Action::SetValue(key, value) => self.set_value(&key, &value),
             Action::ResetValue(key) => self.reset_values(&[key]),
             Action::ResetValues(keys) => self.reset_values(&keys),
-            Action::SetProfile(text) => self.set_profile("profile", Ok(text.to_owned())),
+            Action::SetProfile(text) => {
+                self.set_profile("profile", Ok(text.to_owned()));
+                self.take_dialect();
+            }
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),
             Action::CompareWith(strategy) => self.compare_with(Some(strategy)),

@@ -17,6 +17,7 @@ use crate::view::ViewState;
 use crate::view2d::View2d;
 use crate::view3d::{Camera, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
+use beadwright::dialect;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -309,6 +310,7 @@ impl Studio {
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();
         self.open.refused = None;
+        self.take_dialect();
         self.flat.clear_measure();
         self.view.reset();
         self.flat.fit();
@@ -333,6 +335,14 @@ impl Studio {
         change(&mut next);
         if self.open.project.set(about, next) {
             self.replan();
+        }
+    }
+
+    /// Takes the first of the profile's dialects to write programs in.
+    pub(crate) fn take_dialect(&mut self) {
+        let posts = self.parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
+        if let Some(post) = posts.into_iter().find(|post| dialect::find(post).is_some()) {
+            self.view.dialect = post;
         }
     }
 

@@ -4,10 +4,11 @@ use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
 use crate::theme;
+use eframe::egui::style::ScrollStyle;
 use eframe::egui::{RichText, ScrollArea, Ui};
 
-/// Height of the messages, points; longer lists scroll.
-pub(super) const HEIGHT: f32 = 52.0;
+/// Height of the messages, points: three lines; longer lists scroll.
+pub(super) const HEIGHT: f32 = 70.0;
 
 /// Whether there is anything to say.
 pub(super) fn any(studio: &Studio) -> bool {
@@ -22,6 +23,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
     let nothing = (!any(studio)).then(|| studio.t("no-messages"));
+    // A bar that is always there tells that there is more below.
+    ui.spacing_mut().scroll = ScrollStyle::solid();
     // A list that claims more than the panel has would let the panel above cover its beginning.
     ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink(false).show(ui, |ui| {
         if let Some(text) = nothing {

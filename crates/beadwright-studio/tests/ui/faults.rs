@@ -117,6 +117,25 @@ fn the_messages_are_not_covered() {
 }
 
 #[test]
+fn three_messages_are_seen_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = studio(&folder.path().join("store"));
+    // Its layers end below the top of the part: two warnings.
+    harness.state_mut().set_value("layers.height", "1.6");
+    harness.state_mut().set_value("layers.fit", "\"nominal\"");
+    harness.state_mut().open_example("propeller");
+    wait(&mut harness);
+    harness.state_mut().open(&folder.path().join("none.bwp"));
+    harness.run_steps(4);
+    let strip = |text: &str| harness.query_all_by_label_contains(text).map(|node| node.rect()).collect::<Vec<_>>();
+    let lines = [strip("none.bwp"), strip("• ")].concat();
+    assert!(lines.len() >= 2, "{lines:?}");
+    for (i, line) in lines.iter().take(3).enumerate() {
+        assert!(line.top() > 728.0 && line.bottom() < 800.0, "line {i} at {line} is cut off");
+    }
+}
+
+#[test]
 fn the_number_of_findings_does_not_move_the_tabs() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
