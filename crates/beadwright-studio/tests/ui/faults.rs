@@ -5,6 +5,7 @@ use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::process::StartStop;
 use beadwright::profile::Profile;
+use beadwright_studio::actions::Action;
 use beadwright_studio::jobs::Ask;
 use beadwright_studio::project::{Project, Source};
 use beadwright_studio::view2d::{Drawing, Named, Show, View2d};
@@ -121,15 +122,14 @@ fn three_messages_are_seen_whole() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = studio(&folder.path().join("store"));
     // Its layers end below the top of the part: two warnings.
-    harness.state_mut().set_value("layers.height", "1.6");
-    harness.state_mut().set_value("layers.fit", "\"nominal\"");
+    harness.state_mut().act(Action::SetProfile(Profile::built_in_text("cmt-steel-abb").unwrap()));
     harness.state_mut().open_example("propeller");
     wait(&mut harness);
     harness.state_mut().open(&folder.path().join("none.bwp"));
     harness.run_steps(4);
     let strip = |text: &str| harness.query_all_by_label_contains(text).map(|node| node.rect()).collect::<Vec<_>>();
     let lines = [strip("none.bwp"), strip("• ")].concat();
-    assert!(lines.len() >= 2, "{lines:?}");
+    assert!(lines.len() >= 3, "{lines:?}");
     for (i, line) in lines.iter().take(3).enumerate() {
         assert!(line.top() > 728.0 && line.bottom() < 800.0, "line {i} at {line} is cut off");
     }
