@@ -124,9 +124,10 @@ impl Studio {
     /// Computes the steps of the strategies in the layer in view.
     fn look_closer(&mut self) {
         let (ctx, layer) = (&self.window.ctx, self.view.last);
-        self.jobs.looked.begin(ctx, &self.plans.own, layer);
+        let own = &self.plans.own;
+        self.jobs.looked.begin(ctx, own.layer(layer), own.profile.as_ref());
         if let Some(other) = self.plans.other.as_mut().filter(|_| self.view.mode == Mode::Compare) {
-            other.looked.begin(ctx, &other.plan, layer);
+            other.looked.begin(ctx, other.plan.layer(layer), other.plan.profile.as_ref());
         }
     }
 

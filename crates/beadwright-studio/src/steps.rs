@@ -1,12 +1,12 @@
 //! How a strategy comes to the passes of a layer: pockets and skeleton regions of the hybrid, rings and flips of the loop.
 
 use crate::jobs::{self, Job};
-use crate::state::PlanState;
 use beadwright::fill::{hybrid, one_loop};
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use eframe::egui::Context;
 use glam::DVec2;
+use std::sync::Arc;
 
 /// The steps of one island.
 pub enum Steps {
@@ -54,9 +54,9 @@ impl Looked {
         self.is_busy() || self.known.as_ref().is_some_and(|(of, _)| *of == layer)
     }
 
-    /// Begins with a layer of a plan, in the background.
-    pub fn begin(&mut self, ctx: &Context, plan: &PlanState, layer: usize) {
-        let (Some(layer), Some(profile)) = (plan.layer(layer).cloned(), plan.profile.clone()) else { return };
+    /// Begins with a layer, in the background; nothing happens before the plan has come as far.
+    pub fn begin(&mut self, ctx: &Context, layer: Option<&Arc<Layer>>, profile: Option<&Arc<Profile>>) {
+        let (Some(layer), Some(profile)) = (layer.cloned(), profile.cloned()) else { return };
         if !self.knows(layer.index) {
             self.job = Some(Job::start(ctx, move || (layer.index, Steps::of(&layer, &profile))));
         }
