@@ -84,6 +84,8 @@ picture main '' propeller --set fill.strategy=hybrid
 picture layer '' propeller --view layer --heights --layer 4 --set fill.strategy=contour
 picture compare '' propeller --view compare --set fill.strategy=contour --compare-with hybrid --heights --layer 4
 picture compare-solid '' gear --view compare --solid --set fill.strategy=zigzag --compare-with contour
+picture steps '' propeller --view compare --steps --compare-with hybrid --layer 4
+picture place '' gear --place --set fill.strategy=hybrid
 picture section '' gear --section y --set fill.strategy=hybrid
 picture robot '' propeller --robot
 picture findings '' star --view layer --heights --layer 1 --panel findings --set fill.strategy=zigzag \

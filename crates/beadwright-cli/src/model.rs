@@ -5,7 +5,7 @@ use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
 use beadwright::model::{self, Import, Mesh, Part, Placement, Units};
 use beadwright::task::Task;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};
 
 /// Which model, and how it is placed.
@@ -39,6 +39,9 @@ pub(crate) struct Placing {
     /// Move the middle of the part to x = y = 0.
     #[arg(long)]
     centre: bool,
+    /// Move the part along x and y after all else, in mm, such as --shift 250,-40.
+    #[arg(long, value_parser = parse_shift, value_name = "X,Y", allow_hyphen_values = true, default_value = "0,0")]
+    shift: DVec2,
     /// Take what triangles there are of an STL file that ends too early or holds more than it says.
     #[arg(long)]
     accept_damaged: bool,
@@ -55,11 +58,19 @@ fn parse_scale(text: &str) -> Result<f64, String> {
 }
 
 fn parse_turn(text: &str) -> Result<DVec3, String> {
-    let angles: Result<Vec<f64>, _> = text.split(',').map(|a| a.trim().parse::<f64>()).collect();
-    match angles.as_deref() {
-        Ok(&[x, y, z]) if [x, y, z].iter().all(|a| a.is_finite()) => Ok(DVec3::new(x, y, z)),
-        _ => Err("three angles in degrees are expected, such as 90,0,0".to_owned()),
-    }
+    let angles = numbers(text).map(DVec3::from_array);
+    angles.ok_or_else(|| "three angles in degrees are expected, such as 90,0,0".to_owned())
+}
+
+fn parse_shift(text: &str) -> Result<DVec2, String> {
+    let lengths = numbers(text).map(DVec2::from_array);
+    lengths.ok_or_else(|| "two lengths in mm are expected, such as 250,-40".to_owned())
+}
+
+/// That many numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers = text.split(',').map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()));
+    numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// An IGES file; `None` for any other.
@@ -80,6 +91,7 @@ impl Model {
             orient: false,
             turn: DVec3::ZERO,
             centre: false,
+            shift: DVec2::ZERO,
             accept_damaged: false,
         };
         Self::placed_so(path, &placing)
@@ -144,6 +156,6 @@ impl Placing {
     }
 
     fn placement(&self) -> Placement {
-        Placement { units: self.units, scale: self.scale, turn: self.turn, centre: self.centre }
+        Placement { units: self.units, scale: self.scale, turn: self.turn, centre: self.centre, shift: self.shift }
     }
 }

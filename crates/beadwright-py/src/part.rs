@@ -46,8 +46,8 @@ impl Part {
 
     fn of(name: String, model: Model, placing: Placing) -> PyResult<Self> {
         let (units, scale, turn, centre, stand, height) = placing;
-        let placement =
-            Placement { units: units.map(|unit| unit_of(&unit)).transpose()?, scale, turn: turn.into(), centre };
+        let units = units.map(|unit| unit_of(&unit)).transpose()?;
+        let placement = Placement { units, scale, turn: turn.into(), centre, ..Placement::default() };
         let guessed = guessed_size(&model, &placement);
         // No bead is known yet: the guess is judged when the part is planned.
         let place = |model: Model, placement: &Placement| model.place(placement, height, 0.0).refuse(Some(&name));

@@ -65,6 +65,11 @@ impl Studio {
                 self.apply_theme();
                 self.window.store.keep_settings(&self.window.settings);
             }
+            Action::PlaceTool => {
+                self.view.placing = !self.view.placing;
+                self.view.switch(Mode::Solid);
+                self.solid.fit();
+            }
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.window.ctx.send_viewport_cmd(ViewportCommand::Close),
             Action::Ask(what) => self.ask(what),
@@ -90,7 +95,10 @@ impl Studio {
             Action::SetValue(key, value) => self.set_value(&key, &value),
             Action::ResetValue(key) => self.reset_values(&[key]),
             Action::ResetValues(keys) => self.reset_values(&keys),
-            Action::SetProfile(text) => self.set_profile("profile", Ok(text.to_owned())),
+            Action::SetProfile(text) => {
+                self.set_profile("profile", Ok(text.to_owned()));
+                self.take_dialect();
+            }
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),
             Action::CompareWith(strategy) => self.compare_with(Some(strategy)),
@@ -113,10 +121,13 @@ impl Studio {
         }
     }
 
-    /// Computes the pockets and skeleton regions of the layer in view.
+    /// Computes the steps of the strategies in the layer in view.
     fn look_closer(&mut self) {
-        if let (Some(layer), Some(profile)) = (self.plans.own.layer(self.view.last), &self.plans.own.profile) {
-            self.jobs.steps_job = Some(jobs::steps(&self.window.ctx, layer.clone(), profile.clone()));
+        let (ctx, layer) = (&self.window.ctx, self.view.last);
+        let own = &self.plans.own;
+        self.jobs.looked.begin(ctx, own.layer(layer), own.profile.as_ref());
+        if let Some(other) = self.plans.other.as_mut().filter(|_| self.view.mode == Mode::Compare) {
+            other.looked.begin(ctx, other.plan.layer(layer), other.plan.profile.as_ref());
         }
     }
 

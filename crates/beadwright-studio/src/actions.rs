@@ -52,6 +52,8 @@ pub enum Action {
     Theme,
     /// Shows or hides the list of keys.
     Keys,
+    /// Shows or hides the handles that move and turn the part.
+    PlaceTool,
     /// Ends the program.
     Quit,
     /// Asks for a file.
@@ -84,7 +86,7 @@ pub enum Action {
     CompareWith(&'static str),
     /// Removes a message, by its index.
     Dismiss(usize),
-    /// Computes the pockets and skeleton regions of the layer in view.
+    /// Computes the steps of the strategies in the layer in view.
     LookCloser,
     /// Takes another robot cell.
     TakeCell(&'static str),
@@ -117,7 +119,7 @@ const fn entry(action: Action, text: &'static str, modifiers: Modifiers, key: Ke
 }
 
 /// All entries.
-pub static ENTRIES: [Entry; 22] = [
+pub static ENTRIES: [Entry; 23] = [
     entry(Action::Open, "open", Modifiers::COMMAND, Key::O),
     entry(Action::SaveAs, "save-as", Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
     entry(Action::Save, "save", Modifiers::COMMAND, Key::S),
@@ -134,6 +136,7 @@ pub static ENTRIES: [Entry; 22] = [
     entry(Action::Front, "view-front", Modifiers::NONE, Key::Num1),
     entry(Action::Right, "view-right", Modifiers::NONE, Key::Num3),
     entry(Action::Corner, "view-corner", Modifiers::NONE, Key::Num0),
+    entry(Action::PlaceTool, "place", Modifiers::NONE, Key::M),
     entry(Action::Up, "layer-up", Modifiers::NONE, Key::PageUp),
     entry(Action::Down, "layer-down", Modifiers::NONE, Key::PageDown),
     entry(Action::Play, "play", Modifiers::NONE, Key::Space),

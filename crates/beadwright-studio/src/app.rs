@@ -25,14 +25,11 @@ impl Studio {
             Some(Ok(_)) | None => {}
             Some(Err(error)) => self.complain(error),
         }
-        match jobs::take(&mut self.jobs.steps_job) {
-            Some(Ok(steps)) => self.jobs.steps = Some(steps),
-            Some(Err(error)) => {
-                // Do not retry: it would only fail again.
-                self.view.show.regions = false;
-                self.complain(error);
-            }
-            None => {}
+        let theirs = self.plans.other.as_mut().map_or(Ok(()), |other| other.looked.hear());
+        if let Err(error) = self.jobs.looked.hear().and(theirs) {
+            // Do not retry: it would only fail again.
+            self.view.show.regions = false;
+            self.complain(error);
         }
         match jobs::take(&mut self.jobs.heat_job) {
             Some(Ok(Ok(temperatures))) if temperatures.iter().any(|layer| !layer.is_empty()) => {
@@ -96,7 +93,7 @@ impl eframe::App for Studio {
         for action in std::mem::take(&mut self.queue) {
             self.act(action);
         }
-        if self.window.ctx.input(|input| input.pointer.any_released()) {
+        if self.window.ctx.input(|input| input.pointer.any_pressed() || input.pointer.any_released()) {
             self.open.project.seal();
         }
         self.keep();

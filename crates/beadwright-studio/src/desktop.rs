@@ -27,6 +27,12 @@ struct Arguments {
     /// Show heights and voids in the layer view.
     #[arg(long)]
     heights: bool,
+    /// Show how the strategy comes to its passes in the layer view.
+    #[arg(long)]
+    steps: bool,
+    /// Show the handles that move and turn the part.
+    #[arg(long)]
+    place: bool,
     /// Compare in 3-D.
     #[arg(long)]
     solid: bool,
@@ -131,6 +137,8 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         Panel::Export => Side::Export,
     });
     view.show.heights |= arguments.heights;
+    view.show.regions |= arguments.steps;
+    view.placing |= arguments.place;
     view.robot |= arguments.robot;
     view.compare_solid |= arguments.solid;
     // Parts stand about x = y = 0, and what lies in front is cut away.

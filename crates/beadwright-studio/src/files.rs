@@ -126,7 +126,10 @@ impl Studio {
                 let text = disk::text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
                 match checked {
-                    Ok(text) => self.set_profile("profile", Ok(text)),
+                    Ok(text) => {
+                        self.set_profile("profile", Ok(text));
+                        self.take_dialect();
+                    }
                     Err(error) => self.complain(error),
                 }
             }

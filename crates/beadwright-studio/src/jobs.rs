@@ -12,7 +12,6 @@ pub use place::ask;
 #[cfg(target_arch = "wasm32")]
 pub use place::receive;
 
-use beadwright::fill::hybrid::Steps;
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Reach, Track};
@@ -88,14 +87,6 @@ pub struct Answer {
     pub path: Option<PathBuf>,
     /// Whether somebody can have seen it: a desktop without file dialogs answers at once.
     pub seen: bool,
-}
-
-/// The steps of the hybrid on every island of a layer: pockets and skeleton regions.
-pub fn steps(ctx: &Context, layer: Arc<Layer>, profile: Arc<Profile>) -> Job<(usize, Vec<Steps>)> {
-    Job::start(ctx, move || {
-        let settings = profile.fill_settings(layer.index);
-        (layer.index, layer.islands.iter().map(|island| Steps::of(island, &settings)).collect())
-    })
 }
 
 /// Checks with a robot cell whether a plan can be reached.

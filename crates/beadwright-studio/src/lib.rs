@@ -9,7 +9,7 @@
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
-//! | [`jobs`], [`heat`] | other background work: steps of the hybrid, reach, file dialogs; temperatures |
+//! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
 //! | [`form`] | the profile as a form |
 //! | [`arm`] | how the robot stands with the torch at a place |
 //! | [`view`] | what is shown, and how |
@@ -20,7 +20,7 @@
 //! | `web` | the page in a browser |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`thumbnail`] | pictures of the examples |
-//! | [`settings`], [`text`], [`fonts`] | what is remembered; texts; fonts |
+//! | [`settings`], [`text`], [`fonts`], [`theme`] | what is remembered; texts; fonts; colours |
 
 mod act;
 pub mod actions;
@@ -39,8 +39,10 @@ pub mod planner;
 pub mod project;
 pub mod settings;
 pub mod state;
+pub mod steps;
 pub mod studio;
 pub mod text;
+pub mod theme;
 pub mod thumbnail;
 pub mod view;
 pub mod view2d;

@@ -10,12 +10,14 @@ use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
+use crate::steps::Looked;
 use crate::text::Language;
+use crate::theme;
 use crate::view::ViewState;
 use crate::view2d::View2d;
-use crate::view3d::{Pick, Plate, Style, View3d};
+use crate::view3d::{Camera, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
-use beadwright::fill::hybrid::Steps;
+use beadwright::dialect;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -33,6 +35,8 @@ pub struct Other {
     pub planner: Planner,
     /// Its plan.
     pub plan: PlanState,
+    /// Its steps in the layer in view.
+    pub looked: Looked,
     /// Its view of a layer.
     pub flat: View2d,
     /// Its view in 3-D.
@@ -89,8 +93,8 @@ pub struct Jobs {
     pub(crate) typed: Option<(Ask, String)>,
     /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
-    pub(crate) steps_job: Option<Job<(usize, Vec<Steps>)>>,
-    pub(crate) steps: Option<(usize, Vec<Steps>)>,
+    /// The steps of the strategy in the layer in view.
+    pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
@@ -103,7 +107,7 @@ pub struct Jobs {
 impl Jobs {
     /// Whether nothing is being computed.
     fn is_idle(&self) -> bool {
-        self.reach_job.is_none() && self.steps_job.is_none() && self.heat_job.is_none()
+        self.reach_job.is_none() && !self.looked.is_busy() && self.heat_job.is_none()
     }
 }
 
@@ -237,9 +241,14 @@ impl Studio {
         &mut self.view
     }
 
+    /// From where the 3-D view is seen.
+    pub fn camera(&self) -> Camera {
+        self.solid.camera
+    }
+
     /// Whether nothing is running in the background.
     pub fn is_idle(&self) -> bool {
-        let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy());
+        let other = self.plans.other.as_ref().is_some_and(|other| other.plan.is_busy() || other.looked.is_busy());
         !self.plans.own.is_busy() && !other && self.jobs.is_idle()
     }
 
@@ -301,6 +310,7 @@ impl Studio {
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();
         self.open.refused = None;
+        self.take_dialect();
         self.flat.clear_measure();
         self.view.reset();
         self.flat.fit();
@@ -325,6 +335,14 @@ impl Studio {
         change(&mut next);
         if self.open.project.set(about, next) {
             self.replan();
+        }
+    }
+
+    /// Takes the first of the profile's dialects to write programs in.
+    pub(crate) fn take_dialect(&mut self) {
+        let posts = self.parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
+        if let Some(post) = posts.into_iter().find(|post| dialect::find(post).is_some()) {
+            self.view.dialect = post;
         }
     }
 
@@ -362,7 +380,7 @@ impl Studio {
         self.view.chosen = None;
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
-        (self.jobs.steps, self.jobs.steps_job) = (None, None);
+        self.jobs.looked.forget();
         self.jobs.heat_job = None;
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
@@ -375,6 +393,7 @@ impl Studio {
         self.plans.planner.plan(self.open.project.now(), self.view.last);
         let project = self.open.project.now().clone();
         if let Some(other) = &mut self.plans.other {
+            other.looked.forget();
             other.plan.restart();
             other.planner.plan(&with_strategy(project, &other.strategy), self.view.last);
         }
@@ -390,6 +409,7 @@ impl Studio {
             strategy: strategy.to_owned(),
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
+            looked: Looked::default(),
             flat: View2d::default(),
             solid: View3d::default(),
         };
@@ -401,14 +421,7 @@ impl Studio {
     }
 
     pub(crate) fn apply_theme(&self) {
-        for theme in [egui::Theme::Dark, egui::Theme::Light] {
-            self.window.ctx.style_mut_of(theme, |style| {
-                let visuals = &mut style.visuals;
-                visuals.weak_text_color = Some(egui::Color32::from_gray(if visuals.dark_mode { 150 } else { 95 }));
-                // Makes text fields stand out without a frame.
-                visuals.extreme_bg_color = egui::Color32::from_gray(if visuals.dark_mode { 8 } else { 226 });
-            });
-        }
+        theme::set(&self.window.ctx);
         self.window.ctx.set_theme(if self.window.settings.light { egui::Theme::Light } else { egui::Theme::Dark });
     }
 }

@@ -1,7 +1,7 @@
 //! What is shown, and how. None of it belongs to the project.
 
 use crate::view2d::Show;
-use crate::view3d::{Colour, Scene, Section};
+use crate::view3d::{Colour, Grip, Scene, Section};
 
 /// Which view fills the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -64,6 +64,10 @@ pub struct ViewState {
     pub robot: bool,
     /// Whether the next click in 3-D chooses the face on which the part is laid.
     pub laying: bool,
+    /// Whether the part can be moved and turned by handles in 3-D.
+    pub placing: bool,
+    /// The handle that is being dragged.
+    pub grip: Option<Grip>,
     /// Whether strategies are compared in 3-D, not layer by layer.
     pub compare_solid: bool,
     /// The section through the part.
@@ -107,6 +111,8 @@ impl Default for ViewState {
             plate: true,
             robot: false,
             laying: false,
+            placing: false,
+            grip: None,
             compare_solid: false,
             section: None,
             show: Show::default(),
@@ -126,8 +132,10 @@ impl ViewState {
     /// Shows all of a new part.
     pub fn reset(&mut self) {
         let (first, last, progress) = (0, 0, 1.0);
-        let (wanted, left, chosen, torch, section, laying) = (None, None, None, None, None, false);
-        *self = Self { laying, wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
+        let (laying, placing, grip) = (false, false, None);
+        let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
+        let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
+        *self = Self { laying, placing, grip, ..shown };
     }
 
     /// Keeps the range within the existing layers.

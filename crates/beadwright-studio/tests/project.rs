@@ -17,6 +17,7 @@ fn a_project_comes_back_exactly() {
         scale: 1.0 / 3.0,
         turn: glam::DVec3::new(0.1, -90.0, 1e-17),
         centre: true,
+        shift: glam::DVec2::new(1.0 / 7.0, -250.0),
     };
     for (_, text) in BUILT_IN {
         // Comments, quotes and blanks at the end of a profile are the person's own.

@@ -3,11 +3,11 @@
 
 use beadwright::example;
 use beadwright::layer::Layer;
-use beadwright::model::{Import, Model, Part, PartError, Placement, Units};
+use beadwright::model::{Import, Mesh, Model, Part, PartError, Placement, Units};
 use beadwright::plan;
 use beadwright::profile::{Profile, edit};
 use beadwright::task::Task;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 fn solid(name: &str) -> Import {
     match Model::read(&example::find(name).unwrap().stl(), &Task::new()).unwrap() {
@@ -103,9 +103,32 @@ fn placements_scale_centre_and_ask_for_units() {
 }
 
 #[test]
+fn a_part_is_moved_and_turned_where_it_stands() {
+    let placed = |placement: &Placement| placement.solid(solid("propeller"), 7.54).unwrap().mesh;
+    let middle = |mesh: &Mesh| ((mesh.bounds().0 + mesh.bounds().1) / 2.0).truncate();
+    for (turn, angle) in [(DVec3::ZERO, 30.0), (DVec3::new(20.0, -50.0, 170.0), 100.0), (DVec3::X * 90.0, -200.0)] {
+        let shift = DVec2::new(40.0, -7.5);
+        let first = Placement { turn, shift: DVec2::new(300.0, 80.0), ..Placement::default() };
+        let (before, foot) = (placed(&first), middle(&placed(&first)));
+        let after = placed(&first.moved(shift, angle, foot));
+        let way = DVec2::from_angle(f64::to_radians(angle));
+        for (a, b) in before.vertices.iter().zip(&after.vertices) {
+            let wanted = way.rotate(a.truncate() - foot) + foot + shift;
+            assert!(b.truncate().distance(wanted) < 1e-5 && (a.z - b.z).abs() < 1e-9, "{wanted} became {b}");
+        }
+        // The middle of a centred part stands where it is told to.
+        let centred = Placement { centre: true, ..first };
+        let after = placed(&centred.moved(shift, angle, middle(&placed(&centred))));
+        assert!(middle(&after).distance(DVec2::new(340.0, 72.5)) < 1e-9, "{}", middle(&after));
+    }
+    let far = Placement { shift: DVec2::X * 1e5, ..Placement::default() };
+    assert!(matches!(far.solid(solid("cross"), 7.54), Err(PartError::Import(_))));
+}
+
+#[test]
 fn placements_survive_a_file() {
-    let placement =
-        Placement { units: Some(Units::Inch), scale: 0.1, turn: DVec3::new(0.1, 1.0 / 3.0, -90.0), centre: true };
+    let (units, turn, shift) = (Some(Units::Inch), DVec3::new(0.1, 1.0 / 3.0, -90.0), DVec2::new(12.5, -0.1));
+    let placement = Placement { units, scale: 0.1, turn, centre: true, shift };
     for placement in [placement, Placement::default()] {
         let text = serde_json::to_string(&placement).unwrap();
         assert_eq!(serde_json::from_str::<Placement>(&text).unwrap(), placement, "{text}");

@@ -1,12 +1,18 @@
 //! The chosen bead in one line, the same over every view.
 
+use super::place;
 use crate::studio::Studio;
+use crate::view::Mode;
 use eframe::egui::Ui;
 
 pub(super) fn show(studio: &Studio, ui: &mut Ui) {
     // Always one line, so that the view stays where it is.
     if studio.view.laying {
         ui.strong(studio.t("lay-hint"));
+        return;
+    }
+    if studio.view.placing && studio.view.mode == Mode::Solid {
+        ui.strong(place::told(studio));
         return;
     }
     ui.horizontal(|ui| match figures(studio) {

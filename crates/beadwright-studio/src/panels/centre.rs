@@ -3,16 +3,13 @@
 use super::{bead, compare, solid};
 use crate::actions::Action;
 use crate::state::PlanState;
+use crate::steps::Looked;
 use crate::studio::Studio;
 use crate::view::Mode;
-use crate::view2d::{Drawing, View2d};
-use beadwright::fill::hybrid::Steps;
-use eframe::egui::{CentralPanel, Panel, Ui};
+use crate::view2d::{Drawing, Named, View2d};
+use eframe::egui::{CentralPanel, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    if studio.view.mode == Mode::Compare {
-        Panel::bottom("differences").show(ui, |ui| compare::differences(studio, ui));
-    }
     CentralPanel::default().show(ui, |ui| match studio.view.mode {
         Mode::Solid => solid::show(studio, ui),
         Mode::Layer => layer(studio, ui),
@@ -24,29 +21,26 @@ fn layer(studio: &mut Studio, ui: &mut Ui) {
     bar(studio, ui);
     bead::show(studio, ui);
     look_closer(studio);
-    let words = Words { label: studio.t("view-2d-label"), nothing: studio.t("nothing-laid") };
-    let scale = Some(studio.t("bead-heights"));
-    let steps = steps(studio);
-    let layer = studio.view.last;
-    if let Some(picked) =
-        flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, steps.as_deref().unwrap_or_default(), words, scale)
-    {
+    let words = words(studio, "view-2d-label");
+    let (scale, looked, layer) = (Some(studio.t("bead-heights")), &studio.jobs.looked, studio.view.last);
+    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, looked, words, scale) {
         studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
-    // A layer without islands has no steps; an empty list is kept so that they are not computed again.
-    studio.jobs.steps = steps.map(|steps| (layer, steps));
 }
 
-/// The steps of the layer in view, taken out of the program while they are drawn.
-fn steps(studio: &mut Studio) -> Option<Vec<Steps>> {
-    studio.jobs.steps.take().filter(|(of, _)| *of == studio.view.last).map(|(_, steps)| steps)
+/// The words of a view with this name.
+pub(super) fn words(studio: &Studio, label: &'static str) -> Words {
+    let hybrid = ["pocket-kept", "pocket-left", "skeleton-region"].map(|key| studio.t(key));
+    let steps = Named { hybrid, one_loop: ["rings", "flips"].map(|key| studio.t(key)) };
+    Words { label: studio.t(label), nothing: studio.t("nothing-laid"), steps }
 }
 
-/// What the view of a layer is called, and what is said of an empty one.
+/// What the view of a layer is called, what is said of an empty one, and what the steps of strategies are called.
 #[derive(Clone, Copy)]
 pub(super) struct Words {
     pub(super) label: &'static str,
     pub(super) nothing: &'static str,
+    pub(super) steps: Named,
 }
 
 /// A layer of a plan; what was picked, if the view was clicked.
@@ -55,7 +49,7 @@ pub(super) fn flat(
     view: &mut View2d,
     ui: &mut Ui,
     state: &crate::view::ViewState,
-    steps: &[Steps],
+    looked: &Looked,
     words: Words,
     scale: Option<&str>,
 ) -> Option<Option<(usize, usize)>> {
@@ -64,7 +58,7 @@ pub(super) fn flat(
     let subject = Drawing {
         layer,
         judgement: plan.judgements.get(state.last),
-        steps,
+        steps: (looked.of(state.last), words.steps),
         pieces: (state.progress * count as f64).ceil() as usize,
         scale,
         nothing: words.nothing,
@@ -78,13 +72,14 @@ pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         let texts = ["show-beads", "show-paths", "show-travels", "show-starts", "show-heights", "show-regions"];
         let [beads, paths, travels, starts, heights, regions] = texts.map(|key| studio.t(key));
+        let hint = studio.t("show-regions-hint");
         let show = &mut studio.view.show;
         ui.checkbox(&mut show.beads, beads);
         ui.checkbox(&mut show.paths, paths);
         ui.checkbox(&mut show.travels, travels);
         ui.checkbox(&mut show.starts, starts);
         ui.checkbox(&mut show.heights, heights);
-        ui.checkbox(&mut show.regions, regions);
+        ui.checkbox(&mut show.regions, regions).on_hover_text(hint);
         let measure = studio.t("measure");
         if ui.toggle_value(&mut studio.flat.measuring, measure).changed() {
             studio.flat.clear_measure();
@@ -95,10 +90,12 @@ pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
     });
 }
 
-/// Has the pockets and skeleton regions of the layer in view computed when they are to be shown.
-fn look_closer(studio: &mut Studio) {
-    let known = studio.jobs.steps.as_ref().is_some_and(|(of, _)| *of == studio.view.last);
-    if studio.view.show.regions && !known && studio.jobs.steps_job.is_none() {
+/// Has the steps of the strategies in view computed when they are to be shown.
+pub(super) fn look_closer(studio: &mut Studio) {
+    let layer = studio.view.last;
+    let others = studio.plans.other.as_ref().filter(|_| studio.view.mode == Mode::Compare);
+    let known = studio.jobs.looked.knows(layer) && others.is_none_or(|other| other.looked.knows(layer));
+    if studio.view.show.regions && !known {
         studio.request(Action::LookCloser);
     }
 }

@@ -1,13 +1,13 @@
 //! Two strategies side by side, in layers or in 3-D: where one view goes, the other follows.
 
-use super::centre::{Words, bar, flat};
+use super::centre::{bar, flat, look_closer, words};
 use super::{bead, solid, totals};
 use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
 use crate::view3d::Style;
 use beadwright::fill;
-use eframe::egui::{ComboBox, Grid, ScrollArea, Ui};
+use eframe::egui::{ComboBox, Grid, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     ui.horizontal(|ui| {
@@ -40,10 +40,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 
 /// One layer of both: when one view is moved, the other follows.
 fn in_layers(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
-    let nothing = studio.t("nothing-laid");
-    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| Words { label: studio.t(key), nothing });
+    look_closer(studio);
+    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| words(studio, key));
     let before = studio.flat.eye();
-    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &[], own, None) {
+    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &studio.jobs.looked, own, None)
+    {
         studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
     }
     let Some(other) = &mut studio.plans.other else { return };
@@ -51,7 +52,7 @@ fn in_layers(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
         other.flat.follow(&studio.flat);
     }
     let before = other.flat.eye();
-    flat(&other.plan, &mut other.flat, right, &studio.view, &[], theirs, None);
+    flat(&other.plan, &mut other.flat, right, &studio.view, &other.looked, theirs, None);
     if other.flat.eye() != before {
         studio.flat.follow(&other.flat);
     }
@@ -99,11 +100,12 @@ pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
     let Some(other) = &studio.plans.other else { return };
     let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
     let names = [studio.plans.own.header.as_ref().map_or("", |header| &header.strategy), &other.strategy];
-    // Two tables side by side leave more room for the views.
-    ScrollArea::horizontal().show(ui, |ui| {
-        ui.horizontal_top(|ui| {
-            own.chunks(own.len().div_ceil(2).max(1)).for_each(|rows| table(studio, ui, names, rows, &theirs));
-        });
+    // As many tables side by side as there is room for leave more of it for the views.
+    const WIDTH: f32 = 400.0;
+    let tables = ((ui.available_width() / WIDTH) as usize).clamp(1, own.len().max(1));
+    let rows = own.len().div_ceil(tables).max(1);
+    ui.columns(tables, |columns| {
+        columns.iter_mut().zip(own.chunks(rows)).for_each(|(ui, rows)| table(studio, ui, names, rows, &theirs));
     });
 }
 
@@ -114,7 +116,7 @@ fn table(studio: &Studio, ui: &mut Ui, names: [&str; 2], own: &[Row], theirs: &[
         names.into_iter().for_each(|name| drop(ui.strong(name)));
         ui.end_row();
         for (name, value) in own {
-            ui.label(totals::name_of(studio, name));
+            totals::named(studio, ui, name);
             ui.label(value);
             ui.label(theirs.iter().find(|(n, _)| n == name).map_or("…", |(_, value)| value));
             ui.end_row();

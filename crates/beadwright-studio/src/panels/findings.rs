@@ -1,12 +1,16 @@
 //! What the checks found; a click goes there.
 
+use super::words;
 use crate::studio::Studio;
 use crate::view::Mode;
 use beadwright::check::{CHECKS, Finding};
-use eframe::egui::{CollapsingHeader, RichText, Ui};
+use eframe::egui::{CollapsingHeader, Response, RichText, Ui};
 
 /// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
 const SERIOUS: [&str; 8] = ["points", "layers", "air", "crossing", "retraced", "clearance", "low-travel", "towers"];
+
+/// Checks about what the deposit model computes.
+const FIGURES: [&str; 4] = ["void", "overfill", "outside", "towers"];
 
 /// Most findings listed for one check.
 const LISTED: usize = 100;
@@ -28,20 +32,20 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let word = studio.t(if serious { "serious" } else { "remark" });
         let colour = if serious { ui.visuals().error_fg_color } else { ui.visuals().warn_fg_color };
         let title = format!("{} ({}, {word})", check.name, found.len());
-        CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name).default_open(true).show(
-            ui,
-            |ui| {
-                ui.weak(format!("{}: {}.", studio.t("why"), check.why));
-                ui.weak(format!("{}: {}.", studio.t("remedy"), check.remedy));
-                let groups = grouped(&found);
-                for group in groups.iter().take(LISTED) {
-                    listed(studio, ui, group);
-                }
-                if groups.len() > LISTED {
-                    ui.weak(format!("… {}", groups.len() - LISTED));
-                }
-            },
-        );
+        let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
+        let opened = title.default_open(true).show(ui, |ui| {
+            for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
+                explained(studio, ui.weak(format!("{}: {text}.", studio.t(key))), check.name, text);
+            }
+            let groups = grouped(&found);
+            for group in groups.iter().take(LISTED) {
+                listed(studio, ui, group);
+            }
+            if groups.len() > LISTED {
+                ui.weak(format!("… {}", groups.len() - LISTED));
+            }
+        });
+        explained(studio, opened.header_response, check.name, check.name);
     }
 }
 
@@ -60,10 +64,18 @@ fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
 fn one(studio: &mut Studio, ui: &mut Ui, finding: &Finding) {
     let text = sentence(finding);
     if finding.layer.is_none() {
-        ui.label(text);
-    } else if ui.link(text).on_hover_text(studio.t("go-there")).clicked() {
+        explained(studio, ui.label(&text), finding.check, &text);
+        return;
+    }
+    let link = ui.link(&text).on_hover_text(studio.t("go-there"));
+    if explained(studio, link, finding.check, &text).clicked() {
         go_to(studio, finding);
     }
+}
+
+/// The words of a text explained, where its check is about the figures of the deposit: elsewhere they are plain English.
+fn explained(studio: &Studio, response: Response, check: &str, text: &str) -> Response {
+    if FIGURES.contains(&check) { words::explained(studio, response, text) } else { response }
 }
 
 /// Findings that follow each other and differ in their numbers only.
@@ -94,8 +106,7 @@ fn go_to(studio: &mut Studio, finding: &Finding) {
     studio.view.look_at(layer);
     studio.view.mode = Mode::Layer;
     studio.view.chosen = finding.pass.map(|pass| (layer, pass, 0));
-    let heights = ["void", "overfill", "outside", "towers"];
-    if heights.contains(&finding.check) {
+    if FIGURES.contains(&finding.check) {
         studio.view.show.heights = true;
     }
     if let Some(place) = finding.place {

@@ -3,10 +3,11 @@
 use crate::actions::{self, Action};
 use crate::studio::Studio;
 use crate::text::Language;
+use crate::theme;
 use crate::view::{Mode, Side};
 use beadwright::task::Stage;
 use beadwright::{example, fill};
-use eframe::egui::{Button, Color32, ComboBox, MenuBar, ProgressBar, Ui};
+use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     MenuBar::new().ui(ui, |ui| {
@@ -15,11 +16,14 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             ui.menu_button(studio.t("recent"), |ui| recent(studio, ui));
             ui.separator();
             items(studio, ui, &[Action::Save, Action::SaveAs, Action::ExportProgram]);
-            ui.separator();
-            items(studio, ui, &[Action::Quit]);
+            // A page is closed by its browser.
+            if !cfg!(target_arch = "wasm32") {
+                ui.separator();
+                items(studio, ui, &[Action::Quit]);
+            }
         });
         ui.menu_button(studio.t("edit"), |ui| {
-            items(studio, ui, &[Action::Undo, Action::Redo, Action::Plan, Action::Stop]);
+            items(studio, ui, &[Action::Undo, Action::Redo, Action::PlaceTool, Action::Plan, Action::Stop]);
         });
         ui.menu_button(studio.t("view"), |ui| {
             items(studio, ui, &[Action::Solid, Action::Layer, Action::Compare]);
@@ -45,7 +49,7 @@ fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
             Action::Undo => studio.open.project.can_undo(),
             Action::Redo => studio.open.project.can_redo(),
             Action::ExportProgram | Action::Play => studio.plans.own.summary.is_some(),
-            Action::Save | Action::SaveAs | Action::Plan => studio.project().source.is_some(),
+            Action::Save | Action::SaveAs | Action::Plan | Action::PlaceTool => studio.project().source.is_some(),
             Action::Stop => studio.plans.own.is_busy(),
             _ => true,
         };
@@ -133,8 +137,7 @@ fn bar(studio: &mut Studio, ui: &mut Ui) {
 /// That the plan is complete, and how much the checks found; a click shows it.
 fn done(studio: &mut Studio, ui: &mut Ui) {
     let count = studio.plans.own.findings.as_ref().map_or(0, Vec::len);
-    let good =
-        if ui.visuals().dark_mode { Color32::from_rgb(0x5f, 0xd0, 0x8a) } else { Color32::from_rgb(0x13, 0x7a, 0x3e) };
+    let good = theme::good(ui.visuals().dark_mode);
     let warn = ui.visuals().warn_fg_color;
     ui.colored_label(if count > 0 { warn } else { good }, studio.t("ready"));
     if count > 0 && ui.link(format!("{}: {count}", studio.t("findings"))).clicked() {

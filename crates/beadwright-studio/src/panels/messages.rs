@@ -3,10 +3,12 @@
 use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
-use eframe::egui::{Color32, RichText, ScrollArea, Ui};
+use crate::theme;
+use eframe::egui::style::ScrollStyle;
+use eframe::egui::{RichText, ScrollArea, Ui};
 
-/// Height of the messages, points; longer lists scroll.
-pub(super) const HEIGHT: f32 = 52.0;
+/// Height of the messages, points: three lines; longer lists scroll.
+pub(super) const HEIGHT: f32 = 70.0;
 
 /// Whether there is anything to say.
 pub(super) fn any(studio: &Studio) -> bool {
@@ -21,6 +23,8 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
     let nothing = (!any(studio)).then(|| studio.t("no-messages"));
+    // A bar that is always there tells that there is more below.
+    ui.spacing_mut().scroll = ScrollStyle::solid();
     // A list that claims more than the panel has would let the panel above cover its beginning.
     ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink(false).show(ui, |ui| {
         if let Some(text) = nothing {
@@ -47,7 +51,8 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
         if ui.small_button("×").on_hover_text(hint).clicked() {
             close();
         }
-        let colour = if error { ui.visuals().error_fg_color } else { Color32::from_rgb(0x1a, 0x9c, 0x4b) };
+        let visuals = ui.visuals();
+        let colour = if error { visuals.error_fg_color } else { theme::good(visuals.dark_mode) };
         ui.colored_label(colour, text);
     });
 }

@@ -10,6 +10,7 @@ mod layers;
 mod menu;
 mod messages;
 mod parameters;
+mod place;
 mod placement;
 mod plots;
 mod process;
@@ -19,9 +20,10 @@ mod section;
 pub(crate) mod solid;
 mod start;
 mod totals;
+mod words;
 
 use crate::studio::Studio;
-use crate::view::Side;
+use crate::view::{Mode, Side};
 use eframe::egui::{Button, CentralPanel, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};
 
 /// The whole window.
@@ -45,6 +47,10 @@ pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
 fn around(studio: &mut Studio, ui: &mut Ui) {
     if studio.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
+    }
+    // As wide as the window, so that nothing is cut off.
+    if studio.view.mode == Mode::Compare && studio.plans.other.is_some() {
+        Panel::bottom("differences").show(ui, |ui| compare::differences(studio, ui));
     }
     Panel::left("parameters").default_size(300.0).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! How the part is placed: units, scale, rotation.
+//! How the part is placed: units, scale, turn, shift.
 
 use crate::actions;
 use crate::actions::Action;
@@ -18,6 +18,9 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             number(ui, studio.t("scale"), &mut placement.scale, 1e-6..=1e6, 0.01, "");
             for (key, axis) in [("turn-x", 0), ("turn-y", 1), ("turn-z", 2)] {
                 number(ui, studio.t(key), &mut placement.turn[axis], -360.0..=360.0, 1.0, "°");
+            }
+            for (key, axis) in [("move-x", 0), ("move-y", 1)] {
+                number(ui, studio.t(key), &mut placement.shift[axis], -20_000.0..=20_000.0, 1.0, " mm");
             }
         });
         ui.checkbox(&mut placement.centre, studio.t("centre"));

@@ -1,12 +1,12 @@
 //! Plots: figures for every layer, measured beads, the robot's joints.
 
-use super::process;
+use super::{process, words};
 use crate::actions::Action;
 use crate::jobs::Ask;
 use crate::studio::Studio;
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::Reach;
-use eframe::egui::{Rangef, Ui};
+use eframe::egui::{Rangef, Response, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Most points drawn for a curve.
@@ -24,8 +24,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         let figures = studio.plans.own.judgements.iter().enumerate();
         figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
     };
-    curve(ui, studio.t("plot-void"), x, none, judged(|f| f.void_percent()));
-    curve(ui, studio.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
+    let label = curve(ui, studio.t("plot-void"), x, none, judged(|f| f.void_percent()));
+    words::explained(studio, label, "void");
+    let label = curve(ui, studio.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
+    words::explained(studio, label, "overfill");
     let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
         (0..studio.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
@@ -64,11 +66,12 @@ fn drawn(ui: &mut Ui, id: &str, found: &page::Plot) {
     });
 }
 
-fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, points: Vec<[f64; 2]>) {
-    ui.label(title);
+/// A curve under its title, which is returned.
+fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, points: Vec<[f64; 2]>) -> Response {
+    let label = ui.label(title);
     if points.is_empty() {
         ui.weak(none);
-        return;
+        return label;
     }
     let step = points.len().div_ceil(POINTS).max(1);
     let points: PlotPoints<'_> = points.into_iter().step_by(step).collect();
@@ -76,6 +79,7 @@ fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, 
     Plot::new(title).height(HEIGHT).custom_x_axes(vec![axis]).include_y(0.0).allow_scroll(false).show(ui, |plot| {
         plot.line(Line::new(title, points));
     });
+    label
 }
 
 fn joints(studio: &mut Studio, ui: &mut Ui) {

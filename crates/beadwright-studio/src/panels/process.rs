@@ -2,7 +2,7 @@
 
 use crate::actions::Action;
 use crate::studio::Studio;
-use beadwright::profile::BUILT_IN;
+use beadwright::profile::{BUILT_IN, Profile};
 use beadwright::robot::cell;
 use eframe::egui::{ComboBox, Ui};
 
@@ -12,12 +12,18 @@ pub(super) fn profile(studio: &mut Studio, ui: &mut Ui) {
     let label = ui.label(studio.t("profile"));
     let combo = ComboBox::from_id_salt("profile").selected_text(&parsed.profile.name).show_ui(ui, |ui| {
         for (name, text) in BUILT_IN {
-            if ui.selectable_label(parsed.profile.name == name, name).clicked() {
+            let line = ui.selectable_label(parsed.profile.name == name, name);
+            if line.on_hover_ui(|ui| drop(ui.label(about(text)))).clicked() {
                 studio.request(Action::SetProfile(text));
             }
         }
     });
     combo.response.labelled_by(label.id).on_hover_text(&parsed.profile.description);
+}
+
+/// What the profile of this text says of itself.
+fn about(text: &str) -> String {
+    Profile::parse(text).map_or_else(|error| error.to_string(), |profile| profile.description)
 }
 
 /// The robot cell, to be chosen from the built-in ones.

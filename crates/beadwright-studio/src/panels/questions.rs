@@ -26,10 +26,11 @@ fn path(studio: &mut Studio, ui: &Ui) {
         ui.label(studio.t("path-text"));
         let label = ui.label(studio.t("path"));
         let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).labelled_by(label.id);
+        // Asked first: a field that is given the focus again has not lost it.
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if ui.memory(|memory| memory.focused().is_none()) {
             field.request_focus();
         }
-        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.horizontal(|ui| {
             if ui.add_enabled(!text.trim().is_empty(), Button::new(studio.t("take"))).clicked() || entered {
                 answer = Some(true);
@@ -126,7 +127,8 @@ fn keys(studio: &mut Studio, ui: &Ui) {
     let mut open = studio.view.keys;
     Window::new(studio.t("keys")).open(&mut open).show(ui.ctx(), |ui| {
         Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for entry in &ENTRIES {
+            let page = cfg!(target_arch = "wasm32");
+            for entry in ENTRIES.iter().filter(|entry| !page || entry.action != Action::Quit) {
                 ui.label(studio.t(entry.text));
                 ui.monospace(entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default());
                 ui.end_row();

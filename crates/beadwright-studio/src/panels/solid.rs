@@ -1,6 +1,6 @@
 //! The 3-D view with its bar and its legend.
 
-use super::{bead, robot, section};
+use super::{bead, place, robot, section};
 use crate::actions::Action;
 use crate::studio::Studio;
 use crate::view3d::{Colour, Pick, Style, face, palette};
@@ -27,15 +27,19 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         legend(studio, ui);
         ui.separator();
         section::show(studio, ui);
+        ui.separator();
+        place::switch(studio, ui);
     });
     bead::show(studio, ui);
     robot::joints(studio, ui);
     let (style, label) = (studio.style(), studio.t("view-3d-label"));
-    view(studio, ui, &style, label);
+    studio.solid.around = place::around(studio);
+    let rect = view(studio, ui, &style, label);
+    place::show(studio, ui, rect);
 }
 
-/// The picture, with what a click chooses.
-pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str) {
+/// The picture, with what a click chooses; where it is.
+pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str) -> Rect {
     studio.solid.caption = caption(studio);
     studio.solid.no_adapter = studio.t("no-adapter").to_owned();
     studio.solid.camera.orthographic = studio.view.parallel;
@@ -45,6 +49,7 @@ pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str)
     } else if shown.clicked {
         studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
     }
+    shown.response.rect
 }
 
 /// Lays the part onto the face that is seen there.

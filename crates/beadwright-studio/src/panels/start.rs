@@ -83,19 +83,19 @@ fn tile(ui: &mut Ui, example: &Example, picture: Option<TextureId>) -> bool {
     let (rect, response) = ui.allocate_exact_size(size + vec2(8.0, 44.0), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, example.name));
     let look = ui.style().interact(&response);
-    let (ink, weak) = (look.text_color(), ui.visuals().weak_text_color());
+    let ink = look.text_color();
     ui.painter().rect(rect, 6.0, look.weak_bg_fill, look.bg_stroke, eframe::egui::StrokeKind::Inside);
     let place = Rect::from_min_size(rect.min + vec2(4.0, 4.0), size);
     if let Some(picture) = picture {
         ui.painter().image(picture, place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
     }
-    let line = |up: f32, text: &str, size: f32, ink| {
+    let line = |up: f32, text: &str, size: f32| {
         let at = rect.center_bottom() - vec2(0.0, up);
         ui.painter().text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(size), ink);
     };
-    line(20.0, example.name, 14.0, ink);
+    line(20.0, example.name, 14.0);
     // The line about an example ends with its size.
-    line(5.0, example.about.rsplit(", ").next().unwrap_or_default(), 11.0, weak);
+    line(5.0, example.about.rsplit(", ").next().unwrap_or_default(), 11.0);
     response.on_hover_text(example.about).clicked()
 }
 

@@ -1,5 +1,6 @@
 //! Totals of the plan, and the values of the chosen bead.
 
+use super::words;
 use crate::state::PlanState;
 use crate::studio::Studio;
 use beadwright::deposit::Figures;
@@ -17,10 +18,7 @@ pub(super) fn show(studio: &Studio, ui: &mut Ui) {
     let rows = rows_of(&studio.plans.own);
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
-            let label = ui.label(name_of(studio, name));
-            if let Some(hint) = studio.language().find(&format!("hint {name}")) {
-                label.on_hover_text(hint);
-            }
+            named(studio, ui, name);
             ui.label(value);
             ui.end_row();
         }
@@ -43,8 +41,13 @@ pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
     totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
 }
 
+/// A row's name, with what it means as a hint.
+pub(super) fn named(studio: &Studio, ui: &mut Ui, name: &'static str) {
+    words::explained(studio, ui.label(name_of(studio, name)), name);
+}
+
 /// A row's name in the language of the window.
-pub(super) fn name_of(studio: &Studio, name: &'static str) -> &'static str {
+fn name_of(studio: &Studio, name: &'static str) -> &'static str {
     let key = format!("total {name}");
     let printed = studio.prints().then(|| studio.language().find(&format!("fdm {key}"))).flatten();
     printed.or_else(|| studio.language().find(&key)).unwrap_or(name)

@@ -3,15 +3,18 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `pen` | draws in the coordinates of the part |
+//! | `steps` | pockets and regions of the hybrid, rings and flips of the loop |
 //! | `heat` | the colours of heights |
 
 mod heat;
 mod pen;
+mod steps;
 
 pub use heat::{heat, height};
+pub use steps::Named;
 
+use crate::steps::Steps;
 use beadwright::deposit::Judgement;
-use beadwright::fill::hybrid::Steps;
 use beadwright::layer::Layer;
 use beadwright::planar::Bounds;
 use eframe::egui::{
@@ -45,7 +48,7 @@ pub struct Show {
     pub starts: bool,
     /// The height field of the deposit model.
     pub heights: bool,
-    /// Pockets and skeleton regions of the hybrid.
+    /// How the strategy comes to its passes.
     pub regions: bool,
 }
 
@@ -62,8 +65,8 @@ pub struct Drawing<'a> {
     pub layer: &'a Layer,
     /// What the deposit model says of it.
     pub judgement: Option<&'a Arc<Judgement>>,
-    /// The steps of the hybrid, island by island.
-    pub steps: &'a [Steps],
+    /// The steps of the strategy, island by island, and what their colours mean.
+    pub steps: (&'a [Steps], Named),
     /// Number of bead segments that are shown.
     pub pieces: usize,
     /// The pass that is chosen, and its piece.
@@ -164,10 +167,10 @@ impl View2d {
             self.heights(&pen, subject.judgement);
         }
         pen.outlines(subject.layer);
-        if show.regions {
-            subject.steps.iter().for_each(|steps| pen.regions(steps));
-        }
         pen.passes(&subject, show);
+        if show.regions {
+            pen.steps(subject.steps.0, &subject.steps.1);
+        }
         pen.chosen(&subject);
         self.measures(&pen);
         pen.scale_bar();

@@ -4,14 +4,10 @@ use super::heat::{VOID, heat};
 use super::{Drawing, Eye, Show};
 use crate::view3d::palette;
 use beadwright::deposit::picture;
-use beadwright::fill::hybrid::Steps;
 use beadwright::layer::Layer;
 use beadwright::pass::{PassKind, Segment};
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use glam::DVec2;
-
-const POCKET: Color32 = Color32::from_rgb(0x7e, 0x57, 0xc2);
-const REGION: Color32 = Color32::from_rgb(0x0f, 0x8b, 0x8d);
 
 /// The colour of a kind of pass.
 fn colour(kind: PassKind) -> Color32 {
@@ -41,7 +37,7 @@ impl Pen<'_> {
 
     /// A closed line. It is drawn as an open one that ends where it began: only at the corners of those are mitres
     /// limited, and the sharp corners of slivers would become spikes across the view.
-    fn ring(&self, points: &[DVec2], stroke: Stroke) {
+    pub(super) fn ring(&self, points: &[DVec2], stroke: Stroke) {
         /// Points closer than this on the screen are one: they have no direction.
         const SAME: f32 = 0.2;
         let mut line: Vec<Pos2> = points.iter().chain(points.first()).map(|p| self.at(*p)).collect();
@@ -57,16 +53,6 @@ impl Pen<'_> {
         for island in &layer.islands {
             self.ring(island.outer.points(), stroke);
             island.holes.iter().for_each(|hole| self.ring(hole.points(), stroke));
-        }
-    }
-
-    pub(super) fn regions(&self, steps: &Steps) {
-        for pocket in steps.levels.iter().flat_map(|level| &level.pockets) {
-            let stroke = Stroke::new(if pocket.kept { 2.0 } else { 0.8 }, POCKET);
-            self.ring(pocket.shape.outer.points(), stroke);
-        }
-        for ring in steps.regions.rings() {
-            self.ring(ring.points(), Stroke::new(2.0, REGION));
         }
     }
 

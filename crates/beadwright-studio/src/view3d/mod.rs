@@ -13,12 +13,14 @@
 //! | `pick`, `face` | which segment, which face of the model is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |
 //! | `widget` | the pointer turns and picks; frames are kept |
+//! | `gizmo` | handles that move and turn the part |
 //! | `overlay` | axes and scale bar |
 //! | `headless` | a renderer without a window |
 
 mod beads;
 mod camera;
 mod face;
+mod gizmo;
 mod gpu;
 mod headless;
 mod overlay;
@@ -32,6 +34,7 @@ mod widget;
 pub use beads::{Bead, LayerBeads, PassSpan};
 pub use camera::{Camera, StandardView};
 pub use face::face;
+pub use gizmo::{Gizmo, Grip, Handle, Moved};
 pub use headless::headless;
 pub use pick::{Pick, pick};
 pub use scene::{Position, Scene};

@@ -83,6 +83,8 @@ pub struct View3d {
     pub no_adapter: String,
     /// A line at the foot of the picture.
     pub caption: String,
+    /// Places that must be in the picture too when the scene is fitted into it, mm.
+    pub around: Vec<DVec3>,
     gpu: Option<Gpu>,
     /// The fine and the coarse picture.
     frames: [Option<Frame>; 2],
@@ -99,6 +101,7 @@ impl Default for View3d {
                          found. Everything else works without it."
                 .to_owned(),
             caption: String::new(),
+            around: Vec::new(),
             gpu: None,
             frames: [None, None],
             fit: true,
@@ -139,7 +142,8 @@ impl View3d {
         if self.fit && scene.bounds().is_some() {
             let reach = |radius: f64| [-radius, radius].map(DVec3::splat);
             let arm = style.arm.iter().flat_map(|link| link.ends.map(|end| reach(link.radius).map(|by| end + by)));
-            self.camera.fit_points(&scene.outline().into_iter().chain(arm.flatten()).collect::<Vec<_>>(), size);
+            let seen = scene.outline().into_iter().chain(arm.flatten()).chain(self.around.iter().copied());
+            self.camera.fit_points(&seen.collect::<Vec<_>>(), size);
             self.fit = false;
         }
         let clicked = response.clicked();

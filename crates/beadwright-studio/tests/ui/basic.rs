@@ -1,6 +1,6 @@
 //! The basic parameters, and all of them.
 
-use super::window::{click, example, search, sees, type_number, wait};
+use super::window::{Window, click, example, search, sees, type_number, wait};
 use beadwright::profile::Profile;
 use beadwright_studio::form::BASIC;
 use beadwright_studio::text::Language;
@@ -39,7 +39,7 @@ fn a_basic_parameter_is_that_of_the_profile() {
     assert!(harness_says(&harness, "This value is not allowed:"));
 }
 
-fn harness_says(harness: &egui_kittest::Harness<'static, beadwright_studio::Studio>, words: &str) -> bool {
+fn harness_says(harness: &Window, words: &str) -> bool {
     use egui_kittest::kittest::Queryable;
     harness.query_all_by_label_contains(words).next().is_some()
 }

@@ -1,13 +1,11 @@
 //! Parameters: typed, refused, undone.
 
-use super::window::{example, search, sees, type_number, wait};
+use super::window::{Window, example, press, search, sees, type_number, wait};
 use beadwright::model::Model;
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
-use beadwright_studio::Studio;
 use eframe::egui::{Key, Modifiers, Role};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 /// Deposited length of the cross, as the library plans it with a layer height.
@@ -20,13 +18,13 @@ fn length(height: f64) -> (usize, f64) {
     (metrics.layers, metrics.deposited_length_mm)
 }
 
-fn planned(harness: &Harness<'static, Studio>) -> (usize, f64) {
+fn planned(harness: &Window) -> (usize, f64) {
     let metrics = &harness.state().plan().summary.as_ref().unwrap().metrics;
     assert_eq!(harness.state().plan().layers.len(), metrics.layers);
     (metrics.layers, metrics.deposited_length_mm)
 }
 
-fn press(harness: &mut Harness<'static, Studio>, modifiers: Modifiers, key: Key) {
+fn shortcut(harness: &mut Window, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     wait(harness);
 }
@@ -42,13 +40,13 @@ fn a_typed_value_changes_the_plan_and_is_undone_by_keys() {
     type_number(&mut harness, "height", "2.5");
     wait(&mut harness);
     assert_eq!(planned(&harness), after);
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(planned(&harness), before);
     assert!(harness.get_by_role_and_label(Role::SpinButton, "height").value().unwrap().starts_with('2'));
-    press(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    shortcut(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(planned(&harness), after);
     // Both steps are gone: the part itself was opened by a step.
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(planned(&harness), before);
 }
 
@@ -59,9 +57,7 @@ fn what_cannot_be_is_told_at_its_field_and_changes_nothing() {
     let (project, plan) = (harness.state().project().clone(), planned(&harness));
     search(&mut harness, "layers.height");
     type_number(&mut harness, "height", "1000");
-    let told = |harness: &Harness<'static, Studio>| {
-        harness.query_by_label_contains("it must lie between 0.01 and 50 mm").is_some()
-    };
+    let told = |harness: &Window| harness.query_by_label_contains("it must lie between 0.01 and 50 mm").is_some();
     assert!(told(&harness), "nothing is said about 1000 mm");
     wait(&mut harness);
     assert_eq!((harness.state().project(), planned(&harness)), (&project, plan));
@@ -84,8 +80,7 @@ fn escape_leaves_a_field_as_it_was() {
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::SpinButton, "height").type_text("5");
     harness.run_steps(2);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
+    press(&mut harness, Key::Escape);
     let height = |text: &str| Profile::parse(text).unwrap().layers.height;
     assert_eq!(height(&harness.state().project().profile), 2.0);
     assert_eq!(harness.state().project(), &project);

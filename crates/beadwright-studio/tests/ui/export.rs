@@ -1,12 +1,10 @@
 //! What is written is what the command writes, byte for byte.
 
-use super::window::{has_adapter, run, studio, wait};
+use super::window::{Window, has_adapter, run, studio, wait};
 use beadwright::dialect;
 use beadwright::files::{METRICS, PLAN, REPORT};
-use beadwright_studio::Studio;
 use beadwright_studio::export::Export;
 use beadwright_studio::project::{Project, Source};
-use egui_kittest::Harness;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -24,7 +22,7 @@ fn same(ours: &BTreeMap<String, Vec<u8>>, theirs: &BTreeMap<String, Vec<u8>>) {
 }
 
 /// A project of the file at a scale with a profile, opened and planned.
-fn opened(folder: &Path, model: &Path, profile: &str, scale: f64) -> Harness<'static, Studio> {
+fn opened(folder: &Path, model: &Path, profile: &str, scale: f64) -> Window {
     let mut project = Project { source: Some(Source::File(model.to_owned())), ..Project::default() };
     project.placement.scale = scale;
     beadwright::profile::Profile::built_in_text(profile).unwrap().clone_into(&mut project.profile);

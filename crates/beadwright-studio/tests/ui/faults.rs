@@ -1,14 +1,14 @@
 //! What once was wrong with the window, as people saw it.
 
-use super::window::{click, crosses, example, search, sees, studio, wait};
+use super::window::{Window, click, crosses, example, press, search, sees, studio, wait};
 use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::process::StartStop;
 use beadwright::profile::Profile;
-use beadwright_studio::Studio;
+use beadwright_studio::actions::Action;
 use beadwright_studio::jobs::Ask;
 use beadwright_studio::project::{Project, Source};
-use beadwright_studio::view2d::{Drawing, Show, View2d};
+use beadwright_studio::view2d::{Drawing, Named, Show, View2d};
 use eframe::egui::epaint::Primitive;
 use eframe::egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::Harness;
@@ -36,7 +36,7 @@ fn slivers_draw_no_spikes() {
     let layer = Layer { islands: vec![Polygon { outer: square(-50.0, 50.0), holes: slivers() }], ..Layer::default() };
     let mut view = View2d::default();
     let draw = move |ui: &mut eframe::egui::Ui| {
-        let (steps, pieces, nothing) = (&[], 0, "nothing");
+        let (steps, pieces, nothing) = ((&[][..], Named::default()), 0, "nothing");
         let drawing = Drawing { layer: &layer, judgement: None, steps, pieces, chosen: None, scale: None, nothing };
         view.show(ui, drawing, Show::default(), "layer");
     };
@@ -57,7 +57,7 @@ fn slivers_draw_no_spikes() {
 }
 
 /// Ctrl+O where there is no desktop; elsewhere what happens then, so that no dialog comes up.
-fn ask_to_open(harness: &mut Harness<'static, Studio>) {
+fn ask_to_open(harness: &mut Window) {
     let desktop = std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some() || cfg!(not(target_os = "linux"));
     if desktop {
         harness.state_mut().ask_in_words(Ask::Open);
@@ -86,7 +86,7 @@ fn without_file_dialogs_a_path_is_typed() {
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::TextInput, "Path").type_text(path.to_str().unwrap());
     harness.run_steps(2);
-    click(&mut harness, "OK");
+    press(&mut harness, Key::Enter);
     wait(&mut harness);
     assert_eq!(harness.state().project().source, Some(Source::File(path)));
     assert!(harness.state().plan().is_complete());
@@ -96,8 +96,7 @@ fn without_file_dialogs_a_path_is_typed() {
 fn a_message_does_not_move_the_view() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(&folder.path().join("store"), "cross");
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     let before = harness.get_by_label("Layer view").rect();
     let broken = folder.path().join("broken.bwp");
     std::fs::write(&broken, "version = 99").unwrap();
@@ -119,10 +118,28 @@ fn the_messages_are_not_covered() {
 }
 
 #[test]
+fn three_messages_are_seen_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = studio(&folder.path().join("store"));
+    // Its layers end below the top of the part: two warnings.
+    harness.state_mut().act(Action::SetProfile(Profile::built_in_text("cmt-steel-abb").unwrap()));
+    harness.state_mut().open_example("propeller");
+    wait(&mut harness);
+    harness.state_mut().open(&folder.path().join("none.bwp"));
+    harness.run_steps(4);
+    let strip = |text: &str| harness.query_all_by_label_contains(text).map(|node| node.rect()).collect::<Vec<_>>();
+    let lines = [strip("none.bwp"), strip("• ")].concat();
+    assert!(lines.len() >= 3, "{lines:?}");
+    for (i, line) in lines.iter().take(3).enumerate() {
+        assert!(line.top() > 728.0 && line.bottom() < 800.0, "line {i} at {line} is cut off");
+    }
+}
+
+#[test]
 fn the_number_of_findings_does_not_move_the_tabs() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    let places = |harness: &Harness<'static, Studio>| ["Plots", "Export"].map(|tab| harness.get_by_label(tab).rect());
+    let places = |harness: &Window| ["Plots", "Export"].map(|tab| harness.get_by_label(tab).rect());
     let before = places(&harness);
     harness.state_mut().set_value("check.max_void", "0.001");
     wait(&mut harness);
@@ -167,15 +184,14 @@ fn plots_without_values_and_empty_layers_say_so() {
     click(&mut harness, "Totals");
     assert!(sees(&harness, "20 / 30"));
     harness.state_mut().view().look_at(14);
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     assert!(sees(&harness, "Layer view: Nothing is laid on this layer."));
     harness.state_mut().view().look_at(2);
     harness.run_steps(3);
     assert!(sees(&harness, "Layer view"));
 }
 
-fn opened(folder: &Path, profile: &str, scale: f64) -> Harness<'static, Studio> {
+fn opened(folder: &Path, profile: &str, scale: f64) -> Window {
     let mut project = Project { source: Some(Source::Example("cross".to_owned())), ..Project::default() };
     project.placement.scale = scale;
     Profile::built_in_text(profile).unwrap().clone_into(&mut project.profile);
@@ -219,7 +235,7 @@ fn parameters_are_found_by_names_of_both_languages_and_by_reasons() {
 fn a_group_goes_back_to_its_defaults() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    let waits = |harness: &Harness<'static, Studio>| {
+    let waits = |harness: &Window| {
         let StartStop { interpass_time, end_overlap, .. } =
             Profile::parse(&harness.state().project().profile).unwrap().start_stop;
         (interpass_time, end_overlap)

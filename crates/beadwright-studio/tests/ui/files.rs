@@ -1,10 +1,8 @@
 //! Files that come and go: dropped, recent, kept aside; and which file a project belongs to.
 
-use super::window::{click, example, sees, studio, wait};
-use beadwright_studio::Studio;
+use super::window::{Window, click, example, sees, studio, wait};
 use beadwright_studio::project::{Project, Source};
 use eframe::egui::{DroppedFile, Key, Modifiers};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -36,7 +34,7 @@ fn project(folder: &Path, name: &str) -> PathBuf {
     path
 }
 
-fn press(harness: &mut Harness<'static, Studio>, modifiers: Modifiers, key: Key) {
+fn press(harness: &mut Window, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
     harness.run_steps(3);
 }
@@ -178,7 +176,7 @@ fn changes_are_asked_about_before_they_are_lost() {
     assert!(!harness.state().is_changed(), "an example that was only looked at");
     harness.state_mut().set_value("fill.strategy", "contour");
     assert!(harness.state().is_changed());
-    let close = |harness: &mut egui_kittest::Harness<'static, beadwright_studio::Studio>| {
+    let close = |harness: &mut Window| {
         let viewport = harness.input_mut().viewports.entry(eframe::egui::ViewportId::ROOT).or_default();
         viewport.events.push(eframe::egui::ViewportEvent::Close);
         harness.run_steps(1);

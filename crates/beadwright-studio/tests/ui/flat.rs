@@ -1,22 +1,19 @@
 //! The layer view: beads under the pointer, and the measure.
 
-use super::window::{click, click_at, example, sees, wait};
-use beadwright_studio::Studio;
+use super::window::{Window, click, click_at, example, press, sees, slide, wait};
 use eframe::egui::{Key, Pos2, vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 /// Where a point of the cross, mm, is in the layer view: its 100 mm square fills the view but for a margin of 15 %.
-fn place(harness: &Harness<'static, Studio>, x: f64, y: f64) -> Pos2 {
+fn place(harness: &Window, x: f64, y: f64) -> Pos2 {
     let rect = harness.get_by_label("Layer view").rect();
     let scale = f64::from(rect.width().min(rect.height())) / 115.0;
     rect.center() + vec2((x * scale) as f32, (-y * scale) as f32)
 }
 
-fn layer_view(folder: &std::path::Path) -> Harness<'static, Studio> {
+fn layer_view(folder: &std::path::Path) -> Window {
     let mut harness = example(folder, "cross");
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     harness
 }
 
@@ -26,8 +23,7 @@ fn a_click_on_a_bead_shows_its_values() {
     let mut harness = layer_view(folder.path());
     let layers = harness.state().plan().layers.clone();
     let profile = harness.state().plan().profile.clone().unwrap();
-    harness.get_by_role_and_label(eframe::egui::Role::Slider, "Layer").set_value_accesskit(4.0);
-    harness.run_steps(3);
+    slide(&mut harness, "Layer", 4.0);
     for (number, pass) in layers[3].passes.iter().enumerate() {
         let longest = |(_, s): &(usize, beadwright::pass::Segment)| s.from.distance(s.to);
         let segments = pass.segments().enumerate();
@@ -87,9 +83,8 @@ fn a_layer_without_regions_is_looked_at_once() {
     let layers = &harness.state().plan().layers;
     assert!(layers.len() == 30 && layers[14].islands.is_empty());
     harness.state_mut().view().look_at(14);
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
-    click(&mut harness, "Pockets and skeleton regions");
+    press(&mut harness, Key::F3);
+    click(&mut harness, "Steps");
     wait(&mut harness);
     for _ in 0..20 {
         harness.run_steps(1);

@@ -1,6 +1,6 @@
 //! A bead chosen in one view is chosen in the others.
 
-use super::window::{click, click_at, example, has_adapter, open_list, sees, wait};
+use super::window::{Window, click, click_at, example, has_adapter, open_list, press, sees, slide, wait};
 use eframe::egui::{Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -12,10 +12,8 @@ fn a_bead_clicked_in_3d_is_the_one_of_the_layer_view_and_back() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     let top = harness.state().plan().layers.len() - 1;
-    harness.key_press(Key::Num7);
-    harness.run_steps(3);
-    harness.get_by_role_and_label(Role::Slider, "Last layer").set_value_accesskit(5.0);
-    harness.run_steps(3);
+    press(&mut harness, Key::Num7);
+    slide(&mut harness, "Last layer", 5.0);
     let middle = harness.get_by_label("3-D view").rect().center();
     click_at(&mut harness, middle);
     let chosen = harness.state_mut().view().chosen.unwrap();
@@ -35,26 +33,21 @@ fn a_bead_clicked_in_3d_is_the_one_of_the_layer_view_and_back() {
         format!("after {}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60),
         found.kind.name().to_owned(),
     ];
-    harness.get_by_role_and_label(Role::Slider, "Last layer").set_value_accesskit(top as f64 + 1.0);
-    harness.run_steps(3);
+    slide(&mut harness, "Last layer", top as f64 + 1.0);
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
     // The layer view goes to its layer, and tells the same of it.
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     assert_eq!((harness.state_mut().view().last, harness.state_mut().view().chosen), (4, Some(chosen)));
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
     // Back in 3-D there are all layers again.
-    harness.key_press(Key::F2);
-    harness.run_steps(3);
+    press(&mut harness, Key::F2);
     assert_eq!((harness.state_mut().view().last, harness.state_mut().view().chosen), (top, Some(chosen)));
     // Another bead of the layer view is the one of 3-D.
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     let middle = harness.get_by_label("Layer view").rect().center();
     click_at(&mut harness, middle);
     let other = harness.state_mut().view().chosen.unwrap();
-    harness.key_press(Key::F2);
-    harness.run_steps(3);
+    press(&mut harness, Key::F2);
     assert_eq!(harness.state_mut().view().chosen, Some(other));
     assert!(sees(&harness, &format!("Layer {}", other.0 + 1)));
 }
@@ -67,12 +60,10 @@ fn a_slider_goes_from_pass_to_pass() {
     wait(&mut harness);
     let passes = harness.state().plan().scene.layer(2).unwrap().passes().to_vec();
     assert!(passes.len() > 3);
-    harness.get_by_role_and_label(Role::Slider, "Last layer").set_value_accesskit(3.0);
-    harness.run_steps(2);
+    slide(&mut harness, "Last layer", 3.0);
     let segments = passes.last().unwrap().segments.end as f64;
     for (i, pass) in passes.iter().enumerate() {
-        harness.get_by_role_and_label(Role::Slider, "Last pass").set_value_accesskit(i as f64 + 1.0);
-        harness.run_steps(2);
+        slide(&mut harness, "Last pass", i as f64 + 1.0);
         let shown = harness.state_mut().view().progress * segments;
         assert!((shown - pass.segments.end as f64).abs() < 1e-6, "{shown} of {segments} pieces");
     }
@@ -108,7 +99,7 @@ fn the_arm_stands_at_the_chosen_bead_and_tells_its_joints() {
     harness.state_mut().view().chosen = Some((3, 0, 0));
     click(&mut harness, "Robot");
     wait(&mut harness);
-    let joints = |harness: &egui_kittest::Harness<'static, beadwright_studio::Studio>| -> Vec<String> {
+    let joints = |harness: &Window| -> Vec<String> {
         let labels = harness.query_all_by_label_contains("J");
         labels
             .filter_map(|node| node.accesskit_node().label().or(node.accesskit_node().value()))

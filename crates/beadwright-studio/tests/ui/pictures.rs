@@ -1,6 +1,6 @@
 //! What is drawn, by numbers; skipped where there is nothing to draw with.
 
-use super::window::{click, click_at, example, has_adapter, wait};
+use super::window::{click, click_at, example, has_adapter, press, slide, wait};
 use beadwright_studio::view2d::heat;
 use eframe::egui::{Key, Rect};
 use egui_kittest::kittest::Queryable;
@@ -22,8 +22,7 @@ fn the_heights_of_a_layer_have_the_colours_of_the_report() {
     // A strategy that leaves voids.
     harness.state_mut().set_value("fill.strategy", "contour");
     wait(&mut harness);
-    harness.key_press(Key::F3);
-    harness.run_steps(3);
+    press(&mut harness, Key::F3);
     for hidden in ["Path", "Travels", "Starts and ends"] {
         click(&mut harness, hidden);
     }
@@ -78,8 +77,7 @@ fn a_click_in_the_3d_view_picks_the_bead_that_is_seen() {
     assert!(beside <= segment.width / 2.0 + 0.1, "the bead lies {beside:.1} mm beside the click");
     assert!(super::window::sees(&harness, &format!("{:.2} mm", found.length())));
     // Fewer layers: the one that is then uppermost.
-    harness.get_by_role_and_label(eframe::egui::Role::Slider, "Last layer").set_value_accesskit(5.0);
-    harness.run_steps(3);
+    slide(&mut harness, "Last layer", 5.0);
     click_at(&mut harness, rect.center());
     assert_eq!(harness.state_mut().view().chosen.map(|chosen| chosen.0), Some(4));
     // Beside the part there is nothing.

@@ -1,13 +1,11 @@
 //! Where the part stands.
 
-use super::window::{click, click_at, crosses, example, sees, studio, type_number, wait};
-use beadwright_studio::Studio;
+use super::window::{Window, click, click_at, crosses, example, sees, studio, type_number, wait};
 use eframe::egui::Key;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 
-fn size(harness: &Harness<'static, Studio>) -> DVec3 {
+fn size(harness: &Window) -> DVec3 {
     let (low, high) = harness.state().plan().part.as_ref().unwrap().bounds();
     assert!(low.z.abs() < 1e-6, "it does not stand on z = 0");
     high - low

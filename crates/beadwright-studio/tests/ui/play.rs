@@ -1,7 +1,7 @@
 //! The torch runs as the program will.
 
-use super::window::{example, sees};
-use eframe::egui::{Key, Role};
+use super::window::{example, press, sees, slide};
+use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
 /// Seconds between two frames of the harness.
@@ -15,12 +15,10 @@ fn the_torch_runs_to_the_end_in_the_time_of_the_metrics() {
     let seconds = plan.summary.as_ref().unwrap().metrics.total_time_s;
     let end = plan.layers.last().unwrap().passes.last().unwrap().end().unwrap();
     let layers = plan.layers.len();
-    harness.get_by_role_and_label(Role::Slider, "Last layer").set_value_accesskit(1.0);
-    harness.run_steps(2);
+    slide(&mut harness, "Last layer", 1.0);
     // So that the way to the end takes 40 frames.
     let rate = (seconds / (40.0 * STEP)).round();
-    harness.get_by_role_and_label(Role::Slider, "Speed ×").set_value_accesskit(rate);
-    harness.run_steps(2);
+    slide(&mut harness, "Speed ×", rate);
     let rate = harness.state_mut().view().rate;
     harness.get_by_label_contains("Play").click();
     harness.run_steps(1);
@@ -52,8 +50,7 @@ fn the_torch_runs_to_the_end_in_the_time_of_the_metrics() {
 fn the_torch_waits_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    harness.get_by_role_and_label(Role::Slider, "Last layer").set_value_accesskit(3.0);
-    harness.run_steps(2);
+    slide(&mut harness, "Last layer", 3.0);
     harness.key_press(Key::Space);
     harness.run_steps(4);
     let view = harness.state_mut().view().clone();
@@ -65,13 +62,11 @@ fn the_torch_waits_and_goes_on() {
     assert!(!waits.playing && sees(&harness, "▶ Play"));
     harness.run_steps(4);
     assert_eq!(harness.state_mut().view().seconds, waits.seconds);
-    harness.key_press(Key::Space);
-    harness.run_steps(2);
+    press(&mut harness, Key::Space);
     let view = harness.state_mut().view().clone();
     assert!(view.playing && view.seconds > waits.seconds && view.seconds < waits.seconds + 60.0);
     // Who looks at another layer stops it.
-    harness.key_press(Key::PageDown);
-    harness.run_steps(3);
+    press(&mut harness, Key::PageDown);
     let view = harness.state_mut().view().clone();
     assert!(!view.playing && view.last == 1 && view.torch.is_none());
 }

@@ -34,6 +34,8 @@ fn process_and_robot_are_chosen_before_the_part() {
     wait(&mut harness);
     assert_eq!(harness.state().plan().profile.as_ref().unwrap().name, "cmt-steel-abb");
     assert_eq!(harness.state_mut().view().cell, "abb-irb1410");
+    // Programs are written in the language of the profile.
+    assert_eq!(harness.state_mut().view().dialect, "rapid");
 }
 
 #[test]

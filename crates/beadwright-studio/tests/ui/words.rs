@@ -1,9 +1,10 @@
 //! Languages and themes.
 
-use super::window::{click, example, has_adapter, sees, studio};
+use super::window::{Window, click, example, has_adapter, press, sees, studio, wait};
 use beadwright_studio::settings::Store;
 use beadwright_studio::text::table;
-use eframe::egui::{Context, FontDefinitions, FontId, Key, Modifiers, RawInput, Theme};
+use beadwright_studio::view::Side;
+use eframe::egui::{Context, FontDefinitions, FontId, Key, Modifiers, Pos2, RawInput, Rect, Role, Theme, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
 
@@ -21,7 +22,7 @@ fn the_window_speaks_chinese() {
     }
     click(&mut harness, "中文");
     harness.run_steps(3);
-    let there = |harness: &egui_kittest::Harness<'static, beadwright_studio::Studio>, labels: &[&str]| {
+    let there = |harness: &Window, labels: &[&str]| {
         for label in labels {
             assert!(harness.query_all_by_label_contains(label).next().is_some(), "{label} is not there");
         }
@@ -33,7 +34,7 @@ fn the_window_speaks_chinese() {
     let mut harness = studio(folder.path());
     assert!(sees(&harness, "文件"));
     harness.state_mut().open_example("cross");
-    super::window::wait(&mut harness);
+    wait(&mut harness);
     assert!(sees(&harness, "完成") && sees(&harness, "沉积长度"));
     there(&harness, &["参数", "总计", "填充策略", "焊道宽度"]);
     // And back again.
@@ -50,7 +51,7 @@ fn the_window_speaks_chinese() {
 fn the_window_is_dark_or_light() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    let brightness = |harness: &mut egui_kittest::Harness<'static, beadwright_studio::Studio>| {
+    let brightness = |harness: &mut Window| {
         let picture = harness.render().unwrap();
         let sum: u64 = picture.pixels().map(|p| u64::from(p.0[0]) + u64::from(p.0[1]) + u64::from(p.0[2])).sum();
         sum as f64 / (3.0 * f64::from(picture.width() * picture.height()))
@@ -108,4 +109,58 @@ fn every_sign_of_the_window_is_in_the_built_in_fonts() {
 
 fn without(names: Vec<String>) -> Vec<String> {
     names.into_iter().filter(|name| name != "chinese").collect()
+}
+
+/// The labels of a kind of word that are seen, with where they are.
+fn places(harness: &Window, word: &str) -> Vec<Pos2> {
+    let says = |text: String| text.to_lowercase().split(|c: char| !c.is_alphabetic()).any(|part| part == word);
+    let nodes = harness.query_all_by(|node| {
+        let text = node.label().or_else(|| node.value()).unwrap_or_default();
+        // Names of parameters have hints of their own.
+        [Role::Label, Role::Link, Role::DisclosureTriangle].contains(&node.role()) && says(text)
+    });
+    nodes.map(|node| node.rect().left_center() + vec2(12.0, 0.0)).collect()
+}
+
+/// Rests the pointer on every word of the figures and looks for its hint, and for the link to the book.
+fn every_word_is_explained(harness: &mut Window, least: usize, view: &str) {
+    let mut seen = 0;
+    for (word, hint) in [("void", "Void: "), ("low", "Low: "), ("overfill", "Overfill: "), ("outside", "Outside: ")] {
+        for pos in places(harness, word) {
+            if !Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 740.0)).contains(pos) {
+                continue;
+            }
+            harness.hover_at(pos);
+            harness.run_steps(8);
+            let told = |harness: &Window, text: &str| harness.query_all_by_label_contains(text).next().is_some();
+            assert!(
+                told(harness, hint) && told(harness, "More in the book"),
+                "{view}: {word} at {pos} is not explained"
+            );
+            harness.remove_cursor();
+            harness.run_steps(4);
+            seen += 1;
+        }
+    }
+    assert!(seen >= least, "{view}: only {seen} words");
+}
+
+#[test]
+fn every_word_of_the_figures_is_explained_where_it_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    every_word_is_explained(&mut harness, 4, "totals");
+    for limit in ["check.max_void", "check.max_overfill", "check.max_outside"] {
+        harness.state_mut().set_value(limit, "0.001");
+    }
+    wait(&mut harness);
+    for (side, least) in [(Side::Findings, 2), (Side::Plots, 2)] {
+        harness.state_mut().view().side = side;
+        harness.run_steps(3);
+        every_word_is_explained(&mut harness, least, &format!("{side:?}"));
+    }
+    harness.state_mut().compare_with(Some("contour"));
+    wait(&mut harness);
+    press(&mut harness, Key::F4);
+    every_word_is_explained(&mut harness, 4, "compare");
 }

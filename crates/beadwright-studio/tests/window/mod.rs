@@ -3,7 +3,7 @@
 
 use beadwright_studio::Studio;
 use beadwright_studio::settings::Store;
-use eframe::egui::{Event, Modifiers, PointerButton, Pos2, Role};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
@@ -15,7 +15,10 @@ use std::time::{Duration, Instant};
 /// Longest wait for a plan.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-pub(crate) fn studio(store: &Path) -> Harness<'static, Studio> {
+/// The window of a test.
+pub(crate) type Window = Harness<'static, Studio>;
+
+pub(crate) fn studio(store: &Path) -> Window {
     let store = Store::at(store.to_owned());
     let builder = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(64);
     let builder = if has_adapter() { builder.wgpu() } else { builder };
@@ -55,7 +58,7 @@ pub(crate) fn run(arguments: &[&str]) -> String {
 }
 
 /// Runs until nothing is under way.
-pub(crate) fn wait(harness: &mut Harness<'static, Studio>) {
+pub(crate) fn wait(harness: &mut Window) {
     let start = Instant::now();
     loop {
         harness.run_steps(2);
@@ -69,24 +72,61 @@ pub(crate) fn wait(harness: &mut Harness<'static, Studio>) {
 }
 
 /// Clicks on what has this label.
-pub(crate) fn click(harness: &mut Harness<'static, Studio>, label: &str) {
+pub(crate) fn click(harness: &mut Window, label: &str) {
     harness.get_by_label(label).click();
     harness.run_steps(3);
 }
 
+/// Presses a key.
+pub(crate) fn press(harness: &mut Window, key: Key) {
+    harness.key_press(key);
+    harness.run_steps(3);
+}
+
+/// Sets the slider of this name.
+pub(crate) fn slide(harness: &mut Window, label: &str, value: f64) {
+    harness.get_by_role_and_label(Role::Slider, label).set_value_accesskit(value);
+    harness.run_steps(3);
+}
+
+/// Presses the button of the pointer, or lets it go.
+pub(crate) fn button(harness: &mut Window, pos: Pos2, pressed: bool) {
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
+    harness.run_steps(2);
+}
+
+/// Presses the button at one place and moves to another, without letting go.
+pub(crate) fn pull(harness: &mut Window, from: Pos2, to: Pos2) {
+    harness.hover_at(from);
+    harness.run_steps(2);
+    button(harness, from, true);
+    for pos in [from.lerp(to, 0.5), to] {
+        harness.hover_at(pos);
+        harness.run_steps(2);
+    }
+}
+
+/// Drags from one place to another, and waits for what comes of it.
+pub(crate) fn drag(harness: &mut Window, from: Pos2, to: Pos2) {
+    pull(harness, from, to);
+    button(harness, to, false);
+    harness.remove_cursor();
+    wait(harness);
+}
+
 /// Opens the list of a choice.
-pub(crate) fn open_list(harness: &mut Harness<'static, Studio>, label: &str) {
+pub(crate) fn open_list(harness: &mut Window, label: &str) {
     harness.get_by_role_and_label(Role::ComboBox, label).click();
     harness.run_steps(3);
 }
 
 /// Whether this text is to be seen.
-pub(crate) fn sees(harness: &Harness<'static, Studio>, label: &str) -> bool {
+pub(crate) fn sees(harness: &Window, label: &str) -> bool {
     harness.query_all_by_label(label).next().is_some()
 }
 
 /// Clicks at a place of the window.
-pub(crate) fn click_at(harness: &mut Harness<'static, Studio>, pos: Pos2) {
+pub(crate) fn click_at(harness: &mut Window, pos: Pos2) {
     harness.hover_at(pos);
     for pressed in [true, false] {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
@@ -96,17 +136,17 @@ pub(crate) fn click_at(harness: &mut Harness<'static, Studio>, pos: Pos2) {
 }
 
 /// Types a text into the number field of this name, and Enter.
-pub(crate) fn type_number(harness: &mut Harness<'static, Studio>, name: &str, text: &str) {
+pub(crate) fn type_number(harness: &mut Window, name: &str, text: &str) {
     harness.get_by_role_and_label(Role::SpinButton, name).click();
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::SpinButton, name).type_text(text);
     harness.run_steps(1);
-    harness.key_press(eframe::egui::Key::Enter);
+    harness.key_press(Key::Enter);
     harness.run_steps(3);
 }
 
 /// Searches among the parameters.
-pub(crate) fn search(harness: &mut Harness<'static, Studio>, text: &str) {
+pub(crate) fn search(harness: &mut Window, text: &str) {
     harness.get_by_role_and_label(Role::TextInput, "Search").click();
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::TextInput, "Search").type_text(text);
@@ -114,7 +154,7 @@ pub(crate) fn search(harness: &mut Harness<'static, Studio>, text: &str) {
 }
 
 /// Opens an example and waits for its plan.
-pub(crate) fn example(store: &Path, name: &str) -> Harness<'static, Studio> {
+pub(crate) fn example(store: &Path, name: &str) -> Window {
     let mut harness = studio(store);
     harness.state_mut().open_example(name);
     wait(&mut harness);

@@ -36,11 +36,13 @@ pub struct Placement {
     pub turn: DVec3,
     /// Moves the middle of the part's extent to x = y = 0.
     pub centre: bool,
+    /// Moves the part along x and y after all else, mm.
+    pub shift: DVec2,
 }
 
 impl Default for Placement {
     fn default() -> Self {
-        Self { units: None, scale: 1.0, turn: DVec3::ZERO, centre: false }
+        Self { units: None, scale: 1.0, turn: DVec3::ZERO, centre: false, shift: DVec2::ZERO }
     }
 }
 
@@ -178,10 +180,11 @@ impl Placement {
         };
         let mesh = &mut import.mesh;
         mesh.place(units.in_mm() * self.scale, self.turn);
-        if self.centre {
-            let (low, high) = mesh.bounds();
-            let middle = ((low + high) / 2.0).with_z(0.0);
-            mesh.vertices.iter_mut().for_each(|vertex| *vertex -= middle);
+        let (low, high) = mesh.bounds();
+        let middle = if self.centre { ((low + high) / 2.0).truncate() } else { DVec2::ZERO };
+        let by = (self.shift - middle).extend(0.0);
+        if by != DVec3::ZERO {
+            mesh.vertices.iter_mut().for_each(|vertex| *vertex += by);
         }
         mesh.check_reach()?;
         Ok(import)
@@ -207,12 +210,13 @@ impl Placement {
         let turn = self.turn * std::f64::consts::PI / 180.0;
         let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
         let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
-        check_reach(file, unit * self.scale)?;
+        check_reach(file, unit * self.scale, self.shift)?;
         let mut curves = WallCurves::of_iges(file, &place)?;
         let height = height.or(Some(curves.height()).filter(|height| *height > 0.0)).ok_or(PartError::NoHeight)?;
-        if self.centre {
-            let middle = curve_bounds(&curves, height).center();
-            curves = WallCurves::of_iges(file, &(DAffine3::from_translation(-middle.extend(0.0)) * place))?;
+        let middle = if self.centre { curve_bounds(&curves, height).center() } else { DVec2::ZERO };
+        if self.shift != middle {
+            let by = (self.shift - middle).extend(0.0);
+            curves = WallCurves::of_iges(file, &(DAffine3::from_translation(by) * place))?;
         }
         let unread = file.entities.iter().filter(|e| e.unread > 0);
         let unread = unread.map(|e| format!("{} of entity {} ({}) not read.", e.unread, e.entity, e.name));
@@ -241,6 +245,18 @@ impl Placement {
         let (z, y, x) = turn.to_euler(EulerRot::ZYX);
         // Rounds, so that angles meant as whole degrees come out whole.
         DVec3::new(x, y, z).map(|angle| (angle.to_degrees() * 1e9).round() / 1e9)
+    }
+
+    /// The placement after the part, which now stands with the middle of its extent at `foot` (mm), was moved by `shift`
+    /// (mm) and turned by `angle` (°) about the upright through that middle.
+    pub fn moved(&self, shift: DVec2, angle: f64, foot: DVec2) -> Self {
+        // The middle of a centred part stays by itself.
+        let about = if self.centre { self.shift } else { foot };
+        let turned = DVec2::from_angle(angle.to_radians()).rotate(self.shift - about);
+        // Rounds, so that what is meant as whole comes out whole.
+        let shift = (about + turned + shift).map(|v| (v * 1e6).round() / 1e6);
+        let z = (self.turn.z + angle + 180.0).rem_euclid(360.0) - 180.0;
+        Self { shift, turn: self.turn.with_z((z * 1e9).round() / 1e9), ..*self }
     }
 }
 
@@ -296,9 +312,10 @@ impl Part {
 }
 
 /// Refuses curves that are longer or lie farther out than parts may.
-fn check_reach(file: &IgesFile, scale: f64) -> Result<(), ImportError> {
+fn check_reach(file: &IgesFile, scale: f64, shift: DVec2) -> Result<(), ImportError> {
     let corners = file.curves.iter().flat_map(|curve| &curve.parts).map(|part| part.bounds());
     let reach = scale * corners.map(|(low, high)| low.abs().max(high.abs()).max_element()).fold(0.0, f64::max);
+    let reach = reach + shift.abs().element_sum();
     // NaN is not within reach either.
     if reach <= MAX_REACH_MM { Ok(()) } else { Err(ImportError::TooFar { reach_m: reach / 1000.0 }) }
 }

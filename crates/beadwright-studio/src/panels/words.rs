@@ -1,0 +1,34 @@
+//! What the words of the figures mean: a hint on each, with the page of the book that tells more.
+
+use crate::studio::Studio;
+use eframe::egui::Response;
+
+/// Words that have a meaning of their own here.
+const WORDS: [&str; 4] = ["void", "low", "overfill", "outside"];
+
+/// The page on figures and findings.
+const PAGE: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/book/checks.md");
+
+/// Explains what an English text names: the row of that name, or each of its words.
+pub(super) fn explained(studio: &Studio, response: Response, text: &str) -> Response {
+    let hints = hints(studio, text);
+    if hints.is_empty() {
+        return response;
+    }
+    let more = studio.t("more-in-book");
+    response.on_hover_ui(|ui| {
+        ui.set_max_width(360.0);
+        hints.iter().for_each(|hint| drop(ui.label(*hint)));
+        ui.hyperlink_to(more, PAGE);
+    })
+}
+
+fn hints(studio: &Studio, text: &str) -> Vec<&'static str> {
+    let hint = |word: &str| studio.language().find(&format!("hint {word}"));
+    if let Some(whole) = hint(text) {
+        return vec![whole];
+    }
+    let lower = text.to_lowercase();
+    let named = |word: &str| lower.split(|letter: char| !letter.is_alphabetic()).any(|part| part == word);
+    WORDS.into_iter().filter(|word| named(word)).filter_map(hint).collect()
+}
