@@ -8,9 +8,11 @@ use crate::fill::{ContourOrder, RasterSpacing};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::number::hours;
+use crate::pass::PassKind;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
 use crate::warning::Warning;
+use std::collections::BTreeSet;
 
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
@@ -112,34 +114,51 @@ fn overlap(overlap: Overlap) -> &'static str {
     }
 }
 
+/// What a strategy lays, with those values of the profile that it heeds.
 fn strategy(name: &str, profile: &Profile) -> String {
     let fill = &profile.fill;
     let order = match fill.contour_order {
         ContourOrder::OutsideIn => "outside in",
         ContourOrder::InsideOut => "inside out",
     };
+    let perimeters = count(fill.perimeters as usize, "perimeter", "perimeters");
+    let laid = match name {
+        "raster" | "zigzag" => scan_lines(profile),
+        "contour" => order.to_owned(),
+        "compound" => format!("{perimeters} {order}, {}", scan_lines(profile)),
+        "hilbert" => format!("{perimeters} {order}, a Hilbert curve inside"),
+        "partition" => format!("{perimeters} {order}, cells with scan lines of their own direction inside"),
+        "loop" => "rings that fill the layer evenly, joined into one path".to_owned(),
+        "hybrid" => "contours, and the pockets between them filled along their middle".to_owned(),
+        "spiral" => "contours joined into one path".to_owned(),
+        "fermat" => "connected Fermat spirals".to_owned(),
+        "mat" => "rings from the middle outwards".to_owned(),
+        "wall" => "along the middle of thin walls".to_owned(),
+        _ => return name.to_owned(),
+    };
+    format!("{name}: {laid}")
+}
+
+fn scan_lines(profile: &Profile) -> String {
+    let fill = &profile.fill;
     let spacing = match fill.raster_spacing {
         RasterSpacing::Even => "evenly spread",
         RasterSpacing::Fitted => "evenly spread between long edges",
         RasterSpacing::Exact => "one stepover apart",
     };
-    let turn = match fill.raster_turn {
-        RasterTurn::Fixed => String::new(),
-        RasterTurn::Alternate => ", turned by 90° on every second layer".to_owned(),
-        RasterTurn::Increment => format!(", turned by {}° a layer", fill.raster_increment),
-        RasterTurn::Best => String::new(),
+    let angle = match fill.raster_turn {
+        RasterTurn::Fixed => format!("at {}°", fill.raster_angle),
+        RasterTurn::Alternate => format!("at {}°, turned by 90° on every second layer", fill.raster_angle),
+        RasterTurn::Increment => format!("at {}°, turned by {}° a layer", fill.raster_angle, fill.raster_increment),
+        RasterTurn::Best => "at the quickest angle for every two layers".to_owned(),
     };
-    let raster = match fill.raster_turn {
-        RasterTurn::Best => format!("scan lines at the quickest angle for every two layers, {spacing}"),
-        _ => format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle),
-    };
-    match name {
-        "contour" => format!("contour, {order}"),
-        "compound" => {
-            format!("compound, {} {order}, {raster}", count(fill.perimeters as usize, "perimeter", "perimeters"))
-        }
-        _ => format!("{name}, {raster}"),
-    }
+    format!("scan lines {angle}, {spacing}")
+}
+
+/// The colours of the kinds of passes that there are.
+pub(super) fn kinds(kinds: &BTreeSet<PassKind>) -> String {
+    let item = |kind: &PassKind| format!("<span><i class=\"swatch {0}\"></i>{0}</span>", kind.name());
+    kinds.iter().map(item).collect()
 }
 
 /// What the model consists of.
