@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let part = arguments.model.part();
-    let lead = format!("Profile {}, beads of {} mm. {}", profile.name, profile.bead.width, compare::SCORE);
+    let lead = format!("Profile {}, beads of {} mm; {}", profile.name, profile.bead.width, compare::SCORE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
     for (name, layer) in names.iter().flat_map(|name| middle.map(|layer| (name, layer))) {

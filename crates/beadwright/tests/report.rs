@@ -235,7 +235,7 @@ fn a_warning_leads_to_its_place_and_words_are_explained() {
 
 /// What stands in the cell beside a word.
 fn cell<'a>(html: &'a str, name: &str) -> &'a str {
-    html.split_once(&format!("<th>{name}</th><td>")).unwrap().1.split_once('<').unwrap().0
+    html.split_once(&format!("<th scope=\"row\">{name}</th><td>")).unwrap().1.split_once('<').unwrap().0
 }
 
 #[test]

@@ -138,11 +138,13 @@ function drawEnds(ctx, passes) {
   const pixel = 1 / view.scale;
   const ends = passes.filter(pass => pass.end <= shown.until);
   const mark = (x, y, radius, colour) => {
-    dot(ctx, x, y, (radius + 1.2) * pixel, "#ffffff");
+    dot(ctx, x, y, (radius + Math.min(1.2, radius / 3)) * pixel, "#ffffff");
     dot(ctx, x, y, radius * pixel, colour);
   };
-  for (const { xy } of ends) mark(xy[xy.length - 2], xy[xy.length - 1], 5, colours.end);
-  for (const { xy } of passes) mark(xy[0], xy[1], 3.2, colours.start);
+  // Many narrow passes would lie hidden below their ends.
+  const room = ({ along }) => Math.min(Math.max(0.3 * along[0][0] * view.scale, 1.5), 5);
+  for (const pass of ends) mark(pass.xy.at(-2), pass.xy.at(-1), room(pass), colours.end);
+  for (const pass of passes) mark(pass.xy[0], pass.xy[1], 0.64 * room(pass), colours.start);
 }
 
 function drawTorch(ctx, pass) {

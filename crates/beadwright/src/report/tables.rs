@@ -177,7 +177,7 @@ pub(super) fn model(repair: &RepairReport) -> String {
 /// The names of the files that were written.
 pub(super) fn files(files: &[String]) -> String {
     let items = files.iter().map(|name| format!("<li>{}</li>", escape(name))).collect::<Vec<_>>().join("\n");
-    format!("<ul class=\"files\">\n{items}\n</ul>")
+    format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a list that scrolls\">\n{items}\n</ul>")
 }
 
 /// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
@@ -217,7 +217,9 @@ fn link(warning: &Warning) -> String {
 
 fn table(rows: &[(&str, String)]) -> String {
     let name = |name: &str| name.split(", ").map(hinted).collect::<Vec<_>>().join(", ");
-    let row = |(key, value): &(&str, String)| format!("<tr><th>{}</th><td>{}</td></tr>", name(key), escape(value));
+    let row = |(key, value): &(&str, String)| {
+        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", name(key), escape(value))
+    };
     format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
 }
 

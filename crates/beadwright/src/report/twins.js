@@ -14,9 +14,11 @@ function readColumn({ name, layers }) {
 
 // One of the two pictures: a choice of the column, a canvas, and what is drawn on it.
 function newTwin(grid, columns, chosen, number) {
-  const figure = make("figure", grid), choice = make("select", figure, { ariaLabel: `Strategy of picture ${number}` });
+  const figure = make("figure", grid), choice = make("select", figure);
+  choice.setAttribute("aria-label", `Strategy of picture ${number}`);
   for (const [i, { name }] of columns.entries()) make("option", choice, { value: i, textContent: name, selected: i === chosen });
-  const canvas = make("canvas", figure, { tabIndex: 0, ariaLabel: `Picture ${number} in 3-D: arrows turn both pictures, with shift they move them, plus and minus zoom, F shows all` });
+  const canvas = make("canvas", figure, { tabIndex: 0 });
+  canvas.setAttribute("aria-label", `Picture ${number} in 3-D: arrows turn both pictures, with shift they move them, plus and minus zoom, F shows all`);
   canvas.setAttribute("role", "application");
   return { canvas, choice, columns, scene: newScene(canvas), pace: newPace(), kinds: new Set(), asked: 0 };
 }
@@ -65,7 +67,7 @@ function drawTwin(twin, { camera, box, at, count, moving, redraw }) {
   const pixels = (box[1][2] - box[0][2]) / count * much.stride * canvas.height / (2 * FIELD * camera.distance);
   const triangles = drawScene(scene, {
     ...much, matrix: matrixOf(camera, aspect, reach), light: [0, 1, 2].map(i => 0.78 * back[i] - 0.38 * right[i] + (i > 1 ? 0.4 : 0)),
-    fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: [], paper: [251, 251, 251], highest: at, until: Infinity, picked: null,
+    fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: [], paper: getComputedStyle(canvas).backgroundColor.match(/\d+/g).slice(0, 3).map(Number), highest: at, until: Infinity, picked: null,
     field: 0, range: [0, 1], ramp: new Float32Array(15), kinds: TWIN_KINDS.flatMap(([, colour]) => colour.map(v => v / 255)),
   });
   timed(pace, scene.gl, triangles, begun, redraw);
@@ -93,9 +95,10 @@ function showTwins(card) {
     twin.choice.onchange = () => fillTwin(twin, redraw);
     fillTwin(twin, redraw);
   }
-  slide(card, data.labels, state.at, at => { state.at = at; stir(); });
+  slide(card, data.labels, state.at, "Layer of the pictures in 3-D", at => { state.at = at; stir(); });
   make("p", card, { className: "lead", textContent: "Both turn together. Drag: turn · shift or right button: move · wheel: zoom · double click: show all." });
   window.addEventListener("resize", redraw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 }
 
 document.querySelectorAll(".beads").forEach(showTwins);
