@@ -98,11 +98,11 @@ function drawBeads(ctx, passes, layer) {
       stroke(1.6 * pixel, c => c);
       continue;
     }
-    stroke(wide, c => mix(c, BLACK, 0.34));
     if (hurried()) {
-      stroke(0.8 * wide, c => c);
+      stroke(0.86 * wide, c => c);
       continue;
     }
+    stroke(wide, c => mix(c, BLACK, 0.34));
     const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), 9);
     for (let k = 0; k < rings; k++) {
       const part = k / (rings - 1), width = (1 - part) * Math.max(wide - 1.6 * pixel, 0.85 * wide) + part * 0.22 * wide;
@@ -222,6 +222,7 @@ async function fetchMap(layer) {
 }
 
 function draw() {
+  sharpen(picture);
   const ctx = picture.getContext("2d"), ratio = picture.width / view.width || 1, layer = shown.layer;
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
   ctx.fillStyle = colours.stage;
