@@ -1,6 +1,6 @@
 //! `beadwright compare`: strategies and programs side by side.
 
-use crate::plan::{deposit_settings, parse_grid};
+use crate::plan::{deposit_settings, parse_grid, say_size};
 use crate::{model, profile, program, progress};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
@@ -63,6 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
+    say_size(&import.mesh, &profile)?;
     let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();
