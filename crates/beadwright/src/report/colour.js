@@ -1,6 +1,7 @@
 // What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
 
-const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
+// Violet to yellow, of rising lightness (after matplotlib's "viridis", less its ends, which would vanish on the page).
+const RAMP = [[71, 45, 123], [49, 104, 142], [32, 146, 140], [94, 201, 98], [223, 227, 24]];
 // Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
 const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];

@@ -41,8 +41,8 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
-/// Known to be told apart without red, green or blue cones (Okabe and Ito 2008), as dark as lines on white need it.
-const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#b8568f", "#a97400", "#2b8fc7"];
+/// Told apart without red, green or blue cones too (`tests/page_colours.rs`; most are Okabe and Ito's, 2008).
+const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
 /// How lines are broken: every colour comes back in another way.
 const DASHES: [&str; 3] = ["none", "9 4", "2 4"];
 

@@ -25,8 +25,14 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         metres(m.deposited_length_mm),
         mass(m.wire_mass_kg),
         escape(&profile.wire.material),
-        hours(m.total_time_s)
+        duration(m.total_time_s)
     )
+}
+
+/// Hours, minutes and seconds, without hours where there are none.
+fn duration(seconds: f64) -> String {
+    let text = hours(seconds);
+    text.strip_prefix("0 h ").map_or(text.clone(), |rest| rest.strip_prefix('0').unwrap_or(rest).to_owned())
 }
 
 /// How many of the layers hold nothing, in brackets.
@@ -56,8 +62,8 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
         (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),
         ("Travel length", metres(m.travel_length_mm)),
-        (time, hours(m.arc_time_s)),
-        ("Total time", hours(m.total_time_s)),
+        (time, duration(m.arc_time_s)),
+        ("Total time", duration(m.total_time_s)),
         (wire, format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
