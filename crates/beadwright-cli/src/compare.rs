@@ -1,6 +1,6 @@
 //! `beadwright compare`: strategies and programs side by side.
 
-use crate::plan::{deposit_settings, parse_grid};
+use crate::plan::{deposit_settings, parse_grid, say_size};
 use crate::{model, profile, program, progress};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
@@ -63,6 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
+    say_size(&import.mesh, &profile)?;
     let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();
@@ -85,7 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let part = arguments.model.part();
-    let lead = format!("Profile {}, beads of {} mm. {}", profile.name, profile.bead.width, compare::SCORE);
+    let lead = format!("Profile {}, beads of {} mm; {}", profile.name, profile.bead.width, compare::SCORE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
     for (name, layer) in names.iter().flat_map(|name| middle.map(|layer| (name, layer))) {

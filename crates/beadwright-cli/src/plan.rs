@@ -8,9 +8,9 @@ use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
 use beadwright::layer::Layer;
 use beadwright::model::together::Place;
-use beadwright::model::{Part, RepairReport};
+use beadwright::model::{Mesh, Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
-use beadwright::plan::{self, Header, PlanError, Sink, Summary};
+use beadwright::plan::{self, Expected, Header, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
 use beadwright::profile::Profile;
 use beadwright::report::{self, rows};
@@ -184,6 +184,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
     let (task, bar) = progress::task()?;
     let Build { whole: model, places, lowest_first } = arguments.build(profile.bead.width, &task)?;
+    if let Part::Mesh(import) = &model {
+        say_size(&import.mesh, &profile)?;
+    }
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let (first, last) = arguments.layers.unwrap_or((arguments.from_layer, u32::MAX));
@@ -223,6 +226,23 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     print_head(&mut say::done(false), &part, &profile, &model, &places)?;
     print_warnings(&profile, &model, &summary)?;
     Ok(print_summary(&mut say::done(false), &arguments.output, &summary, figures.as_ref(), &written)?)
+}
+
+/// Says before a large plan is made how large it will be.
+pub(crate) fn say_size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
+    let Some(Expected { layers, layer_length, .. }) = plan::expected(mesh, profile).filter(|expected| expected.large)
+    else {
+        return Ok(());
+    };
+    let (metres, kilometres) = (layer_length / 1e3, layers * layer_length / 1e6);
+    writeln!(
+        say::done(true),
+        "about {layers} layers with {metres:.0} m of bead each, {kilometres:.1} km in all, are to be planned, which may take \
+         many minutes. Where that is not meant, Ctrl-C stops it: look at bead.width ({} mm), layers.height ({} mm) and the unit \
+         of the model.",
+        profile.bead.width,
+        profile.layers.height
+    )
 }
 
 /// Why a model was not planned.

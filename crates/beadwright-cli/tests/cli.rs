@@ -584,3 +584,20 @@ fn a_studio_beside_the_command_is_started() {
     assert_eq!(run("exit 0").status.code(), Some(0));
     assert!(run("kill -9 $$").status.code().is_none());
 }
+
+#[test]
+fn a_large_plan_is_told_before_it_is_made() {
+    let folder = folder_with("cross");
+    let told = |more: &[&str]| {
+        let arguments = [&["plan", "cross.stl", "-s", "zigzag", "--no-deposit"], more].concat();
+        let output = beadwright(folder.path(), &arguments);
+        assert!(output.status.success(), "{more:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let large = told(&["--set", "bead.width=0.2"]);
+    for word in ["about 10 layers with 41 m of bead each, 0.4 km in all", "bead.width (0.2 mm)", "Ctrl-C"] {
+        assert!(large.contains(word), "{large}");
+    }
+    assert!(!told(&[]).contains("are to be planned"), "a usual plan needs no words");
+    assert!(!told(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
+}

@@ -283,7 +283,7 @@ pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
 
 /// Adds the table to a page.
 pub fn tabulate(page: &mut Sheet, entries: &[Entry]) {
-    let head: Vec<&str> = ["", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
+    let head: Vec<&str> = ["name", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
     let row = |(entry, cells): (&Entry, Vec<(String, bool)>)| {
         let first = [entry.name.clone(), entry.layers.len().to_string()].map(|text| (text, false));
         first.into_iter().chain(cells).collect()
@@ -305,9 +305,12 @@ pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
         columns.push((entry.name.clone(), maps));
     }
     let beads = |entry: &Entry| entry.layers.iter().map(|layer| layer.beads.clone()).collect();
+    page.heading("Beads in 3-D");
     page.beads(&labels, &entries.iter().map(|entry| (entry.name.clone(), beads(entry))).collect::<Vec<_>>());
+    page.heading("Heights of the metal");
     page.maps(&labels, &columns);
     if labels.len() > 1 {
+        page.heading("Layer by layer");
         page.svg(&layer_plot("Void", entries, Figures::void_percent).svg());
         page.svg(&layer_plot("Overfill", entries, Figures::overfill_percent).svg());
     }

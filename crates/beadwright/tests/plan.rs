@@ -365,3 +365,26 @@ fn extruded(outline: &[(f64, f64)], height: f64) -> Mesh {
     });
     Mesh::from_triangles(vertices, caps.chain(walls).collect()).0
 }
+
+#[test]
+fn the_length_that_is_expected_is_about_what_is_laid() {
+    for (part, angle) in [("cross", 0.0), ("cross", 45.0), ("propeller", 30.0), ("gear", 10.0), ("star", 0.0)] {
+        let mesh = example::find(part).unwrap().mesh();
+        for width in [2.0, 4.0] {
+            let mut profile = profile("cmt-al2319-kuka", "zigzag", angle);
+            profile.bead.width = width;
+            let expected = plan::expected(&mesh, &profile).unwrap();
+            let laid = plan_of(&mesh, &profile);
+            let ratio = expected.layer_length * expected.layers / laid.summary.metrics.deposited_length_mm;
+            assert!((0.85..1.2).contains(&ratio), "{part}, beads of {width} mm: {ratio:.2} of what is laid");
+            assert_eq!(expected.layers as usize, laid.layers.len(), "{part}");
+            assert!(!expected.large, "{part}");
+        }
+        let mut fine = profile("cmt-al2319-kuka", "zigzag", angle);
+        fine.bead.width = 0.2;
+        assert!(plan::expected(&mesh, &fine).unwrap().large, "{part}");
+    }
+    let mut open = example::find("cross").unwrap().mesh();
+    open.triangles.clear();
+    assert_eq!(plan::expected(&open, &profile("cmt-al2319-kuka", "zigzag", 0.0)), None);
+}

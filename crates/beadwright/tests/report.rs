@@ -233,6 +233,36 @@ fn a_warning_leads_to_its_place_and_words_are_explained() {
     });
 }
 
+/// What stands in the cell beside a word.
+fn cell<'a>(html: &'a str, name: &str) -> &'a str {
+    html.split_once(&format!("<th scope=\"row\">{name}</th><td>")).unwrap().1.split_once('<').unwrap().0
+}
+
+#[test]
+fn the_page_tells_of_what_is_laid_only() {
+    for strategy in ["raster", "zigzag", "contour", "compound", "hybrid", "loop", "hilbert"] {
+        let mut profile = profile("cmt-al2319-kuka");
+        profile.fill.strategy = strategy.to_owned();
+        for part in ["cross", "propeller"] {
+            let plan = common::planned(part, &profile);
+            let html = page(&plan, &profile);
+            let key = html.split_once("id=\"key-kind\">").unwrap().1.split_once("</div>").unwrap().0;
+            for kind in [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall] {
+                let laid = plan.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
+                assert_eq!(
+                    key.contains(&format!("</i>{}<", kind.name())),
+                    laid,
+                    "{part}, {strategy}: {kind:?} in {key}"
+                );
+            }
+            let told = cell(&html, "Strategy");
+            assert!(told.starts_with(&format!("{strategy}: ")), "{told}");
+            assert_eq!(told.contains("scan lines at"), ["raster", "zigzag", "compound"].contains(&strategy), "{told}");
+            assert_eq!(told.contains("perimeter"), ["compound", "hilbert"].contains(&strategy), "{told}");
+        }
+    }
+}
+
 #[test]
 fn the_page_loads_nothing_and_is_complete() {
     let (plan, profile) = planned("cross");

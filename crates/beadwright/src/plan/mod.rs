@@ -9,6 +9,7 @@
 //! | [`clearance`] | whether the torch has room beside parts that stand |
 //! | `parts` | parts that are welded one after another |
 //! | [`choice`] | which strategy a part is planned with |
+//! | [`expected`](expected()) | about how much a plan will hold |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
@@ -17,6 +18,7 @@
 
 pub mod choice;
 pub mod clearance;
+mod expected;
 mod filled;
 mod levels;
 mod parts;
@@ -25,6 +27,7 @@ mod relight;
 mod scan_lines;
 pub mod warm;
 
+pub use expected::{Expected, expected};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use scan_lines::{ToFill, raster_angle};

@@ -35,7 +35,7 @@ pub(super) fn section(layer: &Layer, profile: &Profile) -> String {
     }
     let pictures: String = plots(&curves, laid(layer)).iter().map(Plot::svg).collect();
     format!(
-        "<section class=\"card\"><h2>Raster angle, layer {}</h2>\n<div class=\"plots\">{pictures}</div>\n</section>",
+        "<section class=\"card\"><h2>Raster angle, layer {}</h2>\n<div class=\"plots\" role=\"group\" tabindex=\"0\" aria-label=\"Plots over the raster angle\">{pictures}</div>\n</section>",
         layer.index + 1
     )
 }

@@ -1,17 +1,19 @@
 // What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
 
-const RAMP = [[67, 80, 214], [31, 151, 212], [43, 191, 142], [180, 207, 58], [247, 166, 43]];
+// Violet to yellow, of rising lightness (after matplotlib's "viridis", less its ends, which would vanish on the page).
+const RAMP = [[71, 45, 123], [49, 104, 142], [32, 146, 140], [94, 201, 98], [223, 227, 24]];
 // Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
 const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
+// In the order of their numbers (encode.rs). Their colours are those of the studio: people without red, green or blue cones tell them apart too.
 const KINDS = ["contour", "infill", "skeleton", "wall"];
 let colours = {};
 
 function readColours() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["stage", "slice", "outline", "travel", "contour", "infill", "other", "start", "end", "mark", "text", "soft", "accent", "line", "wait"];
+  const names = ["stage", "slice", "outline", "travel", ...KINDS, "start", "end", "mark", "text", "soft", "accent", "line", "wait"];
   colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
-  colours.kinds = ["contour", "infill", "other"].map(name => channels(colours[name]));
+  colours.kinds = KINDS.map(name => channels(colours[name]));
 }
 
 const channels = hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));
@@ -50,7 +52,7 @@ const partOf = (value, [low, high]) => high > low ? (value - low) / (high - low)
 // The colour of the piece after a point; `t` is its time in the layer, s.
 function colourOf(pass, i, t, layer) {
   const choice = CHOICES[shown.by], value = choice.of?.(pass, i, t, layer);
-  return value === undefined ? colours.kinds[Math.min(pass.kind, 2)] : rampAt(partOf(value, choice.range), choice.ramp);
+  return value === undefined ? colours.kinds[pass.kind] : rampAt(partOf(value, choice.range), choice.ramp);
 }
 
 function showKey() {

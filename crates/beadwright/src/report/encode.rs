@@ -141,7 +141,7 @@ fn table(layer: &Layer, speed: &dyn Fn(f64) -> f64) -> Vec<u32> {
     table
 }
 
-/// The number of a kind in the page, where everything from 2 on is shown as "other".
+/// The number of a kind in the page.
 fn kind(kind: PassKind) -> u32 {
     match kind {
         PassKind::Contour => 0,

@@ -36,12 +36,13 @@ use crate::deposit::{Figures, Judgement};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
-use crate::pass::Pass;
+use crate::pass::{Pass, PassKind};
 use crate::plan::{Header, Summary};
 use crate::profile::Profile;
 use crate::template;
 use glam::DVec2;
 use serde_json::json;
+use std::collections::BTreeSet;
 
 /// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
 #[derive(Debug, Clone)]
@@ -57,6 +58,7 @@ pub struct Report {
     clock: Metrics,
     widths: Range,
     speeds: Range,
+    kinds: BTreeSet<PassKind>,
     figures: Option<Figures>,
     /// The layer in the middle, for plots over the raster angle.
     middle: Layer,
@@ -75,6 +77,7 @@ impl Report {
             clock: Metrics::new(profile),
             widths: Range::default(),
             speeds: Range::default(),
+            kinds: BTreeSet::new(),
             figures: None,
             middle: Layer::default(),
         }
@@ -103,6 +106,7 @@ impl Report {
         let after = now(&self.clock);
         let [arc, wait, whole] = [0, 1, 2].map(|i| after[i] - before[i]);
         self.times.push([arc, wait, (whole - arc - wait).max(0.0)]);
+        self.kinds.extend(layer.passes.iter().map(|pass| pass.kind));
         let process = self.profile.process.at_layer(layer.index);
         for piece in layer.passes.iter().flat_map(Pass::segments) {
             self.widths.take(piece.width);
@@ -118,6 +122,7 @@ impl Report {
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, repair)),
+            ("kinds", tables::kinds(&self.kinds)),
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile)),

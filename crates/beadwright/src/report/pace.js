@@ -11,7 +11,7 @@ function amount({ pieces, outside, rate }, scene, share, moving) {
   const cost = (count, mesh) => count * share * scene.meshes[mesh].faces.length / 3 * rate, most = moving ? MOVING : RESTING;
   if (cost(pieces, 0) < Math.min(most, PRETTY)) return { mesh: 0, stride: 1, outside: false };
   if (cost(pieces, 1) < most) return { mesh: 1, stride: 1, outside: false };
-  return { mesh: 2, stride: Math.min(Math.ceil(cost(outside, 2) / most), 24), outside: true };
+  return { mesh: 2, stride: Math.min(Math.ceil(cost(outside, 2) / most), 48), outside: true };
 }
 
 // How long a picture takes, without waiting for it; what was asked for meanwhile is drawn when it is done.

@@ -31,7 +31,6 @@ function tellLayer() {
     return item;
   }));
   if (more > 0) list.append(element("li", `and ${more} more`));
-  $("key-other").hidden = layer.passes.every(pass => pass.kind < 2);
 }
 
 // What the glossary of the page says of a word.

@@ -98,11 +98,11 @@ function drawBeads(ctx, passes, layer) {
       stroke(1.6 * pixel, c => c);
       continue;
     }
-    stroke(wide, c => mix(c, BLACK, 0.34));
     if (hurried()) {
-      stroke(0.8 * wide, c => c);
+      stroke(0.86 * wide, c => c);
       continue;
     }
+    stroke(wide, c => mix(c, BLACK, 0.34));
     const rings = Math.min(Math.max(Math.round(wide * view.scale / 6), 2), 9);
     for (let k = 0; k < rings; k++) {
       const part = k / (rings - 1), width = (1 - part) * Math.max(wide - 1.6 * pixel, 0.85 * wide) + part * 0.22 * wide;
@@ -138,11 +138,13 @@ function drawEnds(ctx, passes) {
   const pixel = 1 / view.scale;
   const ends = passes.filter(pass => pass.end <= shown.until);
   const mark = (x, y, radius, colour) => {
-    dot(ctx, x, y, (radius + 1.2) * pixel, "#ffffff");
+    dot(ctx, x, y, (radius + Math.min(1.2, radius / 3)) * pixel, "#ffffff");
     dot(ctx, x, y, radius * pixel, colour);
   };
-  for (const { xy } of ends) mark(xy[xy.length - 2], xy[xy.length - 1], 5, colours.end);
-  for (const { xy } of passes) mark(xy[0], xy[1], 3.2, colours.start);
+  // Many narrow passes would lie hidden below their ends.
+  const room = ({ along }) => Math.min(Math.max(0.3 * along[0][0] * view.scale, 1.5), 5);
+  for (const pass of ends) mark(pass.xy.at(-2), pass.xy.at(-1), room(pass), colours.end);
+  for (const pass of passes) mark(pass.xy[0], pass.xy[1], 0.64 * room(pass), colours.start);
 }
 
 function drawTorch(ctx, pass) {
@@ -220,6 +222,7 @@ async function fetchMap(layer) {
 }
 
 function draw() {
+  sharpen(picture);
   const ctx = picture.getContext("2d"), ratio = picture.width / view.width || 1, layer = shown.layer;
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
   ctx.fillStyle = colours.stage;

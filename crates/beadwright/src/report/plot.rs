@@ -39,7 +39,12 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 20.0;
 const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
-const COLOURS: [&str; 6] = ["#1f6fd6", "#d92d3a", "#1a9c4b", "#e8862a", "#7e57c2", "#0e7490"];
+/// Height of a row of the legend.
+const ROW: f64 = 18.0;
+/// Told apart without red, green or blue cones too (`tests/page_colours.rs`; most are Okabe and Ito's, 2008).
+const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
+/// How lines are broken: every colour comes back in another way.
+const DASHES: [&str; 3] = ["none", "9 4", "2 4"];
 
 impl Plot {
     /// The picture.
@@ -54,13 +59,17 @@ impl Plot {
         };
         let low = if self.floating { bounds.min.y } else { bounds.min.y.min(0.0) };
         let (x, y) = (Axis::new(bounds.min.x, bounds.max.x), Axis::new(low, bounds.max.y));
+        let legend = self.legend();
+        let top = TOP + legend.last().map_or(0.0, |last| last.y - legend[0].y);
         let place = |p: DVec2| {
-            let inner = SIZE - DVec2::new(LEFT + RIGHT, TOP + BOTTOM);
-            DVec2::new(LEFT + x.part(p.x) * inner.x, TOP + (1.0 - y.part(p.y)) * inner.y)
+            let inner = SIZE - DVec2::new(LEFT + RIGHT, top + BOTTOM);
+            DVec2::new(LEFT + x.part(p.x) * inner.x, top + (1.0 - y.part(p.y)) * inner.y)
         };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"system-ui, sans-serif\" font-size=\"13\" class=\"plot\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-            SIZE.x, SIZE.y
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"system-ui, sans-serif\" font-size=\"13\" class=\"plot\" role=\"img\" aria-label=\"{}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+            SIZE.x,
+            SIZE.y,
+            escape(&self.words())
         );
         text(&mut svg, DVec2::new(LEFT, 20.0), "start", &self.title, "font-weight=\"600\"");
         for (low, high, word) in &self.bands {
@@ -83,10 +92,11 @@ impl Plot {
             line(&mut svg, a, b, "#6b7280", 1.5);
             text(&mut svg, b + DVec2::new(5.0, 12.0), "start", word, "fill=\"#374151\"");
         }
-        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
+        for (i, curve) in self.curves.iter().enumerate() {
             let points: Vec<String> = curve.points.iter().map(|p| numbers(place(*p))).collect();
             svg += &format!(
-                "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"2.2\" stroke-linejoin=\"round\" points=\"{}\"/>\n",
+                "<polyline fill=\"none\" {} stroke-width=\"2.2\" stroke-linejoin=\"round\" points=\"{}\"/>\n",
+                stroke(i),
                 points.join(" ")
             );
         }
@@ -100,18 +110,46 @@ impl Plot {
             SIZE.y / 2.0,
             escape(&self.y)
         );
-        self.legend(&mut svg);
+        for (i, (curve, at)) in self.curves.iter().zip(legend).enumerate() {
+            let y = fixed(at.y - 4.0, 1);
+            let (from, to) = (fixed(at.x, 1), fixed(at.x + 22.0, 1));
+            svg += &format!("<path d=\"M{from} {y}H{to}\" {} stroke-width=\"3\"/>\n", stroke(i));
+            text(&mut svg, at + DVec2::X * 28.0, "start", &curve.name, "");
+        }
         svg + "</svg>\n"
     }
 
-    fn legend(&self, svg: &mut String) {
+    /// Where the names of the curves stand, row by row.
+    fn legend(&self) -> Vec<DVec2> {
         let mut at = DVec2::new(LEFT, 36.0);
-        for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
-            line(svg, at - DVec2::Y * 4.0, at + DVec2::new(22.0, -4.0), colour, 3.0);
-            text(svg, at + DVec2::X * 28.0, "start", &curve.name, "");
-            at.x += 46.0 + 7.2 * curve.name.chars().count() as f64;
-        }
+        let place = |curve: &Curve| {
+            let wide = 46.0 + 7.2 * curve.name.chars().count() as f64;
+            if at.x > LEFT && at.x + wide > SIZE.x {
+                at = DVec2::new(LEFT, at.y + ROW);
+            }
+            at.x += wide;
+            at - DVec2::X * wide
+        };
+        self.curves.iter().map(place).collect()
     }
+
+    /// What a reader who does not see the plot is told: the range of every curve.
+    fn words(&self) -> String {
+        let range = |curve: &Curve| {
+            let ys = || curve.points.iter().map(|p| p.y);
+            let (low, high) = (ys().fold(f64::MAX, f64::min), ys().fold(f64::MIN, f64::max));
+            format!("{} {low:.2} to {high:.2}", curve.name)
+        };
+        let drawn = self.curves.iter().filter(|curve| !curve.points.is_empty());
+        let ranges: Vec<String> = drawn.map(range).collect();
+        format!("{}: {} over {}; {}", self.title, self.y, self.x, ranges.join(", "))
+    }
+}
+
+/// Colour and dashes of a curve, by its number.
+fn stroke(number: usize) -> String {
+    let colour = COLOURS[number % COLOURS.len()];
+    format!("stroke=\"{colour}\" stroke-dasharray=\"{}\"", DASHES[number / COLOURS.len() % DASHES.len()])
 }
 
 struct Axis {

@@ -13,7 +13,7 @@ uniform vec2 span;                     // time up to which it is laid, all of it
 uniform int field;
 uniform vec2 range;
 uniform vec3 ramp[5];
-uniform vec3 kinds[3];
+uniform vec3 kinds[4];
 uniform int picked;
 out vec3 colour;
 out vec3 normal;

@@ -16,15 +16,15 @@ async function paint(canvas, text) {
 }
 
 // A slider with a label for each of its places; nothing where there is but one.
-function slide(parent, labels, first, changed) {
+function slide(parent, labels, first, name, changed) {
   if (labels.length < 2) return;
   const row = make("div", parent, { className: "slide" });
-  const slider = make("input", row, { type: "range", min: 0, max: labels.length - 1, value: first, ariaLabel: "Layer" });
-  const label = make("span", row, { textContent: labels[first] });
-  slider.oninput = () => {
-    label.textContent = labels[slider.value];
-    changed(Number(slider.value));
-  };
+  const slider = make("input", row, { type: "range", min: 0, max: labels.length - 1, value: first });
+  const label = make("span", row);
+  const tell = () => slider.setAttribute("aria-valuetext", label.textContent = labels[slider.value]);
+  slider.setAttribute("aria-label", name);
+  slider.oninput = () => { tell(); changed(Number(slider.value)); };
+  tell();
 }
 
 // What is wider than the window says so.
@@ -42,7 +42,9 @@ function showMaps(card) {
   const key = make("div", card, { className: "key" });
   const [low, high] = data.key ?? ["0", "2 × bead height"];
   key.append(low);
-  drawKey(make("canvas", key, { width: 160, height: 12 }), part => heatAt(FULL_SCALE * part));
+  const ramp = make("canvas", key, { width: 160, height: 12 });
+  ramp.setAttribute("aria-hidden", "true");
+  drawKey(ramp, part => heatAt(FULL_SCALE * part));
   key.append(high);
   if (!data.key) {
     make("i", key);
@@ -52,21 +54,28 @@ function showMaps(card) {
   const canvases = data.columns.map(column => {
     const figure = make("figure", grid), canvas = make("canvas", figure);
     make("figcaption", figure, { textContent: column.name });
+    canvas.setAttribute("role", "img");
     return canvas;
   });
   let at = data.labels.length >> 1;
-  const show = () => canvases.forEach((canvas, k) => paint(canvas, data.columns[k].maps[at]));
-  slide(card, data.labels, at, to => { at = to; show(); });
+  const show = () => canvases.forEach((canvas, k) => {
+    const { name, maps } = data.columns[k];
+    canvas.setAttribute("aria-label", `Heights of ${name}, ${data.labels[at]}`);
+    paint(canvas, maps[at]);
+  });
+  slide(card, data.labels, at, "Layer of the heights", to => { at = to; show(); });
   show();
   window.addEventListener("resize", show);
 }
 
 document.querySelectorAll(".maps").forEach(showMaps);
 
-// A click on a head sorts its table, once more the other way round; numbers by their size, all else as text.
+// The button in a head sorts its table, once more the other way round; numbers by their size, all else as text.
 function sortBy(table, column) {
   const down = table.dataset.sorted === `${column} up`;
   table.dataset.sorted = `${column} ${down ? "down" : "up"}`;
+  [...table.rows[0].cells].forEach(head => head.removeAttribute("aria-sort"));
+  table.rows[0].cells[column].setAttribute("aria-sort", down ? "descending" : "ascending");
   const rows = [...table.rows].slice(1), text = row => row.cells[column].textContent.trim();
   const number = row => text(row) === "" ? Infinity : Number(text(row));
   const compare = (a, b) => {
@@ -77,6 +86,11 @@ function sortBy(table, column) {
 }
 
 document.querySelectorAll("table").forEach(table =>
-  [...table.rows[0].cells].forEach((head, column) => { head.onclick = () => sortBy(table, column); }));
+  [...table.rows[0].cells].forEach((head, column) => {
+    const button = document.createElement("button");
+    button.append(...head.childNodes);
+    button.onclick = () => sortBy(table, column);
+    head.append(button);
+  }));
 
 document.querySelectorAll(".card.wide, .card.drawn").forEach(hintAtWide);

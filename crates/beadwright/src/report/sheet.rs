@@ -37,7 +37,7 @@ impl Sheet {
             format!("<td{}>{}</td>", if *best { " class=\"best\"" } else { "" }, escape(text))
         };
         let row = |row: &Row| format!("<tr>{}</tr>", row.iter().map(cell).collect::<String>());
-        let head: String = head.iter().map(|h| format!("<th>{}</th>", words::headed(h))).collect();
+        let head: String = head.iter().map(|h| format!("<th scope=\"col\">{}</th>", words::headed(h))).collect();
         let rows: Vec<String> = rows.iter().map(row).collect();
         self.push(&format!("<div class=\"card wide\"><table><tr>{head}</tr>\n{}</table></div>", rows.join("\n")))
     }

@@ -44,15 +44,15 @@ impl Sketch {
             size.x + 2.0 * edge,
             size.y + 2.0 * edge + 1.5 * unit,
         ];
+        let title = escape(&self.title);
         let view = numbers.map(|v| fixed(v, 3)).join(" ");
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{view}\" class=\"plot\" stroke-linejoin=\"round\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{view}\" class=\"plot\" role=\"img\" aria-label=\"{title}\" stroke-linejoin=\"round\" \
              stroke-linecap=\"round\" font-family=\"system-ui, sans-serif\">\n<text x=\"{}\" y=\"{}\" font-size=\"{}\" \
-             font-weight=\"600\">{}</text>\n{}</svg>\n",
+             font-weight=\"600\">{title}</text>\n{}</svg>\n",
             fixed(low.x, 3),
             fixed(-self.bounds.max.y - edge, 3),
             fixed(unit, 3),
-            escape(&self.title),
             self.body
         )
     }

@@ -2,8 +2,8 @@
 
 const solid = $("solid");
 // What a picture takes is in pace.js.
-const space = { ...newPace(), scene: null, camera: newCamera(), matrix: null, moving: 0 };
-const QUICK = 12, BATCH = 16;
+const space = { ...newPace(), scene: null, camera: newCamera(), matrix: null, moving: 0, hurried: false };
+const QUICK = 12, BATCH = 16, COARSE = 0.5;
 
 const solidShown = () => space.scene && $("stages").dataset.view !== "layer";
 
@@ -81,10 +81,18 @@ function lookNow(much) {
   };
 }
 
+// Fewer pixels while something moves where the processor draws both pictures: most of its time goes into them.
+function sharpen(canvas) {
+  const ratio = (window.devicePixelRatio || 1) * (hurried() && solidShown() ? COARSE : 1);
+  const [width, height] = [view.width, view.height].map(size => Math.round(size * ratio));
+  if (width && (canvas.width !== width || canvas.height !== height)) Object.assign(canvas, { width, height });
+}
+
 function drawSolid() {
   if (!solidShown() || !colours.kinds || !solid.width) return;
   space.again = space.drawing;
   if (space.drawing) return;
+  sharpen(solid);
   if (space.camera.fitted) fitSolid();
   const much = amount(space, space.scene, (shown.index + 1) / heads.length, space.moving > 0), begun = performance.now();
   timed(space, space.scene.gl, drawScene(space.scene, lookNow(much)), begun, redraw);
@@ -93,6 +101,7 @@ function drawSolid() {
 
 // Draws while something moves, coarsely if need be, and once more when it rests.
 function stirSolid() {
+  if (!space.moving) space.hurried = space.rate > 1e-4;
   clearTimeout(space.moving);
   space.moving = setTimeout(() => {
     space.moving = 0;
@@ -103,7 +112,7 @@ function stirSolid() {
 }
 
 // Whether something moves where the processor draws: then the layer is drawn plainly too.
-const hurried = () => space.moving && space.rate > 1e-4;
+const hurried = () => space.moving && space.hurried;
 
 function placeMark() {
   const { mark } = shown, at = mark && projected(space.matrix, [mark.x, mark.y, heads[mark.layer].z], solid.clientWidth, solid.clientHeight);

@@ -62,7 +62,7 @@ function strands(layer) {
   let at = 0;
   for (const { pass, index, list } of [...outside, ...inside]) {
     const n = list.length, put = (i, begins) => {
-      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)], tags = Math.min(pass.kind, 2) + (begins ? 4 : 0);
+      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)], tags = pass.kind + (begins ? 4 : 0);
       const record = [pass.xy[2 * i], pass.xy[2 * i + 1], pass.times[i], width, speed, pass.celsius ?? 0, tags, index];
       for (const number of record) numbers[at++] = number;
     };

@@ -8,9 +8,11 @@ use crate::fill::{ContourOrder, RasterSpacing};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::number::hours;
+use crate::pass::PassKind;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
 use crate::warning::Warning;
+use std::collections::BTreeSet;
 
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
@@ -23,8 +25,14 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         metres(m.deposited_length_mm),
         mass(m.wire_mass_kg),
         escape(&profile.wire.material),
-        hours(m.total_time_s)
+        duration(m.total_time_s)
     )
+}
+
+/// Hours, minutes and seconds, without hours where there are none.
+fn duration(seconds: f64) -> String {
+    let text = hours(seconds);
+    text.strip_prefix("0 h ").map_or(text.clone(), |rest| rest.strip_prefix('0').unwrap_or(rest).to_owned())
 }
 
 /// How many of the layers hold nothing, in brackets.
@@ -54,8 +62,8 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
         (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),
         ("Travel length", metres(m.travel_length_mm)),
-        (time, hours(m.arc_time_s)),
-        ("Total time", hours(m.total_time_s)),
+        (time, duration(m.arc_time_s)),
+        ("Total time", duration(m.total_time_s)),
         (wire, format!("{:.2} m · {}", m.wire_length_m, mass(m.wire_mass_kg))),
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
@@ -112,34 +120,51 @@ fn overlap(overlap: Overlap) -> &'static str {
     }
 }
 
+/// What a strategy lays, with those values of the profile that it heeds.
 fn strategy(name: &str, profile: &Profile) -> String {
     let fill = &profile.fill;
     let order = match fill.contour_order {
         ContourOrder::OutsideIn => "outside in",
         ContourOrder::InsideOut => "inside out",
     };
+    let perimeters = count(fill.perimeters as usize, "perimeter", "perimeters");
+    let laid = match name {
+        "raster" | "zigzag" => scan_lines(profile),
+        "contour" => order.to_owned(),
+        "compound" => format!("{perimeters} {order}, {}", scan_lines(profile)),
+        "hilbert" => format!("{perimeters} {order}, a Hilbert curve inside"),
+        "partition" => format!("{perimeters} {order}, cells with scan lines of their own direction inside"),
+        "loop" => "rings that fill the layer evenly, joined into one path".to_owned(),
+        "hybrid" => "contours, and the pockets between them filled along their middle".to_owned(),
+        "spiral" => "contours joined into one path".to_owned(),
+        "fermat" => "connected Fermat spirals".to_owned(),
+        "mat" => "rings from the middle outwards".to_owned(),
+        "wall" => "along the middle of thin walls".to_owned(),
+        _ => return name.to_owned(),
+    };
+    format!("{name}: {laid}")
+}
+
+fn scan_lines(profile: &Profile) -> String {
+    let fill = &profile.fill;
     let spacing = match fill.raster_spacing {
         RasterSpacing::Even => "evenly spread",
         RasterSpacing::Fitted => "evenly spread between long edges",
         RasterSpacing::Exact => "one stepover apart",
     };
-    let turn = match fill.raster_turn {
-        RasterTurn::Fixed => String::new(),
-        RasterTurn::Alternate => ", turned by 90° on every second layer".to_owned(),
-        RasterTurn::Increment => format!(", turned by {}° a layer", fill.raster_increment),
-        RasterTurn::Best => String::new(),
+    let angle = match fill.raster_turn {
+        RasterTurn::Fixed => format!("at {}°", fill.raster_angle),
+        RasterTurn::Alternate => format!("at {}°, turned by 90° on every second layer", fill.raster_angle),
+        RasterTurn::Increment => format!("at {}°, turned by {}° a layer", fill.raster_angle, fill.raster_increment),
+        RasterTurn::Best => "at the quickest angle for every two layers".to_owned(),
     };
-    let raster = match fill.raster_turn {
-        RasterTurn::Best => format!("scan lines at the quickest angle for every two layers, {spacing}"),
-        _ => format!("scan lines at {}°{turn}, {spacing}", fill.raster_angle),
-    };
-    match name {
-        "contour" => format!("contour, {order}"),
-        "compound" => {
-            format!("compound, {} {order}, {raster}", count(fill.perimeters as usize, "perimeter", "perimeters"))
-        }
-        _ => format!("{name}, {raster}"),
-    }
+    format!("scan lines {angle}, {spacing}")
+}
+
+/// The colours of the kinds of passes that there are.
+pub(super) fn kinds(kinds: &BTreeSet<PassKind>) -> String {
+    let item = |kind: &PassKind| format!("<span><i class=\"swatch {0}\"></i>{0}</span>", kind.name());
+    kinds.iter().map(item).collect()
 }
 
 /// What the model consists of.
@@ -158,7 +183,7 @@ pub(super) fn model(repair: &RepairReport) -> String {
 /// The names of the files that were written.
 pub(super) fn files(files: &[String]) -> String {
     let items = files.iter().map(|name| format!("<li>{}</li>", escape(name))).collect::<Vec<_>>().join("\n");
-    format!("<ul class=\"files\">\n{items}\n</ul>")
+    format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a list that scrolls\">\n{items}\n</ul>")
 }
 
 /// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
@@ -198,7 +223,9 @@ fn link(warning: &Warning) -> String {
 
 fn table(rows: &[(&str, String)]) -> String {
     let name = |name: &str| name.split(", ").map(hinted).collect::<Vec<_>>().join(", ");
-    let row = |(key, value): &(&str, String)| format!("<tr><th>{}</th><td>{}</td></tr>", name(key), escape(value));
+    let row = |(key, value): &(&str, String)| {
+        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", name(key), escape(value))
+    };
     format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
 }
 

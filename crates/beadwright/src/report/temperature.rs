@@ -118,7 +118,7 @@ impl Scale {
     fn svg(&self) -> String {
         const STEPS: usize = 40;
         let mut svg = String::from(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 44\" font-family=\"system-ui, sans-serif\" font-size=\"13\">\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 44\" role=\"img\" aria-label=\"Colours of temperatures\" font-family=\"system-ui, sans-serif\" font-size=\"13\">\n",
         );
         for i in 0..STEPS {
             let at = self.low + (self.high - self.low) * (i as f64 + 0.5) / STEPS as f64;
@@ -140,10 +140,11 @@ fn picture(layer: &Layer, heat: &LayerHeat, spacing: f64, scale: &Scale) -> Stri
     let Some(bounds) = Bounds::of(points.chain(outlines)) else { return String::new() };
     let unit = bounds.size().max_element().max(1e-3) / 100.0;
     let (low, size) = (bounds.min - 6.0 * unit, bounds.size() + 12.0 * unit);
+    let title = escape(&format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z));
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{:.3} {:.3} {:.3} {:.3}\" font-family=\"system-ui, sans-serif\" \
-         stroke-linecap=\"round\" stroke-linejoin=\"round\" fill=\"none\">\n<text x=\"{:.3}\" y=\"{:.3}\" \
-         font-size=\"{:.3}\" fill=\"currentColor\">{}</text>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{:.3} {:.3} {:.3} {:.3}\" role=\"img\" aria-label=\"{title}\" \
+         font-family=\"system-ui, sans-serif\" stroke-linecap=\"round\" stroke-linejoin=\"round\" fill=\"none\">\n<text x=\"{:.3}\" y=\"{:.3}\" \
+         font-size=\"{:.3}\" fill=\"currentColor\">{title}</text>\n",
         low.x,
         -(low.y + size.y) - 5.0 * unit,
         size.x,
@@ -151,7 +152,6 @@ fn picture(layer: &Layer, heat: &LayerHeat, spacing: f64, scale: &Scale) -> Stri
         low.x + unit,
         -(low.y + size.y) - unit,
         3.6 * unit,
-        escape(&format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z))
     );
     for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
         let width = 0.8 * pass.width.max();

@@ -1,6 +1,7 @@
 // Beads of any two strategies in 3-D, side by side: one camera, one slider.
 
-const KIND_COLOURS = [[47, 120, 212], [234, 143, 53], [126, 87, 194]];
+// By their numbers (encode.rs).
+const TWIN_KINDS = [["contour", [52, 100, 230]], ["infill", [252, 168, 48]], ["skeleton", [14, 194, 140]], ["wall", [170, 133, 204]]];
 
 // The layers of a column with where they begin, and the box around all of them.
 function readColumn({ name, layers }) {
@@ -13,21 +14,37 @@ function readColumn({ name, layers }) {
 
 // One of the two pictures: a choice of the column, a canvas, and what is drawn on it.
 function newTwin(grid, columns, chosen, number) {
-  const figure = make("figure", grid), choice = make("select", figure, { ariaLabel: `Strategy of picture ${number}` });
+  const figure = make("figure", grid), choice = make("select", figure);
+  choice.setAttribute("aria-label", `Strategy of picture ${number}`);
   for (const [i, { name }] of columns.entries()) make("option", choice, { value: i, textContent: name, selected: i === chosen });
-  const canvas = make("canvas", figure, { tabIndex: 0, ariaLabel: `Picture ${number} in 3-D: arrows turn both pictures, with shift they move them, plus and minus zoom, F shows all` });
+  const canvas = make("canvas", figure, { tabIndex: 0 });
+  canvas.setAttribute("aria-label", `Picture ${number} in 3-D: arrows turn both pictures, with shift they move them, plus and minus zoom, F shows all`);
   canvas.setAttribute("role", "application");
-  return { canvas, choice, columns, scene: newScene(canvas), pace: newPace(), asked: 0 };
+  return { canvas, choice, columns, scene: newScene(canvas), pace: newPace(), kinds: new Set(), asked: 0 };
+}
+
+// The colours of the kinds that the two pictures show; what it gives back looks which those are.
+function newKey(card, twins) {
+  const key = make("div", card, { className: "key" });
+  const items = TWIN_KINDS.map(([word, colour]) => {
+    const item = make("span", key, { hidden: true });
+    make("i", item).style.background = `rgb(${colour.join(" ")})`;
+    item.append(word);
+    return item;
+  });
+  return () => items.forEach((item, kind) => { item.hidden = !twins.some(({ kinds }) => kinds.has(kind)); });
 }
 
 // Reads all layers of the column chosen; a later choice stops it.
 async function fillTwin(twin, redraw) {
   const asked = ++twin.asked, { layers, heads } = twin.columns[twin.choice.value];
   Object.assign(twin.pace, { pieces: 0, outside: 0 });
+  twin.kinds.clear();
   clearLayers(twin.scene);
   for (const [i, text] of layers.entries()) {
     const layer = await readLayer(text, heads[i]);
     if (asked !== twin.asked) return;
+    for (const { kind } of layer.passes) twin.kinds.add(kind);
     const found = strands(layer), { z: top, height } = heads[i];
     twin.pace.pieces += found.count;
     twin.pace.outside += found.outside;
@@ -50,8 +67,8 @@ function drawTwin(twin, { camera, box, at, count, moving, redraw }) {
   const pixels = (box[1][2] - box[0][2]) / count * much.stride * canvas.height / (2 * FIELD * camera.distance);
   const triangles = drawScene(scene, {
     ...much, matrix: matrixOf(camera, aspect, reach), light: [0, 1, 2].map(i => 0.78 * back[i] - 0.38 * right[i] + (i > 1 ? 0.4 : 0)),
-    fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: [], paper: [251, 251, 251], highest: at, until: Infinity, picked: null,
-    field: 0, range: [0, 1], ramp: new Float32Array(15), kinds: KIND_COLOURS.flat().map(v => v / 255),
+    fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: [], paper: getComputedStyle(canvas).backgroundColor.match(/\d+/g).slice(0, 3).map(Number), highest: at, until: Infinity, picked: null,
+    field: 0, range: [0, 1], ramp: new Float32Array(15), kinds: TWIN_KINDS.flatMap(([, colour]) => colour.map(v => v / 255)),
   });
   timed(pace, scene.gl, triangles, begun, redraw);
 }
@@ -65,9 +82,9 @@ function showTwins(card) {
     return;
   }
   const box = [0, 1, 2].reduce(([low, high], i) => [[...low, Math.min(...columns.map(c => c.low[i]))], [...high, Math.max(...columns.map(c => c.high[i]))]], [[], []]);
-  const state = { camera: newCamera(), box, at: count - 1, count, moving: 0, redraw: () => redraw() };
+  const tellKinds = newKey(card, twins), state = { camera: newCamera(), box, at: count - 1, count, moving: 0, redraw: () => redraw() };
   let waiting = 0;
-  const redraw = () => { waiting ||= requestAnimationFrame(() => { waiting = 0; twins.forEach(twin => drawTwin(twin, state)); }); };
+  const redraw = () => { waiting ||= requestAnimationFrame(() => { waiting = 0; tellKinds(); twins.forEach(twin => drawTwin(twin, state)); }); };
   const stir = () => {
     clearTimeout(state.moving);
     state.moving = setTimeout(() => { state.moving = 0; redraw(); }, 250);
@@ -78,14 +95,10 @@ function showTwins(card) {
     twin.choice.onchange = () => fillTwin(twin, redraw);
     fillTwin(twin, redraw);
   }
-  const key = make("div", card, { className: "key" });
-  for (const [i, word] of ["contour", "infill", "skeleton, wall"].entries()) {
-    make("i", key).style.background = `rgb(${KIND_COLOURS[i].join(" ")})`;
-    key.append(word);
-  }
-  slide(card, data.labels, state.at, at => { state.at = at; stir(); });
+  slide(card, data.labels, state.at, "Layer of the pictures in 3-D", at => { state.at = at; stir(); });
   make("p", card, { className: "lead", textContent: "Both turn together. Drag: turn · shift or right button: move · wheel: zoom · double click: show all." });
   window.addEventListener("resize", redraw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 }
 
 document.querySelectorAll(".beads").forEach(showTwins);

@@ -1,0 +1,29 @@
+//! About how much a plan will hold, before anything is planned.
+
+use crate::model::Mesh;
+use crate::profile::Profile;
+
+/// Path in a layer, in bead widths, from which strategies that weigh every place of a layer (`loop`) take minutes.
+const LONG_LAYER: f64 = 25_000.0;
+/// Path of the whole plan, in bead widths: files of tens of megabytes.
+const LONG_PLAN: f64 = 5e6;
+
+/// What a solid will take if beads fill it one stepover apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// Number of layers.
+    pub layers: f64,
+    /// Length of the beads of a layer, on average, mm.
+    pub layer_length: f64,
+    /// Whether so much is seldom meant.
+    pub large: bool,
+}
+
+/// What a solid will take; `None` where its volume is not known, since the surface is not closed.
+pub fn expected(mesh: &Mesh, profile: &Profile) -> Option<Expected> {
+    let layers = (mesh.size().z / profile.layers.height).max(1.0).round();
+    let length = Some(mesh.volume()).filter(|volume| *volume > 0.0)? / (profile.layers.height * profile.stepover());
+    let widths = length / profile.bead.width;
+    let large = widths > LONG_PLAN || widths > LONG_LAYER * layers;
+    Some(Expected { layers, layer_length: length / layers, large })
+}
