@@ -5,8 +5,8 @@ use crate::profile::Profile;
 
 /// Path in a layer, in bead widths, from which strategies that weigh every place of a layer (`loop`) take minutes.
 const LONG_LAYER: f64 = 25_000.0;
-/// Path of the whole plan, in bead widths: files of tens of megabytes.
-const LONG_PLAN: f64 = 5e6;
+/// Path of the whole plan, in bead widths: files of a hundred megabytes.
+const LONG_PLAN: f64 = 5e7;
 
 /// What a solid will take if beads fill it one stepover apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
