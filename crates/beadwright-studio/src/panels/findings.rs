@@ -54,7 +54,7 @@ fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
     let [first, rest @ ..] = group else { return };
     one(studio, ui, first);
     if let Some(last) = rest.last() {
-        let title = format!("{} × {}", group.len(), layers(first, last));
+        let title = format!("{} {}{}", group.len(), studio.t("alike"), layers(studio, first, last));
         CollapsingHeader::new(title).id_salt((first.check, first.layer, first.pass, &first.text)).show(ui, |ui| {
             rest.iter().take(LISTED).for_each(|finding| one(studio, ui, finding));
         });
@@ -84,11 +84,11 @@ fn grouped<'a, 'b>(findings: &'b [&'a Finding]) -> Vec<&'b [&'a Finding]> {
     findings.chunk_by(|a, b| a.layer.is_some() == b.layer.is_some() && words(a) == words(b)).collect()
 }
 
-/// The layers from one finding to another, counted from 1.
-fn layers(first: &Finding, last: &Finding) -> String {
+/// The layers from one finding to another, counted from 1, in brackets.
+fn layers(studio: &Studio, first: &Finding, last: &Finding) -> String {
     match (first.layer, last.layer) {
-        (Some(a), Some(b)) if a != b => format!("{}–{}", a + 1, b + 1),
-        (Some(a), _) => format!("{}", a + 1),
+        (Some(a), Some(b)) if a != b => format!(" ({} {}–{})", studio.t("total layers"), a + 1, b + 1),
+        (Some(a), _) => format!(" ({} {})", studio.t("layer"), a + 1),
         _ => String::new(),
     }
 }

@@ -159,7 +159,7 @@ fn findings_are_told_beside_done_and_grouped() {
     click(&mut harness, &format!("Findings: {count}"));
     let voids = harness.state().plan().findings.iter().flatten().filter(|finding| finding.check == "void");
     let layers: Vec<usize> = voids.filter_map(|finding| finding.layer).collect();
-    let title = format!("{} × {}–{}", layers.len(), layers[0] + 1, layers.last().unwrap() + 1);
+    let title = format!("{} alike (layers {}–{})", layers.len(), layers[0] + 1, layers.last().unwrap() + 1);
     assert!(sees(&harness, &title), "{title} is not on the screen");
     assert!(sees(&harness, &format!("void ({}, worth a look)", layers.len())));
 }
