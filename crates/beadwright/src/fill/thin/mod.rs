@@ -75,7 +75,7 @@ const ROOMY: f64 = 0.8;
 const NEARLY_DOUBLE: f64 = 0.94;
 /// The middle of a wall is followed this far into the thick part, in bead widths.
 const TAIL: f64 = 1.5;
-/// Samples of the medial axis per bead width; a wall may end so much early.
+/// Samples of the medial axis per bead width; a wall begins and ends at one of them.
 const SAMPLES: f64 = 6.0;
 
 /// Walls from this thickness on, in bead widths, are left to the strategy if all its beads have the same width.
