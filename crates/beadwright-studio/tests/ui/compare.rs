@@ -64,7 +64,7 @@ fn a_finding_leads_to_its_bead() {
     // All that say the same are one line, which opens.
     let same: Vec<_> = findings.iter().filter(|f| f.check == finding.check).collect();
     let ends = [same[0], same[same.len() - 1]].map(|f| f.layer.unwrap() + 1);
-    click(&mut harness, &format!("{} × {}–{}", same.len(), ends[0], ends[1]));
+    click(&mut harness, &format!("{} alike (layers {}–{})", same.len(), ends[0], ends[1]));
     harness.run_steps(20);
     // A sentence begins with a capital letter.
     click(&mut harness, &finding.sentence().replacen("layer", "Layer", 1));
