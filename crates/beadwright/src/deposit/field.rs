@@ -129,6 +129,16 @@ impl<'a, H: Height> Band<'a, H> {
         self.heights.chunks(self.columns.len().max(1)).enumerate().map(|(k, row)| (self.first + k, row))
     }
 
+    /// The parts of stretches of columns, from left to right, that lie in the band, counted from the band's first.
+    pub(super) fn parts<'s>(
+        &self,
+        stretches: &'s [Range<usize>],
+    ) -> impl Iterator<Item = Range<usize>> + use<'s, '_, 'a, H> {
+        let first = stretches.partition_point(|stretch| stretch.end <= self.columns.start);
+        let reaching = stretches[first..].iter().take_while(|stretch| stretch.start < self.columns.end);
+        reaching.map(|stretch| self.within(stretch))
+    }
+
     /// The part of some columns of the grid that lies in the band, counted from the band's first.
     pub(super) fn within(&self, columns: &Range<usize>) -> Range<usize> {
         let at = |column: usize| column.clamp(self.columns.start, self.columns.end) - self.columns.start;

@@ -51,9 +51,9 @@ impl Figures {
         let metal = |heights: &[H]| heights.iter().map(|&height| u32::from(height > H::of(OUTSIDE * h))).sum::<u32>();
         let mut outside = 0_i64;
         for (row, heights) in band.rows() {
-            mask.core(band.grid, row).for_each(|columns| tally.add(&heights[band.within(&columns)]));
-            let allowed = |columns| i64::from(metal(&heights[band.within(&columns)]));
-            outside += i64::from(metal(heights)) - mask.allowed(band.grid, row).map(allowed).sum::<i64>();
+            band.parts(mask.core(row)).for_each(|columns| tally.add(&heights[columns]));
+            let allowed = band.parts(mask.allowed(row)).map(|columns| i64::from(metal(&heights[columns])));
+            outside += i64::from(metal(heights)) - allowed.sum::<i64>();
         }
         let cell = band.grid.step * band.grid.step;
         Self { outside: outside as f64 * cell, ..tally.figures(cell) }

@@ -33,7 +33,9 @@ use glam::DVec2;
 use patch::Run;
 use picture::Canvas;
 use planar::{Bounds, Join, Polygon, Region};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::mem::take;
 use std::ops::Range;
 
 /// Below this fraction of the nominal bead height a point is a void.
@@ -188,9 +190,9 @@ impl Judge {
         seen.iter().for_each(|s| figures.add(&s.figures));
         figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
         let work = seen.iter().map(|s| s.work).sum();
-        let (runs, painted): (Vec<_>, Vec<_>) = seen.into_iter().map(|s| (s.runs, s.picture)).unzip();
-        let (voids, peaks) = patch::patches(runs, &grid, layer, &nominal);
-        let picture = eye.canvas.map(|canvas| canvas.picture(painted.into_iter().flatten()));
+        let runs: Vec<_> = seen.par_iter_mut().flat_map_iter(|s| patch::in_order(take(&mut s.runs))).collect();
+        let (voids, peaks) = patch::patches(&runs, &grid, layer, &nominal);
+        let picture = eye.canvas.map(|canvas| canvas.picture(seen.into_iter().filter_map(|s| s.picture)));
         Judgement { figures, voids, peaks, picture, work }
     }
 }
@@ -276,37 +278,39 @@ fn grid_of(layer: &Layer, strokes: &[Stroke], step: f64) -> Option<Grid> {
     Some(Grid::covering(&bounds, widest / 2.0 + step, step))
 }
 
-/// The outline less its rim, and the area where metal is allowed, as crossings of the grid's rows.
+/// The outline less its rim, and the area where metal is allowed, as the columns that lie in them, row after row.
 pub(crate) struct Mask {
-    core: Vec<Vec<f64>>,
-    allowed: Vec<Vec<f64>>,
+    core: Vec<Vec<Range<usize>>>,
+    allowed: Vec<Vec<Range<usize>>>,
 }
 
 impl Mask {
     fn new(islands: &[Polygon], settings: &DepositSettings, grid: &Grid) -> Self {
         let whole = Region::from_normalised(islands.to_vec());
-        let rows = |region: &Region| region.rows(grid.place(0, 0).y, grid.step, grid.rows);
+        let rows = |region: &Region| {
+            let crossings = region.rows(grid.place(0, 0).y, grid.step, grid.rows);
+            crossings.iter().map(|crossings| columns(crossings, grid).collect()).collect()
+        };
         let core = rows(&whole.offset(-RIM * settings.nominal.bead.width, Join::ROUND));
         let allowance = settings.machining_allowance;
         let allowed = if allowance > 0.0 { rows(&whole.offset(allowance, Join::ROUND)) } else { rows(&whole) };
         Self { core, allowed }
     }
 
-    /// The columns of a row inside the outline less its rim.
-    fn core<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
-        columns(&self.core, grid, row)
+    /// The columns of a row inside the outline less its rim, from left to right.
+    fn core(&self, row: usize) -> &[Range<usize>] {
+        self.core.get(row).map_or(&[], Vec::as_slice)
     }
 
-    /// The columns of a row where metal may be.
-    fn allowed<'a>(&'a self, grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
-        columns(&self.allowed, grid, row)
+    /// The columns of a row where metal may be, from left to right.
+    fn allowed(&self, row: usize) -> &[Range<usize>] {
+        self.allowed.get(row).map_or(&[], Vec::as_slice)
     }
 }
 
-fn columns<'a>(crossings: &'a [Vec<f64>], grid: &'a Grid, row: usize) -> impl Iterator<Item = Range<usize>> + 'a {
-    let pairs = crossings.get(row).map_or(&[][..], Vec::as_slice).chunks_exact(2);
+fn columns<'a>(crossings: &'a [f64], grid: &'a Grid) -> impl Iterator<Item = Range<usize>> + 'a {
     let mut end = 0;
-    let columns = pairs.map(move |pair| {
+    let columns = crossings.chunks_exact(2).map(move |pair| {
         let columns = grid.columns_between(pair[0], pair[1]);
         // Where two outlines touch on a grid point it counts once.
         let start = columns.start.max(end);

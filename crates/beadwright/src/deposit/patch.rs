@@ -92,8 +92,7 @@ pub(super) fn runs<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal
     let stands_out = |height: &H| *height < void || *height > overfill;
     let mut runs: Vec<Run> = Vec::new();
     for (row, heights) in band.rows() {
-        for columns in mask.core(band.grid, row) {
-            let columns = band.within(&columns);
+        for columns in band.parts(mask.core(row)) {
             let begun = runs.len();
             for (k, heights) in heights[columns.clone()].chunks(LOOK).enumerate() {
                 if !heights.iter().fold(false, |any, height| any | stands_out(height)) {
@@ -109,20 +108,19 @@ pub(super) fn runs<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal
     runs
 }
 
-/// The runs of a square of ridges, row after row.
+/// The runs of a square of ridges, in any order.
 pub(super) fn runs_of_ridges(square: &Square, ridges: &Ridges, grid: &Grid) -> Vec<Run> {
     let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
-    let first = square.columns.start;
+    let (rows, columns) = (square.rows.start, square.columns.start);
     let along = square.along * grid.step;
-    let run = |row: usize| {
-        let from_middle = DVec2::new(first as f64 - middle(&square.columns), row as f64 - middle(&square.rows));
-        let stripes = ridges.stripes(along.perp_dot(from_middle), -along.y, square.columns.len());
-        stripes.map(move |(overfilled, points, at, extreme)| {
-            let columns = first + points.start..first + points.end;
-            Run { overfilled, row, columns, extreme, at: first + at }
-        })
-    };
-    square.rows.clone().flat_map(run).collect()
+    let from_middle = DVec2::new(columns as f64 - middle(&square.columns), rows as f64 - middle(&square.rows));
+    let places = (along.perp_dot(from_middle), -along.y, along.x);
+    let mut runs = Vec::new();
+    ridges.stripes(places, (square.rows.len(), square.columns.len()), |overfilled, row, points, at, extreme| {
+        let found = columns + points.start..columns + points.end;
+        runs.push(Run { overfilled, row: rows + row, columns: found, extreme, at: columns + at });
+    });
+    runs
 }
 
 /// Adds a point to the last run if that began at `begun` or later and reaches it, or begins another.
@@ -138,11 +136,15 @@ fn extend(runs: &mut Vec<Run>, begun: usize, row: usize, at: usize, height: f64,
     }
 }
 
-/// Runs of all bands joined where they touch: voids, the largest first, and peaks, the highest first.
-pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
-    let mut runs: Vec<Run> = runs.into_iter().flatten().collect();
-    runs.sort_by_key(|run| (run.row, run.columns.start));
+/// Puts runs in the order of the rows, and joins those that go on at the border of two parts.
+pub(super) fn in_order(mut runs: Vec<Run>) -> Vec<Run> {
+    runs.sort_unstable_by_key(|run| (run.row, run.columns.start));
     runs.dedup_by(|next, run| run.takes(next));
+    runs
+}
+
+/// Runs in the order of the rows joined where they touch: voids, the largest first, and peaks, the highest first.
+pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
     let mut parents: Vec<usize> = (0..runs.len()).collect();
     // Both rows are walked once: each run is compared with the runs of the row before that end after it begins.
     let (mut row_start, mut last_row) = (0, 0..0);
@@ -163,22 +165,25 @@ pub(super) fn patches(runs: Vec<Vec<Run>>, grid: &Grid, layer: &Layer, nominal: 
         }
     }
     let cell = grid.step * grid.step;
-    let mut found: Vec<Option<(bool, Patch)>> = vec![None; runs.len()];
+    // The first run of a patch is its root.
+    let mut found: Vec<(bool, Patch)> = Vec::new();
+    let mut patch_of = vec![0; runs.len()];
     for (i, run) in runs.iter().enumerate() {
         let area = run.columns.len() as f64 * cell;
         let (place, height) = (grid.place(run.at, run.row), run.extreme);
-        let patch = Patch { layer: layer.index, place, height, area, cause: None };
-        match &mut found[root(&mut parents, i)] {
-            Some((overfilled, known)) => {
-                known.area += area;
-                if (height > known.height) == *overfilled {
-                    (known.place, known.height) = (place, height);
-                }
-            }
-            none => *none = Some((run.overfilled, patch)),
+        let first = root(&mut parents, i);
+        if first == i {
+            patch_of[i] = found.len();
+            found.push((run.overfilled, Patch { layer: layer.index, place, height, area, cause: None }));
+            continue;
+        }
+        let (overfilled, known) = &mut found[patch_of[first]];
+        known.area += area;
+        if (height > known.height) == *overfilled {
+            (known.place, known.height) = (place, height);
         }
     }
-    let (mut peaks, mut voids): (Vec<_>, Vec<_>) = found.into_iter().flatten().partition(|(overfilled, _)| *overfilled);
+    let (mut peaks, mut voids): (Vec<_>, Vec<_>) = found.into_iter().partition(|(overfilled, _)| *overfilled);
     voids.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
     peaks.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
     let plain = |(_, patch)| patch;

@@ -79,14 +79,24 @@ impl Canvas {
 
     /// Adds the points of a band, and of the voids in it.
     pub(super) fn paint<H: Height>(&self, strip: &mut Strip, band: &Band<'_, H>, runs: &[Run]) {
-        let (metal, scale) = (H::of(NO_METAL), (1.0 / self.unit) as f32);
-        for (row, heights) in band.rows() {
-            let line = self.line(strip, row);
-            for (pixel, columns) in self.pixels(&band.columns) {
-                for &height in &heights[columns.start - band.columns.start..columns.end - band.columns.start] {
-                    line[pixel].sum += (height.mm() as f32 * scale).min(STEPS);
-                    line[pixel].points += u32::from(height > metal);
+        let (metal, scale, width) = (H::of(NO_METAL), (1.0 / self.unit) as f32, band.columns.len());
+        let rows = band.first..band.first + band.heights.len() / width.max(1);
+        let (mut sums, mut points) = (vec![0.0_f32; width], vec![0_u32; width]);
+        for (_, lines) in self.pixels(&rows) {
+            // Down the columns first: these sums go side by side.
+            sums.fill(0.0);
+            points.fill(0);
+            for heights in lines.clone().map(|row| &band.heights[(row - band.first) * width..][..width]) {
+                for ((sum, points), &height) in sums.iter_mut().zip(&mut points).zip(heights) {
+                    *sum += (height.mm() as f32 * scale).min(STEPS);
+                    *points += u32::from(height > metal);
                 }
+            }
+            let line = self.line(strip, lines.start);
+            for (pixel, columns) in self.pixels(&band.columns) {
+                let columns = columns.start - band.columns.start..columns.end - band.columns.start;
+                line[pixel].sum += sums[columns.clone()].iter().sum::<f32>();
+                line[pixel].points += points[columns].iter().sum::<u32>();
             }
         }
         self.paint_voids(strip, runs);

@@ -5,6 +5,7 @@
 //! 2 − s² − (δ − s)², which is least at its ends, 1 − (δ − 1)², and greatest in the middle, 2 − δ²/2.
 
 use super::stroke::Frame;
+use super::tiles::SIDE;
 use super::{LOW, OVERFILL, VOID, field};
 use glam::DVec2;
 use std::ops::Range;
@@ -19,7 +20,7 @@ const LANES: usize = 8;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ridges {
     /// Where the crests lie across the beads, in half bead widths from the middle of the square, rising.
-    crests: [f32; MOST],
+    crests: [f64; MOST],
     count: usize,
     half_width: f64,
     height: f64,
@@ -32,15 +33,16 @@ pub(super) struct Ridges {
     /// Least and greatest height, mm.
     pub(super) least: f64,
     pub(super) greatest: f64,
-    stripes: [Stripe; MOST_STRIPES],
-    stripe_count: usize,
+    /// Whether voids or humps are left between the beads.
+    striped: bool,
+    /// The nominal bead height in heights of these beads.
+    scale: f64,
 }
-
-/// More voids and humps beside each other are not taken together.
-const MOST_STRIPES: usize = 2 * MOST;
 
 /// A row whose points differ by less than this across, in half bead widths, runs along the beads.
 const ALONG: f64 = 1e-9;
+/// Added and taken away again, this rounds to a whole number: 1.5 · 2⁵².
+const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Where the beads leave a void or a hump between them: places across in half bead widths.
 #[derive(Debug, Clone, Copy, Default)]
@@ -50,6 +52,62 @@ struct Stripe {
     /// Where it is deepest or highest.
     extreme: f64,
     overfilled: bool,
+}
+
+/// The points of a square, as far across as in [`Ridges::stripes`], but in half bead widths.
+struct Lines {
+    start: f64,
+    step: f64,
+    row_step: f64,
+    rows: usize,
+    points: usize,
+}
+
+impl Lines {
+    /// Calls `found` with each row that has points in a stripe: the row, the points, the one nearest to the extreme and where
+    /// that lies across.
+    fn meet(&self, stripe: &Stripe, mut found: impl FnMut(usize, Range<usize>, usize, f64)) {
+        let along = self.step.abs() < ALONG;
+        let mut met = if along { u32::MAX } else { self.rows_met(stripe) };
+        while met != 0 {
+            let row = met.trailing_zeros() as usize;
+            met &= met - 1;
+            if row >= self.rows {
+                break;
+            }
+            let start = self.start + row as f64 * self.row_step;
+            let at = |place: f64| ((place - start) / self.step).clamp(-1.0, self.points as f64);
+            let inside = stripe.low < start && start < stripe.high;
+            let (a, b) = match (along, inside) {
+                (true, false) => continue,
+                (true, true) => (-1.0, self.points as f64),
+                (false, _) => (at(stripe.low), at(stripe.high)),
+            };
+            let (first, end) = ((a.min(b) + 1.0) as u32, a.max(b));
+            if f64::from(first) < end {
+                let points = first as usize..field::up(end);
+                let extreme = (at(stripe.extreme).max(0.0).round() as usize).clamp(points.start, points.end - 1);
+                found(row, points, extreme, start + extreme as f64 * self.step);
+            }
+        }
+    }
+
+    /// The rows, one bit each, that a stripe may have a point in. Most stripes are so narrow that most rows have none.
+    fn rows_met(&self, stripe: &Stripe) -> u32 {
+        // In points: where the middle of the stripe crosses the first row, how far the next rows move it, half its width.
+        let at = (0.5 * (stripe.low + stripe.high) - self.start) / self.step;
+        let by = self.row_step / self.step;
+        let half = (0.5 * (stripe.high - stripe.low) / self.step).abs() + ALONG;
+        let meets = |row: usize| {
+            let place = at - row as f64 * by;
+            ((place + TO_WHOLE) - TO_WHOLE - place).abs() <= half
+        };
+        // Along the grid and at 45° to it all rows are alike.
+        if SIDE as f64 * (by - by.round()).abs() < ALONG {
+            return if meets(0) { u32::MAX } else { 0 };
+        }
+        (0..SIDE).fold(0, |rows, row| rows | u32::from(meets(row)) << row)
+    }
 }
 
 impl Ridges {
@@ -62,21 +120,16 @@ impl Ridges {
         offsets.sort_unstable_by(f64::total_cmp);
         offsets.iter_mut().for_each(|offset| *offset /= a);
         let (least, greatest) = extremes(offsets, reach)?;
-        let mut stripes = [Stripe::default(); MOST_STRIPES];
-        let mut stripe_count = 0;
-        if least <= VOID * scale || greatest >= OVERFILL * scale {
+        let striped = least <= VOID * scale || greatest >= OVERFILL * scale;
+        if striped {
             let (first, last) = (offsets.first()?, offsets.last()?);
             let edge = (1.0 - VOID * scale).max(0.0).sqrt();
             if first + reach >= edge || reach - last >= edge {
                 return None;
             }
-            for stripe in offsets.windows(2).flat_map(|pair| between(pair[0], pair[1], scale)).flatten() {
-                *stripes.get_mut(stripe_count)? = stripe;
-                stripe_count += 1;
-            }
         }
         let mut crests = [0.0; MOST];
-        crests.get_mut(..offsets.len())?.iter_mut().zip(&*offsets).for_each(|(c, offset)| *c = *offset as f32);
+        crests.get_mut(..offsets.len())?.iter_mut().zip(&*offsets).for_each(|(c, offset)| *c = *offset);
         let h = frame.height;
         let means = Means::over(&crests[..offsets.len()], frame.along * half / a, (LOW * scale) as f32);
         Some(Self {
@@ -89,41 +142,35 @@ impl Ridges {
             square: h * h * means.square,
             least: h * least,
             greatest: h * greatest,
-            stripes,
-            stripe_count,
+            striped,
+            scale,
         })
     }
 
-    /// The voids and humps along a row of points, the first of them `start` mm across from the middle of the square and
-    /// each next one `step` mm farther: whether it is a hump, which points, the deepest or highest of them, its height in mm.
+    /// Finds the points of a square that lie in a void or a hump. Its first point lies `start` mm across from its middle,
+    /// the next in a row `step` mm farther and the next row `row_step`; it has so many `rows` of so many `points`. `found` is
+    /// told whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm.
     pub(super) fn stripes(
         &self,
-        start: f64,
-        step: f64,
-        points: usize,
-    ) -> impl Iterator<Item = (bool, Range<usize>, usize, f64)> {
-        let (start, step) = (start / self.half_width, step / self.half_width);
-        let end = start + step * (points - 1) as f64;
-        let (low, high, columns) = (start.min(end), start.max(end), 1.0 / step);
-        let at = move |place: f64| ((place - start) * columns).clamp(-1.0, points as f64);
-        let met = self.stripes[..self.stripe_count].iter().filter(move |s| s.low < high && s.high > low);
-        met.filter_map(move |stripe| {
-            let (a, b) = if step.abs() < ALONG { (-1.0, points as f64) } else { (at(stripe.low), at(stripe.high)) };
-            let (first, end) = ((a.min(b) + 1.0) as u32, a.max(b));
-            // Most stripes are so narrow that no point of the row lies in them.
-            if f64::from(first) >= end {
-                return None;
+        (start, step, row_step): (f64, f64, f64),
+        (rows, points): (usize, usize),
+        mut found: impl FnMut(bool, usize, Range<usize>, usize, f64),
+    ) {
+        if !self.striped {
+            return;
+        }
+        let a = self.half_width;
+        let lines = Lines { start: start / a, step: step / a, row_step: row_step / a, rows, points };
+        for pair in self.crests[..self.count].windows(2) {
+            // No third bead reaches in between.
+            let bead = |crest: f64, place: f64| (1.0 - (place - crest).powi(2)).max(0.0);
+            let height = |place: f64| (bead(pair[0], place) + bead(pair[1], place)) * self.height;
+            for stripe in between(pair[0], pair[1], self.scale).into_iter().flatten() {
+                lines.meet(&stripe, |row, points, at, place| {
+                    found(stripe.overfilled, row, points, at, height(place));
+                });
             }
-            let found = first as usize..field::up(end);
-            let extreme = (at(stripe.extreme).max(0.0).round() as usize).clamp(found.start, found.end - 1);
-            Some((stripe.overfilled, found, extreme, self.height_at(start + extreme as f64 * step)))
-        })
-    }
-
-    /// The height, mm, at a place across in half bead widths.
-    fn height_at(&self, place: f64) -> f64 {
-        let bead = |crest: &f32| (1.0 - (place - f64::from(*crest)).powi(2)).max(0.0);
-        self.crests[..self.count].iter().map(bead).sum::<f64>() * self.height
+        }
     }
 
     /// Mean height, mm, over a stretch of `length` mm across the beads around `middle`.
@@ -133,7 +180,7 @@ impl Ridges {
             let s = s.clamp(-1.0, 1.0);
             s - s * s * s / 3.0
         };
-        let of = |crest: &f32| swept(middle + half - crest) - swept(middle - half - crest);
+        let of = |crest: &f64| swept(middle + half - *crest as f32) - swept(middle - half - *crest as f32);
         f64::from(self.crests[..self.count].iter().map(of).sum::<f32>() / (2.0 * half)) * self.height
     }
 }
@@ -193,13 +240,14 @@ struct Means {
 
 impl Means {
     /// Of beads whose crests lie in the square that `half`, its half diagonal turned into the direction of the beads, spans.
-    fn over(crests: &[f32], half: DVec2, low: f32) -> Self {
+    fn over(crests: &[f64], half: DVec2, low: f32) -> Self {
         let half = half.abs().as_vec2();
         let (reach, flat) = (half.x + half.y, (half.x - half.y).abs());
         let step = 2.0 * reach / SAMPLES as f32;
         let places: [f32; SAMPLES] = std::array::from_fn(|k| (k as f32 + 0.5) * step - reach);
         let mut heights = [0.0_f32; SAMPLES];
         for crest in crests {
+            let crest = *crest as f32;
             for (height, place) in heights.iter_mut().zip(&places) {
                 let s = place - crest;
                 *height += (1.0 - s * s).max(0.0);

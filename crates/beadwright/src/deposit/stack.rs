@@ -83,8 +83,7 @@ impl Excess {
     pub(super) fn of<H: Height>(band: &Band<'_, H>, mask: &Mask, rise: f64) -> Self {
         let (mut values, width) = (vec![0.0; band.heights.len()], band.columns.len());
         for (k, (row, heights)) in band.rows().enumerate() {
-            for columns in mask.core(band.grid, row) {
-                let columns = band.within(&columns);
+            for columns in band.parts(mask.core(row)) {
                 let target = &mut values[k * width..][columns.clone()];
                 target
                     .iter_mut()

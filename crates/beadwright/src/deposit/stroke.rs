@@ -70,7 +70,9 @@ impl Stroke {
         let Bead { width, height, section } = self.bead;
         let (way, a) = (self.to - self.from, section.footprint(width, height) / 2.0);
         let length = way.length();
-        (length > 0.0 && a > 0.0).then(|| Frame { from: self.from, along: way / length, length, a, height, section })
+        let along = way / length;
+        let frame = Frame { from: self.from, along, recip: along.recip(), length, a, height, section };
+        (length > 0.0 && a > 0.0).then_some(frame)
     }
 }
 
@@ -79,6 +81,8 @@ impl Stroke {
 pub(super) struct Frame {
     pub(super) from: DVec2,
     pub(super) along: DVec2,
+    /// 1 / `along`.
+    recip: DVec2,
     pub(super) length: f64,
     pub(super) a: f64,
     pub(super) section: Section,
@@ -169,37 +173,45 @@ impl Frame {
     }
 
     /// The stretch of row `y` that gets metal, and the stretch in it that the whole footprint passes over; x in mm.
+    #[inline]
     pub(super) fn row(&self, y: f64) -> Option<(f64, f64, f64, f64)> {
         let (u, a, dy) = (self.along, self.a, y - self.from.y);
         // Along a row, t = dx u.x + dy u.y and the distance from the line is dy u.x − dx u.y.
-        let across = between(-u.y, dy * u.x, -a, a);
-        let whole = between(u.x, dy * u.y, 0.0, self.length);
-        let inner = between(u.x, dy * u.y, a, self.length - a);
+        let across = between(-self.recip.y, dy * u.x, -a, a);
+        let whole = between(self.recip.x, dy * u.y, 0.0, self.length);
+        let inner = between(self.recip.x, dy * u.y, a, self.length - a);
         let disc = |dx: f64, dy: f64| {
             let square = a * a - dy * dy;
-            (square >= 0.0).then(|| (dx - square.sqrt(), dx + square.sqrt()))
+            if square >= 0.0 { (dx - square.sqrt(), dx + square.sqrt()) } else { NOWHERE }
         };
-        let strip = meet(across, whole);
-        let ends = [disc(0.0, dy), disc(self.length * u.x, dy - self.length * u.y), strip];
-        let (low, high) = ends.into_iter().flatten().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let (plain_low, plain_high) = meet(across, inner).unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
-        Some((self.from.x + low, self.from.x + high, self.from.x + plain_low, self.from.x + plain_high))
+        let ends = [disc(0.0, dy), disc(self.length * u.x, dy - self.length * u.y)];
+        let (low, high) = ends.into_iter().fold(meet(across, whole), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (plain_low, plain_high) = meet(across, inner);
+        let x = self.from.x;
+        (low <= high).then_some((x + low, x + high, x + plain_low, x + plain_high))
     }
 }
 
-/// Where `slope` · x + `start` lies between `low` and `high`.
-fn between(slope: f64, start: f64, low: f64, high: f64) -> Option<(f64, f64)> {
-    if slope.abs() < 1e-12 {
-        return (low <= start && start <= high).then_some((f64::NEG_INFINITY, f64::INFINITY));
+/// The stretch without a place.
+const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+/// Where x / `per` + `start` lies between `low` and `high`.
+#[inline]
+fn between(per: f64, start: f64, low: f64, high: f64) -> (f64, f64) {
+    if low > high {
+        return NOWHERE;
     }
-    let (a, b) = ((low - start) / slope, (high - start) / slope);
-    (low <= high).then_some((a.min(b), a.max(b)))
+    if per.abs() > 1e12 {
+        return if low <= start && start <= high { (f64::NEG_INFINITY, f64::INFINITY) } else { NOWHERE };
+    }
+    let (a, b) = ((low - start) * per, (high - start) * per);
+    (a.min(b), a.max(b))
 }
 
-fn meet(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
-    let ((a0, a1), (b0, b1)) = (a?, b?);
-    let (low, high) = (a0.max(b0), a1.min(b1));
-    (low <= high).then_some((low, high))
+#[inline]
+fn meet(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
+    if low <= high { (low, high) } else { NOWHERE }
 }
 
 /// u √(1 − u²) + asin u for u clamped to ±1: −π/2 to π/2, exact at the ends; elsewhere the error is below 3e-8.

@@ -116,7 +116,7 @@ impl Field<'_> {
         let mut cells = vec![Cell::default(); self.grid.columns.div_ceil(SIDE)];
         // How many more rows are wholly inside from each square on.
         let mut more = vec![0_isize; cells.len() + 1];
-        for columns in rows.clone().flat_map(|row| self.mask.core(self.grid, row)) {
+        for columns in rows.clone().flat_map(|row| self.mask.core(row)) {
             let (start, end) = (columns.start, columns.end);
             for edge in [start, end].into_iter().filter(|edge| edge % SIDE != 0) {
                 cells[edge / SIDE].edge = true;
