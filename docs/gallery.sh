@@ -40,7 +40,9 @@ picture() {
     } >> "$page"
     "$beadwright" plan "$@" --picture "$layer" -o "$name" > said
     local shown="![Layer $layer: $title](../pictures/gallery/$name.svg)"
-    [ "$name" != propeller ] || shown="[$shown](propeller/report.html)"
+    # As HTML with a width: mdBook shows a picture in a link in its own size, and these have none.
+    [ "$name" != propeller ] \
+        || shown="<a href=\"propeller/report.html\"><img width=\"750\" src=\"../pictures/gallery/$name.svg\" alt=\"Layer $layer: $title\"></a>"
     {   echo '```text'
         echo '…'
         sed -n '/^profile /p' said
