@@ -19,6 +19,9 @@ cat > "$page" <<'END'
 Twelve parts as this version plans them. `beadwright example` makes the models, so every picture can be made again by the
 command above it; `docs/gallery.sh` makes them all. Blue are contours, orange lines of infill, purple fills of pockets, green
 walls; a dot is green where the arc starts and red where it ends.
+
+The first picture opens its live report, [`propeller/report.html`](propeller/report.html), which `docs/book/build` puts into the
+built book: every layer, and all beads in 3-D.
 END
 
 # Runs the plan's command and shows it with its figures: picture NAME TITLE EXAMPLES LAYER ARGUMENTS…
@@ -36,6 +39,10 @@ picture() {
       printf '```\n\n'
     } >> "$page"
     "$beadwright" plan "$@" --picture "$layer" -o "$name" > said
+    local shown="![Layer $layer: $title](../pictures/gallery/$name.svg)"
+    # As HTML with a width: mdBook shows a picture in a link in its own size, and these have none.
+    [ "$name" != propeller ] \
+        || shown="<a href=\"propeller/report.html\"><img width=\"750\" src=\"../pictures/gallery/$name.svg\" alt=\"Layer $layer: $title\"></a>"
     {   echo '```text'
         echo '…'
         sed -n '/^profile /p' said
@@ -47,7 +54,7 @@ picture() {
         sed -n '/^  void/,/^  overfill/p' said
         echo '…'
         printf '```\n\n'
-        printf '![Layer %s: %s](../pictures/gallery/%s.svg)\n' "$layer" "$title" "$name"
+        echo "$shown"
     } >> "$page"
     cp "$name/layer-$(printf %03d "$layer").svg" "$pictures/$name.svg"
     echo "$name: $(($(wc -c < "$pictures/$name.svg") / 1024)) KiB"

@@ -208,6 +208,9 @@ fn anchors(text: &str) -> BTreeSet<String> {
 fn no_link_and_no_picture_is_missing() {
     let root = root();
     let docs = root.join("docs");
+    // The gallery's live report changes with every version and is large, so it is not kept here: `docs/book/build` makes it,
+    // and fails where it or the link to it is missing.
+    let made = docs.join("book/propeller/report.html");
     let mut pages = pages_in(&docs);
     pages.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name)));
     let texts: BTreeMap<PathBuf, String> =
@@ -215,6 +218,9 @@ fn no_link_and_no_picture_is_missing() {
     let mut wrong = Vec::new();
     for (page, text) in &texts {
         for target in targets(&prose(text)).into_iter().filter(|target| !target.contains("://")) {
+            if page.with_file_name(&target) == made {
+                continue;
+            }
             let (file, anchor) = target.split_once('#').unwrap_or((&target, ""));
             let path = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
             let Ok(path) = fs::canonicalize(path) else {

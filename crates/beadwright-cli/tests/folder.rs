@@ -159,6 +159,8 @@ fn case_1616_what_cannot_be_written_is_said_and_leaves_nothing() {
         let done = beadwright().current_dir(place.path()).args(arguments).output().unwrap();
         let said = String::from_utf8_lossy(&done.stderr).into_owned();
         assert!(done.status.code() == Some(1) && said.contains(words) && said.lines().count() == 1, "{said}");
+        let clauses: Vec<&str> = said.trim_end().split(": ").collect();
+        assert!(clauses.windows(2).all(|two| two[0] != two[1]), "said twice: {said}");
     };
     refused(&["plan", "part.stl", "--no-deposit", "-o", "/proc/here"], "/proc/here cannot be written");
     refused(&["plan", "part.stl", "--no-deposit", "-o", "part.stl/here"], "cannot be written");

@@ -14,12 +14,12 @@ use std::path::{Component, Path, PathBuf};
 
 /// A file or folder that cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{} cannot be written: {source}", path.display())]
+#[error("{} cannot be written: {reason}", path.display())]
 pub struct FolderError {
     /// Where.
     pub path: PathBuf,
-    /// The error of the operating system.
-    pub source: io::Error,
+    /// The error of the operating system; not a `source`, which would be said once more.
+    pub reason: io::Error,
 }
 
 /// Folders with more entries of others are not exchanged.
@@ -294,5 +294,5 @@ fn named(path: &Path) -> impl Fn(io::Error) -> FolderError + use<> {
         }
         _ => error,
     };
-    move |error| FolderError { path: path.clone(), source: plain(error) }
+    move |error| FolderError { path: path.clone(), reason: plain(error) }
 }
