@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use serde::{Serialize, Serializer};
 use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
 
 /// Places that are nearer to each other count as one, mm.
 const SAME_MM: f64 = 1e-6;
@@ -19,8 +20,8 @@ const SAME_MM: f64 = 1e-6;
 /// A point so near to the surface lies on it, mm: files are rounded.
 const ON_SURFACE_MM: f64 = 1e-3;
 
-/// A scan whose size is that of the part in another unit, within this fraction, is taken to be in that unit.
-const UNIT_MATCHES: f64 = 0.05;
+/// A scan is taken to be in another unit if it then has this part of the part's size: it need not show all of it.
+const SEEN: RangeInclusive<f64> = 0.5..=1.05;
 
 /// A scan is not where the part is if half its points lie farther off than this part of its size.
 const FAR: f64 = 0.1;
@@ -74,11 +75,11 @@ pub struct Extreme {
 /// What speaks against comparing a scan with a part as they are.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Doubt {
-    /// The scan is as much smaller than the part as numbers in this unit are smaller than those in mm.
-    #[error("the scan has 1/{} of the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
+    /// The scan is about as much smaller than the part as numbers in this unit are smaller than those in mm.
+    #[error("the scan has about 1/{} of the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
     ScanUnit(Units),
-    /// The scan is as much larger.
-    #[error("the scan is {} times as large as the part: the numbers of the part seem to be {}, not mm.", .0.in_mm(), .0.plural())]
+    /// The scan is about as much larger.
+    #[error("the scan is about {} times as large as the part: the numbers of the part seem to be {}, not mm.", .0.in_mm(), .0.plural())]
     PartUnit(Units),
     /// Half of the scan lies farther than this from the part, mm.
     #[error(
@@ -150,10 +151,9 @@ fn doubts(part: &Mesh, points: &[DVec3], distances: &[f64]) -> Vec<Doubt> {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let ratio = (high - low).length() / size;
-    let is = |ratio: f64, unit: Units| (ratio / unit.in_mm() - 1.0).abs() < UNIT_MATCHES;
     let others = || Units::ALL.into_iter().map(|(_, unit)| unit).filter(|unit| *unit != Units::Millimetre);
-    let scan = others().find(|unit| is(1.0 / ratio, *unit)).map(Doubt::ScanUnit);
-    let unit = scan.or_else(|| others().find(|unit| is(ratio, *unit)).map(Doubt::PartUnit));
+    let scan = others().find(|unit| SEEN.contains(&(ratio * unit.in_mm()))).map(Doubt::ScanUnit);
+    let unit = scan.or_else(|| others().find(|unit| SEEN.contains(&(ratio / unit.in_mm()))).map(Doubt::PartUnit));
     let mut far: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
     let middle = far.len() / 2;
     let (_, half, _) = far.select_nth_unstable_by(middle, f64::total_cmp);

@@ -21,7 +21,7 @@ fn surface(folder: &Path, z: f64) -> PathBuf {
     let vertices: String = corners.iter().map(|(x, y)| format!("{x} {y} {z}\n")).collect();
     let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                 element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    let path = folder.join("scan.ply");
+    let path = folder.join(format!("scan {z}.ply"));
     std::fs::write(&path, format!("{head}{vertices}4 0 1 2 3\n")).unwrap();
     path
 }
@@ -99,7 +99,7 @@ fn a_scan_has_the_colours_of_its_deviation() {
         open(&mut harness, &path);
         // Lit, but of that hue.
         let (seen, wanted) = (middle(&mut harness).normalize(), DVec3::from(wanted.map(f64::from)).normalize());
-        assert!(seen.dot(wanted) > 0.97, "{}: {seen} is not {wanted}", path.display());
+        assert!(seen.dot(wanted) > 0.93, "{}: {seen} is not {wanted}", path.display());
     }
     let with = middle(&mut harness);
     click(&mut harness, "Scan");
