@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         How::Plate => Align::Plate,
         How::Fit => Align::Fit,
     };
-    let Scan { points, format, without_height } = scan;
+    let Scan { points, format, without_height, .. } = scan;
     let read = points.len();
     let aligned = adapt::align(points, built, profile.bead.width, how).with_context(context)?;
     let nominal = plan::deposit_settings(&profile).nominal;

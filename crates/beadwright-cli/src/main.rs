@@ -10,6 +10,7 @@ mod check;
 mod compare;
 mod completions;
 mod convert;
+mod deviation;
 mod example;
 mod export;
 mod file;
@@ -68,6 +69,8 @@ enum Command {
     Bead(bead::Command),
     /// Plan the layers that follow a scan of a build, corrected by place.
     Adapt(adapt::Arguments),
+    /// Compare a scan of the built part with the part: how far its surface lies outside and inside.
+    Deviation(deviation::Arguments),
     /// Weld a plan in a model of its height, with errors, to see what feedback from scans is worth.
     Build(build::Arguments),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
@@ -105,6 +108,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Bead(command) => bead::run(&command),
         Command::Adapt(arguments) => adapt::run(&arguments),
+        Command::Deviation(arguments) => deviation::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
         Command::Reach(arguments) => reach::run(&arguments),
         Command::Heat(arguments) => heat::run(&arguments),

@@ -25,9 +25,9 @@ pub(crate) fn example_stl(name: &str) -> PyResult<Cow<'static, [u8]>> {
     found.ok_or_else(|| raise(&known(), Some("name"), None))
 }
 
-/// How a part is placed: unit, factor, turn about x, y and z (°), whether its middle comes to x = y = 0, how it is laid
-/// ("flat" or "orient"), and where it ends (mm).
-type Placing = (Option<String>, f64, [f64; 3], bool, Option<String>, Option<f64>);
+/// How a part is placed: unit, factor, turn about x, y and z (°), whether its middle comes to x = y = 0, how far it is then
+/// moved along x and y (mm), how it is laid ("flat" or "orient"), and where it ends (mm).
+type Placing = (Option<String>, f64, [f64; 3], bool, [f64; 2], Option<String>, Option<f64>);
 
 /// A part.
 #[pyclass(frozen, module = "beadwright._core")]
@@ -45,9 +45,9 @@ impl Part {
     }
 
     fn of(name: String, model: Model, placing: Placing) -> PyResult<Self> {
-        let (units, scale, turn, centre, stand, height) = placing;
+        let (units, scale, turn, centre, shift, stand, height) = placing;
         let units = units.map(|unit| unit_of(&unit)).transpose()?;
-        let placement = Placement { units, scale, turn: turn.into(), centre, ..Placement::default() };
+        let placement = Placement { units, scale, turn: turn.into(), centre, shift: shift.into() };
         let guessed = guessed_size(&model, &placement);
         // No bead is known yet: the guess is judged when the part is planned.
         let place = |model: Model, placement: &Placement| model.place(placement, height, 0.0).refuse(Some(&name));

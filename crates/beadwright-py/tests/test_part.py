@@ -55,6 +55,15 @@ def test_the_middle_comes_to_the_origin() -> None:
     assert box(30, 20, 10, centre=True).bounds == ((-15, -10, 0), (15, 10, 10))
 
 
+@pytest.mark.parametrize("placing", [{}, {"centre": True}, {"turn": (0, 0, 37)}, {"turn": (90, 0, 0), "stand": "flat"}])
+@pytest.mark.parametrize("shift", [(250, -40), (-7.25, 0), (0, 0)])
+def test_a_shift_moves_the_part_after_all_else(placing: dict[str, object], shift: tuple[float, float]) -> None:
+    (a, b, c), (d, e, f) = box(30, 20, 10, **placing).bounds
+    low, high = box(30, 20, 10, shift=shift, **placing).bounds
+    assert low == pytest.approx((a + shift[0], b + shift[1], c))
+    assert high == pytest.approx((d + shift[0], e + shift[1], f))
+
+
 def test_a_part_is_laid_flat() -> None:
     low, high = box(30, 20, 10, turn=(90, 0, 0), stand="flat").bounds
     assert high[2] - low[2] == pytest.approx(10), "its largest face lies below"
@@ -97,6 +106,7 @@ def test_a_part_travels_to_another_process() -> None:
         assert np.array_equal(again.vertices, part.vertices)
     assert box(30, 20, 10).key != box(30, 20, 11).key
     assert box(30, 20, 10).key != box(30, 20, 10, turn=(0, 0, 1)).key
+    assert box(30, 20, 10).key != box(30, 20, 10, shift=(0, 1)).key
 
 
 @pytest.mark.parametrize("name", ["cross", "propeller", "vase"])
@@ -177,7 +187,17 @@ def test_triangles_that_cannot_be(vertices: object, faces: object, told: str) ->
         Part.from_triangles(vertices, faces)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("placing", [{"units": "furlong"}, {"scale": 0}, {"turn": (1, 2)}, {"stand": "on its head"}])
+@pytest.mark.parametrize(
+    "placing",
+    [
+        {"units": "furlong"},
+        {"scale": 0},
+        {"turn": (1, 2)},
+        {"shift": (1, 2, 3)},
+        {"shift": (1e9, 0)},
+        {"stand": "on its head"},
+    ],
+)
 def test_a_placing_that_cannot_be(placing: dict[str, object]) -> None:
     with pytest.raises(BeadwrightError) as caught:
         box(30, 20, 10, **placing)

@@ -97,7 +97,7 @@ impl Studio {
             Action::ResetValues(keys) => self.reset_values(&keys),
             Action::SetProfile(text) => {
                 self.set_profile("profile", Ok(text.to_owned()));
-                self.take_dialect();
+                self.follow_profile();
             }
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),
@@ -105,7 +105,11 @@ impl Studio {
             Action::Dismiss(index) => drop(self.window.messages.remove(index)),
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
-            Action::TakeCell(name) => self.take_cell(name),
+            Action::CloseScan => self.close_scan(),
+            Action::TakeCell(name) => {
+                self.view.cell_chosen = true;
+                self.take_cell(name);
+            }
             Action::Reach => self.begin_reach(),
             Action::BringBack => {
                 if let Some(project) = self.open.lost.take() {
@@ -144,14 +148,6 @@ impl Studio {
     fn begin_heat(&mut self) {
         if let Some(profile) = self.plans.own.profile.clone() {
             self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
-        }
-    }
-
-    /// Takes another robot cell; what was computed for the former is forgotten.
-    fn take_cell(&mut self, name: &str) {
-        if self.view.cell != name {
-            name.clone_into(&mut self.view.cell);
-            (self.jobs.cell, self.jobs.reach, self.jobs.reach_job) = (None, None, None);
         }
     }
 

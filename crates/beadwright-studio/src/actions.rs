@@ -88,6 +88,8 @@ pub enum Action {
     Dismiss(usize),
     /// Computes the steps of the strategies in the layer in view.
     LookCloser,
+    /// Takes the scan away.
+    CloseScan,
     /// Takes another robot cell.
     TakeCell(&'static str),
     /// Computes temperatures.

@@ -45,6 +45,7 @@ impl Studio {
             }
             None => {}
         }
+        self.hear_of_scan();
         match jobs::take(&mut self.jobs.reach_job) {
             Some(Ok(Ok(reach))) => {
                 self.jobs.reach = Some(reach);

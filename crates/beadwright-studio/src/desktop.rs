@@ -39,6 +39,9 @@ struct Arguments {
     /// A section through the middle of the part, square to this axis.
     #[arg(long, value_name = "AXIS")]
     section: Option<Axis>,
+    /// A scan of the built part to show, coloured by its distance from the part.
+    #[arg(long, value_name = "FILE")]
+    scan: Option<PathBuf>,
     /// Show the arm of the robot cell.
     #[arg(long)]
     robot: bool,
@@ -121,6 +124,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
             None => studio.open(file),
         }
     }
+    arguments.scan.iter().for_each(|scan| studio.open_scan(scan));
     if let Some(strategy) = &arguments.compare_with {
         studio.compare_with(Some(strategy));
     }

@@ -111,7 +111,7 @@ impl Studio {
         let first = match what {
             Ask::SaveProject => named("bwp"),
             Ask::SavePicture => named("png"),
-            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads => String::new(),
+            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads | Ask::OpenScan => String::new(),
         };
         self.jobs.typed = Some((what, first));
     }
@@ -122,13 +122,14 @@ impl Studio {
             Ask::SaveProject => self.save_to(path),
             Ask::SavePicture => self.save_picture(path),
             Ask::OpenBeads => self.open_beads(path),
+            Ask::OpenScan => self.open_scan(path),
             Ask::OpenProfile => {
                 let text = disk::text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
                 match checked {
                     Ok(text) => {
                         self.set_profile("profile", Ok(text));
-                        self.take_dialect();
+                        self.follow_profile();
                     }
                     Err(error) => self.complain(error),
                 }

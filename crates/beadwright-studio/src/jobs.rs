@@ -77,6 +77,8 @@ pub enum Ask {
     OpenProfile,
     /// A bead library to look at.
     OpenBeads,
+    /// A scan to compare with the part.
+    OpenScan,
 }
 
 /// What a dialog gave: the path, if there is one, and whether the dialog can have been on the screen at all.

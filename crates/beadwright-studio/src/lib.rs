@@ -10,6 +10,8 @@
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
+//! | [`scan`] | a scan of the built part beside the part |
+//! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
 //! | [`arm`] | how the robot stands with the torch at a place |
 //! | [`view`] | what is shown, and how |
@@ -36,7 +38,9 @@ pub mod history;
 pub mod jobs;
 mod panels;
 pub mod planner;
+mod process;
 pub mod project;
+pub mod scan;
 pub mod settings;
 pub mod state;
 pub mod steps;

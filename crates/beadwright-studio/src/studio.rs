@@ -8,16 +8,16 @@ use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
+use crate::scan::Compared;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::steps::Looked;
 use crate::text::Language;
 use crate::theme;
-use crate::view::ViewState;
+use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
 use crate::view3d::{Camera, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
-use beadwright::dialect;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -100,6 +100,11 @@ pub struct Jobs {
     pub(crate) reach: Option<Reach>,
     /// The cell that this is about.
     pub(crate) cell: Option<Cell>,
+    /// A scan that is to be opened.
+    pub(crate) scan_wanted: Option<PathBuf>,
+    pub(crate) scan_job: Option<Job<Result<Compared, String>>>,
+    /// A scan of the built part.
+    pub(crate) scan: Option<Compared>,
     /// Measured beads to look at.
     pub(crate) beads: Option<BeadLibrary>,
 }
@@ -107,7 +112,11 @@ pub struct Jobs {
 impl Jobs {
     /// Whether nothing is being computed.
     fn is_idle(&self) -> bool {
-        self.reach_job.is_none() && !self.looked.is_busy() && self.heat_job.is_none()
+        let computes = self.reach_job.is_some()
+            || self.heat_job.is_some()
+            || self.scan_job.is_some()
+            || self.scan_wanted.is_some();
+        !computes && !self.looked.is_busy()
     }
 }
 
@@ -267,17 +276,19 @@ impl Studio {
     /// What is shown now.
     pub(crate) fn style(&self) -> Style {
         let view = &self.view;
+        let scan = view.scan && view.mode == Mode::Solid && !view.laying && self.scan().is_some();
         let arm = self.arm();
         let at_arm = self.torch_place().filter(|_| arm.is_some()).map(|place| place.at);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
             colour: view.colour,
             mesh: view.mesh || view.laying,
+            scan,
             travels: view.show.travels,
             starts: view.show.starts,
             marks_from: if view.all_marks { 0 } else { view.last },
-            // Beads would lie before the faces to be clicked.
-            beads: view.show.beads && !view.laying,
+            // Beads would lie before the faces to be clicked, and before the scan.
+            beads: view.show.beads && !view.laying && !scan,
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
             section: view.section,
@@ -310,7 +321,8 @@ impl Studio {
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();
         self.open.refused = None;
-        self.take_dialect();
+        self.close_scan();
+        self.follow_profile();
         self.flat.clear_measure();
         self.view.reset();
         self.flat.fit();
@@ -335,14 +347,6 @@ impl Studio {
         change(&mut next);
         if self.open.project.set(about, next) {
             self.replan();
-        }
-    }
-
-    /// Takes the first of the profile's dialects to write programs in.
-    pub(crate) fn take_dialect(&mut self) {
-        let posts = self.parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
-        if let Some(post) = posts.into_iter().find(|post| dialect::find(post).is_some()) {
-            self.view.dialect = post;
         }
     }
 

@@ -54,6 +54,8 @@ pub struct ViewState {
     pub colour: Colour,
     /// Whether the part is shown.
     pub mesh: bool,
+    /// Whether the scan is shown instead of the beads, where there is one.
+    pub scan: bool,
     /// Whether travels, starts and ends are shown for all layers, not only for the highest.
     pub all_marks: bool,
     /// Whether the projection is parallel, not in perspective.
@@ -82,6 +84,8 @@ pub struct ViewState {
     pub folder: String,
     /// The robot cell to check the plan with.
     pub cell: String,
+    /// Whether it was chosen by hand, not taken after the profile.
+    pub cell_chosen: bool,
     /// The text searched for among the parameters.
     pub search: String,
     /// Whether the list of keys is shown.
@@ -106,6 +110,7 @@ impl Default for ViewState {
             torch: None,
             colour: Colour::Kind,
             mesh: true,
+            scan: true,
             all_marks: false,
             parallel: false,
             plate: true,
@@ -120,6 +125,7 @@ impl Default for ViewState {
             dialect: "krl".to_owned(),
             folder: String::new(),
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
+            cell_chosen: false,
             search: String::new(),
             keys: false,
             wanted: None,

@@ -26,6 +26,7 @@ pub mod build;
 pub mod check;
 pub mod compare;
 pub mod deposit;
+pub mod deviation;
 pub mod dialect;
 pub mod example;
 pub mod export;

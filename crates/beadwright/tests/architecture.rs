@@ -29,7 +29,7 @@ const ROWS: &[&[&str]] = &[
     &["plan"],
     &["plan_file", "check"],
     &["report"],
-    &["adapt", "export", "files", "robot", "simulate"],
+    &["adapt", "deviation", "export", "files", "robot", "simulate"],
     &["build"],
     &["example"],
     &["compare"],

@@ -20,6 +20,7 @@ Unit: TypeAlias = Literal["mm", "cm", "m", "in"]
 Stand: TypeAlias = Literal["flat", "orient"]
 StrPath: TypeAlias = str | os.PathLike[str]
 Turn: TypeAlias = tuple[float, float, float]
+Shift: TypeAlias = tuple[float, float]
 
 
 class Part:
@@ -50,6 +51,7 @@ class Part:
         scale: float = 1.0,
         turn: Turn = (0.0, 0.0, 0.0),
         centre: bool = False,
+        shift: Shift = (0.0, 0.0),
         stand: Stand | None = None,
         height: float | None = None,
         accept_damaged: bool = False,
@@ -57,9 +59,9 @@ class Part:
         """Reads STL, 3MF, OBJ, PLY, AMF, IGES (centre-lines of walls), DXF or SVG (outlines); the content decides.
 
         ``units`` of the file are guessed where they are left out; ``scale`` enlarges the part, ``turn`` turns it about x,
-        then y, then z (°), ``centre`` brings its middle to x = y = 0. ``stand="flat"`` lays it onto its largest flat face,
-        ``"orient"`` onto that with the least overhang. Curves and outlines grow up to ``height`` (mm). Of a file that
-        ends too early, ``accept_damaged`` takes what there is.
+        then y, then z (°), ``centre`` brings its middle to x = y = 0, and ``shift`` then moves it along x and y (mm).
+        ``stand="flat"`` lays it onto its largest flat face, ``"orient"`` onto that with the least overhang. Curves and
+        outlines grow up to ``height`` (mm). Of a file that ends too early, ``accept_damaged`` takes what there is.
 
         Raises :class:`BeadwrightError` with the path, the line where there is one, and what helps.
         """
@@ -68,13 +70,13 @@ class Part:
             content = path.read_bytes()
         except OSError as error:
             raise BeadwrightError(f"{path} cannot be read: {error.strerror}.", str(path)) from error
-        placing = _placing(units, scale, turn, centre, stand, height)
+        placing = _placing(units, scale, turn, centre, shift, stand, height)
         return cls._made(("read", path.stem, str(path), content, accept_damaged, placing))
 
     @classmethod
     def example(cls, name: str) -> Part:
         """One of the parametric example parts, such as ``"propeller"``; :func:`examples` names them all."""
-        placing = _placing(None, 1.0, (0.0, 0.0, 0.0), False, None, None)
+        placing = _placing(None, 1.0, (0.0, 0.0, 0.0), False, (0.0, 0.0), None, None)
         return cls._made(("read", name, name, _core.example_stl(name), False, placing))
 
     @classmethod
@@ -88,6 +90,7 @@ class Part:
         scale: float = 1.0,
         turn: Turn = (0.0, 0.0, 0.0),
         centre: bool = False,
+        shift: Shift = (0.0, 0.0),
         stand: Stand | None = None,
     ) -> Part:
         """A solid from ``vertices`` (n × 3, in ``units``) and ``faces`` (m × 3, indices from 0, counter-clockwise seen from
@@ -105,7 +108,7 @@ class Part:
             raise BeadwrightError("faces are indices of vertices: whole numbers from 0 on.", "faces")
         if triangles.max(initial=0) >= len(corners):
             raise BeadwrightError(f"a face names vertex {triangles.max()}; there are {len(corners)}.", "faces")
-        placing = _placing(units, scale, turn, centre, stand, None)
+        placing = _placing(units, scale, turn, centre, shift, stand, None)
         indexed = np.ascontiguousarray(triangles, dtype=np.uint32)
         return cls._made(("triangles", name, np.ascontiguousarray(corners).tobytes(), indexed.tobytes(), placing))
 
@@ -197,17 +200,28 @@ def examples() -> list[str]:
 
 
 def _placing(
-    units: str | None, scale: float, turn: Turn, centre: bool, stand: str | None, height: float | None
+    units: str | None,
+    scale: float,
+    turn: Turn,
+    centre: bool,
+    shift: Shift,
+    stand: str | None,
+    height: float | None,
 ) -> tuple[Any, ...]:
     if not 1e-6 <= scale <= 1e6:
         raise BeadwrightError(f"scale = {scale} is impossible: 1e-6 to 1e6 are.", "scale")
     if len(turn) != 3 or not all(abs(angle) < 1e6 for angle in turn):
         raise BeadwrightError(f"turn = {turn} is impossible: three angles in ° are expected, such as (90, 0, 0).", "turn")
+    if len(shift) != 2 or not all(abs(length) <= 20_000 for length in shift):
+        raise BeadwrightError(
+            f"shift = {shift} is impossible: two lengths up to 20000 mm are expected, such as (250, -40).", "shift"
+        )
     if stand not in (None, "flat", "orient"):
         raise BeadwrightError(f'stand = "{stand}" is unknown: "flat" and "orient" are known.', "stand")
     if height is not None and not 0.1 <= height <= 20_000:
         raise BeadwrightError(f"height = {height} is impossible: 0.1 to 20000 mm are.", "height")
-    return units, float(scale), tuple(float(angle) for angle in turn), centre, stand, height
+    turned, shifted = tuple(float(angle) for angle in turn), tuple(float(length) for length in shift)
+    return units, float(scale), turned, centre, shifted, stand, height
 
 
 def _triangles(name: str, corners: bytes, triangles: bytes, placing: tuple[Any, ...]) -> _core.Part:

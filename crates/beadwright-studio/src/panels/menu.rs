@@ -1,6 +1,7 @@
 //! Menus, and the bar below them: strategy, views, progress.
 
 use crate::actions::{self, Action};
+use crate::jobs::Ask;
 use crate::studio::Studio;
 use crate::text::Language;
 use crate::theme;
@@ -14,6 +15,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         ui.menu_button(studio.t("file"), |ui| {
             items(studio, ui, &[Action::Open]);
             ui.menu_button(studio.t("recent"), |ui| recent(studio, ui));
+            scan(studio, ui);
             ui.separator();
             items(studio, ui, &[Action::Save, Action::SaveAs, Action::ExportProgram]);
             // A page is closed by its browser.
@@ -58,6 +60,16 @@ fn items(studio: &mut Studio, ui: &mut Ui, wanted: &[Action]) {
             studio.request(entry.action.clone());
             ui.close();
         }
+    }
+}
+
+/// A scan can be opened once there is a part to compare it with.
+fn scan(studio: &mut Studio, ui: &mut Ui) {
+    let solid = studio.plans.own.part.as_ref().is_some_and(|part| part.mesh().is_some());
+    let entry = ui.add_enabled(solid, Button::new(studio.t("open-scan"))).on_hover_text(studio.t("scan-hint"));
+    if entry.on_disabled_hover_text(studio.t("scan-needs-part")).clicked() {
+        studio.request(Action::Ask(Ask::OpenScan));
+        ui.close();
     }
 }
 

@@ -16,6 +16,7 @@ mod plots;
 mod process;
 mod questions;
 mod robot;
+mod scan;
 mod section;
 pub(crate) mod solid;
 mod start;

@@ -1,6 +1,6 @@
 //! The 3-D view with its bar and its legend.
 
-use super::{bead, place, robot, section};
+use super::{bead, place, robot, scan, section};
 use crate::actions::Action;
 use crate::studio::Studio;
 use crate::view3d::{Colour, Pick, Style, face, palette};
@@ -32,6 +32,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     });
     bead::show(studio, ui);
     robot::joints(studio, ui);
+    scan::show(studio, ui);
     let (style, label) = (studio.style(), studio.t("view-3d-label"));
     studio.solid.around = place::around(studio);
     let rect = view(studio, ui, &style, label);
@@ -129,8 +130,14 @@ fn legend(studio: &Studio, ui: &mut Ui) {
         _ => "",
     };
     ui.label(format!("{low:.1}{unit}"));
-    let (place, _) = ui.allocate_exact_size(vec2(120.0, 12.0), Sense::hover());
+    scale(ui, |part| palette::at(studio.view.colour, part, dark));
+    ui.label(format!("{high:.1}{unit}"));
+}
+
+/// A strip of all colours of a scale, which gives them by their part of it, 0 to 1.
+pub(super) fn scale(ui: &mut Ui, colour_at: impl Fn(f64) -> palette::Rgb) {
     const STEPS: usize = 40;
+    let (place, _) = ui.allocate_exact_size(vec2(120.0, 12.0), Sense::hover());
     for i in 0..STEPS {
         let part = |i: usize| i as f64 / STEPS as f64;
         let x = place.x_range();
@@ -138,9 +145,8 @@ fn legend(studio: &Studio, ui: &mut Ui) {
             x.min + x.span() * part(i) as f32..=x.min + x.span() * part(i + 1) as f32,
             place.y_range(),
         );
-        ui.painter().rect_filled(strip, 0.0, colour(palette::at(studio.view.colour, part(i), dark)));
+        ui.painter().rect_filled(strip, 0.0, colour(colour_at(part(i))));
     }
-    ui.label(format!("{high:.1}{unit}"));
 }
 
 fn colour([r, g, b]: [u8; 3]) -> Color32 {

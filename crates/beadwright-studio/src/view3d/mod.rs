@@ -7,6 +7,7 @@
 //! | --- | --- |
 //! | `beads` | one layer as it is drawn and timed |
 //! | `scene` | the model and the layers planned so far |
+//! | `scanned` | a scan of the built part |
 //! | `style`, [`palette`] | what is shown and in which colours |
 //! | `section` | a plane that cuts away what lies beyond it |
 //! | `camera` | where the eye is |
@@ -26,6 +27,7 @@ mod headless;
 mod overlay;
 pub mod palette;
 mod pick;
+mod scanned;
 mod scene;
 mod section;
 mod style;
@@ -37,6 +39,7 @@ pub use face::face;
 pub use gizmo::{Gizmo, Grip, Handle, Moved};
 pub use headless::headless;
 pub use pick::{Pick, pick};
+pub use scanned::Scanned;
 pub use scene::{Position, Scene};
 pub use section::Section;
 pub use style::{Colour, Plate, Style};

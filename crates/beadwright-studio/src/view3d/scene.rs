@@ -1,6 +1,7 @@
 //! What can be shown: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
+use super::scanned::Scanned;
 use super::style::{Colour, Style};
 use beadwright::model::Mesh;
 use glam::{DVec2, DVec3};
@@ -21,8 +22,10 @@ pub struct Scene {
     values: Vec<Option<Values>>,
     /// By pass, where the plan does not have them.
     temperatures: Vec<Option<Values>>,
+    scan: Option<Scanned>,
     version: u64,
     mesh_version: u64,
+    scan_version: u64,
 }
 
 /// Sides of the prism of [`Scene::outline`].
@@ -48,7 +51,8 @@ pub struct Position {
 impl Scene {
     /// Forgets model and layers.
     pub fn clear(&mut self) {
-        *self = Self { version: fresh_id(), mesh_version: fresh_id(), ..Self::default() };
+        let [version, mesh_version, scan_version] = std::array::from_fn(|_| fresh_id());
+        *self = Self { version, mesh_version, scan_version, ..Self::default() };
     }
 
     /// Forgets the layers.
@@ -63,6 +67,12 @@ impl Scene {
     pub fn set_mesh(&mut self, mesh: Option<Arc<Mesh>>) {
         self.mesh = mesh;
         (self.version, self.mesh_version) = (fresh_id(), fresh_id());
+    }
+
+    /// Sets the scan, mm.
+    pub fn set_scan(&mut self, scan: Option<Scanned>) {
+        self.scan = scan;
+        (self.version, self.scan_version) = (fresh_id(), fresh_id());
     }
 
     /// Sets the layer with that index; layers may come in any order.
@@ -97,6 +107,11 @@ impl Scene {
         self.mesh.as_ref()
     }
 
+    /// The scan.
+    pub fn scan(&self) -> Option<&Scanned> {
+        self.scan.as_ref()
+    }
+
     /// The layers; `None` for those not there yet.
     pub fn layers(&self) -> &[Option<Arc<LayerBeads>>] {
         &self.layers
@@ -126,6 +141,10 @@ impl Scene {
 
     pub(super) fn mesh_version(&self) -> u64 {
         self.mesh_version
+    }
+
+    pub(super) fn scan_version(&self) -> u64 {
+        self.scan_version
     }
 
     /// Lowest and highest corner of model and beads, mm.

@@ -44,6 +44,8 @@ pub struct Style {
     pub colour: Colour,
     /// Whether the model is shown: solid by itself, translucent around beads.
     pub mesh: bool,
+    /// Whether the scan is shown, coloured by its deviation; of the model, its edges are then.
+    pub scan: bool,
     /// Whether travels (moves with the arc off) are shown.
     pub travels: bool,
     /// Whether starts and ends of passes are marked.
@@ -75,6 +77,7 @@ impl Default for Style {
         Self {
             colour: Colour::Kind,
             mesh: true,
+            scan: false,
             travels: false,
             starts: false,
             marks_from: 0,

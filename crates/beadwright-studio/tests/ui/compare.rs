@@ -1,6 +1,6 @@
 //! Two strategies side by side, and findings that lead to their place.
 
-use super::window::{Window, click, example, press, sees, wait};
+use super::window::{Window, click, has_adapter, planned, press, sees, wait};
 use beadwright::fill::{hybrid, one_loop};
 use beadwright::plan;
 use beadwright::profile::Profile;
@@ -21,8 +21,7 @@ fn totals(strategy: &str) -> Vec<(&'static str, String)> {
 
 #[test]
 fn two_strategies_are_compared() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     press(&mut harness, Key::F4);
     assert_eq!(harness.state_mut().view().mode, Mode::Compare);
     harness.get_by_role_and_label(Role::ComboBox, "Other strategy").click();
@@ -43,8 +42,7 @@ fn two_strategies_are_compared() {
 
 #[test]
 fn a_strategy_that_cannot_be_compared_says_why() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     press(&mut harness, Key::F4);
     harness.state_mut().compare_with(Some("no-such-strategy"));
     wait(&mut harness);
@@ -53,8 +51,7 @@ fn a_strategy_that_cannot_be_compared_says_why() {
 
 #[test]
 fn a_finding_leads_to_its_bead() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     harness.state_mut().set_value("check.max_speed", "1.0");
     wait(&mut harness);
     let findings = harness.state().plan().findings.clone().unwrap();
@@ -78,11 +75,10 @@ fn a_finding_leads_to_its_bead() {
 
 #[test]
 fn two_strategies_are_seen_in_3d_with_one_camera() {
-    if !super::window::has_adapter() {
+    if !has_adapter() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     harness.state_mut().compare_with(Some("zigzag"));
     wait(&mut harness);
     press(&mut harness, Key::F4);
@@ -129,11 +125,10 @@ fn colour(picture: &image::RgbaImage, pos: Pos2) -> [u8; 3] {
 
 #[test]
 fn the_steps_of_both_strategies_are_seen() {
-    if !super::window::has_adapter() {
+    if !has_adapter() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     harness.state_mut().compare_with(Some("hybrid"));
     wait(&mut harness);
     press(&mut harness, Key::F4);
@@ -187,8 +182,7 @@ fn the_steps_of_both_strategies_are_seen() {
 
 #[test]
 fn the_totals_of_a_comparison_fit_the_window() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "propeller");
+    let (_folder, mut harness) = planned("propeller");
     harness.state_mut().compare_with(Some("hybrid"));
     wait(&mut harness);
     harness.key_press(Key::F4);

@@ -15,6 +15,7 @@ mod pictures;
 mod place;
 mod placement;
 mod play;
+mod scan;
 mod start;
 #[path = "../window/mod.rs"]
 mod window;

@@ -1,10 +1,11 @@
 //! The part is moved and turned by handles, from any side, and by arrow keys.
 
-use super::window::{Window, button, click, drag, example, has_adapter, pull, sees, wait};
+use super::window::{Window, bounds, button, click, drag, has_adapter, planned, pull, sees, wait};
 use beadwright_studio::view3d::Camera;
 use eframe::egui::{Key, Modifiers, Pos2, Rect, Role, vec2};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
+use tempfile::TempDir;
 
 /// Where a pinhole camera with 35° from top to bottom shows a place, mm.
 fn seen(camera: &Camera, rect: Rect, place: DVec3) -> Pos2 {
@@ -18,10 +19,6 @@ fn seen(camera: &Camera, rect: Rect, place: DVec3) -> Pos2 {
     rect.center() + vec2((from_eye.dot(right) * scale) as f32, (-from_eye.dot(up) * scale) as f32)
 }
 
-fn bounds(harness: &Window) -> (DVec3, DVec3) {
-    harness.state().plan().part.as_ref().unwrap().bounds()
-}
-
 /// Middle of the part on its plate.
 fn foot(harness: &Window) -> DVec2 {
     let (low, high) = bounds(harness);
@@ -32,11 +29,12 @@ fn handle(harness: &Window, name: &str) -> Pos2 {
     harness.get_by_role_and_label(Role::Button, name).rect().center()
 }
 
-fn placing(folder: &std::path::Path) -> Window {
-    let mut harness = example(folder, "cross");
+/// The cross with its handles.
+fn placing() -> (TempDir, Window) {
+    let (folder, mut harness) = planned("cross");
     click(&mut harness, "Place");
     assert!(sees(&harness, "Drag the arrows or the ring. Arrow keys move by 1 mm, with Shift by 10 mm."));
-    harness
+    (folder, harness)
 }
 
 #[test]
@@ -44,8 +42,7 @@ fn an_arrow_that_is_dragged_moves_the_part_by_what_is_seen() {
     if !has_adapter() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = placing(folder.path());
+    let (_folder, mut harness) = placing();
     let beads = |harness: &Window| harness.state().plan().layers[0].passes[0].points[0];
     let (first, bead) = (foot(&harness), beads(&harness));
     let mut wanted = first;
@@ -91,8 +88,7 @@ fn the_ring_turns_the_part_about_its_middle() {
     if !has_adapter() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = placing(folder.path());
+    let (_folder, mut harness) = placing();
     let (camera, rect) = (harness.state().camera(), harness.get_by_label("3-D view").rect());
     let (low, high) = bounds(&harness);
     let (middle, reach) = (foot(&harness), 1.15 * (high - low).truncate().length() / 2.0);
@@ -115,8 +111,7 @@ fn the_ring_turns_the_part_about_its_middle() {
 
 #[test]
 fn arrow_keys_move_the_part_the_way_it_is_seen() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = placing(folder.path());
+    let (_folder, mut harness) = placing();
     let shift = |harness: &Window| harness.state().project().placement.shift;
     let press = |harness: &mut Window, modifiers: Modifiers, key: Key| {
         harness.key_press_modifiers(modifiers, key);

@@ -1,12 +1,12 @@
 //! Where the part stands.
 
-use super::window::{Window, click, click_at, crosses, example, sees, studio, type_number, wait};
+use super::window::{Window, bounds, click, click_at, crosses, has_adapter, planned, sees, studio, type_number, wait};
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 
 fn size(harness: &Window) -> DVec3 {
-    let (low, high) = harness.state().plan().part.as_ref().unwrap().bounds();
+    let (low, high) = bounds(harness);
     assert!(low.z.abs() < 1e-6, "it does not stand on z = 0");
     high - low
 }
@@ -48,11 +48,10 @@ fn a_part_is_laid_flat_scaled_and_turned() {
 
 #[test]
 fn the_part_is_laid_on_the_face_that_is_clicked() {
-    if !super::window::has_adapter() {
+    if !has_adapter() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "cross");
+    let (_folder, mut harness) = planned("cross");
     click(&mut harness, "Placement");
     // Seen from the front, the end of an arm is in the middle: the cross stands on it. From above it is the upper side.
     for (key, wanted) in [(Key::Num1, DVec3::new(100.0, 20.0, 100.0)), (Key::Num7, DVec3::new(100.0, 100.0, 20.0))] {

@@ -1,7 +1,9 @@
 //! The window before a part is open.
 
-use super::window::{click, open_list, sees, studio, wait};
+use super::window::{Window, click, open_list, sees, studio, wait};
 use beadwright::model::Mesh;
+use beadwright::profile::Profile;
+use beadwright::robot::Cell;
 use beadwright_studio::thumbnail::thumbnail;
 use beadwright_studio::view3d::Camera;
 use egui_kittest::kittest::Queryable;
@@ -36,6 +38,41 @@ fn process_and_robot_are_chosen_before_the_part() {
     assert_eq!(harness.state_mut().view().cell, "abb-irb1410");
     // Programs are written in the language of the profile.
     assert_eq!(harness.state_mut().view().dialect, "rapid");
+}
+
+#[test]
+fn the_robot_cell_follows_the_process_until_one_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = studio(folder.path());
+    let choose = |harness: &mut Window, list: &str, entry: &str| {
+        open_list(harness, list);
+        // The name chosen now stands in the list, too.
+        harness.query_all_by_label(entry).last().unwrap().click();
+        harness.run_steps(3);
+    };
+    for (profile, cell) in [
+        ("cmt-steel-abb", "abb-irb1410"),
+        ("cmt-steel-robots", "fanuc-arc-mate-100id"),
+        // A machine without a robot has no cell of its own.
+        ("plasma-304-cnc", "fanuc-arc-mate-100id"),
+        ("cmt-al2319-kuka", "kuka-kr20-r1810"),
+    ] {
+        choose(&mut harness, "Profile", profile);
+        assert_eq!(harness.state_mut().view().cell, cell, "{profile}");
+        assert!(Profile::built_in(profile).is_ok() && Cell::built_in(cell).is_ok());
+    }
+    // The arm that is shown is that of the new cell, of an open part too.
+    harness.state_mut().open_example("cross");
+    harness.state_mut().view().robot = true;
+    wait(&mut harness);
+    choose(&mut harness, "Profile", "cmt-steel-abb");
+    wait(&mut harness);
+    // By hand, whatever the process.
+    choose(&mut harness, "Robot cell", "ur5e");
+    choose(&mut harness, "Profile", "cmt-al2319-kuka");
+    wait(&mut harness);
+    assert_eq!(harness.state_mut().view().cell, "ur5e");
+    assert_eq!(harness.state_mut().view().dialect, "krl");
 }
 
 #[test]

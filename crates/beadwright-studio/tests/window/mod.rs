@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Longest wait for a plan.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -160,6 +161,18 @@ pub(crate) fn example(store: &Path, name: &str) -> Window {
     wait(&mut harness);
     assert!(harness.state().plan().is_complete(), "{:?}", harness.state().plan().failure);
     harness
+}
+
+/// The same with a folder of its own, which lasts as long as the window needs it.
+pub(crate) fn planned(name: &str) -> (TempDir, Window) {
+    let folder = tempfile::tempdir().unwrap();
+    let harness = example(folder.path(), name);
+    (folder, harness)
+}
+
+/// Lowest and highest coordinates of the part that is planned, mm.
+pub(crate) fn bounds(harness: &Window) -> (DVec3, DVec3) {
+    harness.state().plan().part.as_ref().unwrap().bounds()
 }
 
 /// The cross, several times, each moved and turned by a function, as a binary STL.

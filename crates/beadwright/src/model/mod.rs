@@ -255,6 +255,11 @@ pub fn is_solid(bytes: &[u8]) -> bool {
     stl::announced_size(bytes) != Some(bytes.len()) && known.iter().any(|format| (format.is)(bytes))
 }
 
+/// Whether the bytes are those of an STL file: its size is the one that it announces, or it begins as text does.
+pub fn is_stl(bytes: &[u8]) -> bool {
+    stl::announced_size(bytes) == Some(bytes.len()) || stl::looks_ascii(bytes)
+}
+
 /// Formats that people hand over by mistake.
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(400)];

@@ -63,13 +63,17 @@ impl PropertyAccess for Face {
     }
 }
 
-/// The points of a PLY file, with or without faces, in the units of the file.
+/// The points of a PLY file, in the units of the file, and triangles between them where it has faces. Nothing is mended.
 ///
 /// # Errors
 /// [`ImportError::Broken`] with what cannot be read.
-pub fn points(bytes: &[u8], task: &Task) -> Result<Vec<DVec3>, ImportError> {
-    let (vertices, _) = elements(bytes, task)?;
-    Ok(vertices.into_iter().map(|Vertex(at)| Vec3::from_array(at).as_dvec3()).collect())
+pub fn points(bytes: &[u8], task: &Task) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), ImportError> {
+    let (vertices, faces) = elements(bytes, task)?;
+    let triangles: Vec<_> = faces.iter().flat_map(|Face(corners)| formats::fan(corners)).collect();
+    if triangles.iter().flatten().any(|&corner| corner as usize >= vertices.len()) {
+        return Err(broken("a face names a vertex that is not there"));
+    }
+    Ok((vertices.into_iter().map(|Vertex(at)| Vec3::from_array(at).as_dvec3()).collect(), triangles))
 }
 
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {

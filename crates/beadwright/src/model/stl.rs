@@ -94,7 +94,7 @@ fn plausible(record: &[u8]) -> bool {
     numbers.all(|v| v == 0.0 || (1e-12..1e9).contains(&v.abs()))
 }
 
-fn looks_ascii(bytes: &[u8]) -> bool {
+pub(super) fn looks_ascii(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(4096)];
     let start = head.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
     let word = |w: &[u8]| head[start..].len() >= w.len() && head[start..start + w.len()].eq_ignore_ascii_case(w);

@@ -28,6 +28,16 @@ impl Units {
     pub const ALL: [(&'static str, Self); 4] =
         [("mm", Self::Millimetre), ("cm", Self::Centimetre), ("m", Self::Metre), ("in", Self::Inch)];
 
+    /// What numbers in it are called: `inches`.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Self::Millimetre => "millimetres",
+            Self::Centimetre => "centimetres",
+            Self::Metre => "metres",
+            Self::Inch => "inches",
+        }
+    }
+
     /// Millimetres in one unit.
     pub fn in_mm(self) -> f64 {
         match self {

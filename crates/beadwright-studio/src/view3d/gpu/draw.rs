@@ -38,8 +38,14 @@ impl Shot<'_> {
         }
         let any_bead = style.beads && drawn.iter().any(|(_, r)| !r.beads.is_empty());
         let surface = gpu.surface.as_ref().filter(|_| style.mesh);
-        if let Some(surface) = surface.filter(|_| !any_bead) {
+        let scan = gpu.scan.as_ref().filter(|_| style.scan);
+        if let Some(surface) = surface.filter(|_| !any_bead && scan.is_none()) {
             draw_surface(pass, &pipelines.opaque, surface);
+        }
+        if let Some(scan) = scan {
+            pass.set_bind_group(0, &gpu.scan_binding, &[]);
+            scan.draw(pass, pipelines);
+            pass.set_bind_group(0, &gpu.bindings[0], &[]);
         }
         if style.beads {
             drawn
@@ -60,7 +66,8 @@ impl Shot<'_> {
         pass.set_pipeline(&pipelines.ground);
         pass.draw(0..4, 0..1);
         if let Some(surface) = surface {
-            if any_bead {
+            // Glass would tint the colours of a scan.
+            if any_bead && scan.is_none() {
                 draw_surface(pass, &pipelines.glass, surface);
             }
             draw_points(pass, &pipelines.line, Some(surface.edges.slice(..)), 0..surface.edge_vertices, 0..1);

@@ -6,6 +6,7 @@
 //! | `values` | what their colours are made from |
 //! | `draw` | the order in which things are drawn |
 //! | `surface` | the model |
+//! | `scan` | a scan of the built part |
 //! | `solids` | plate, torch and arm |
 //! | `growing` | a buffer that can grow |
 //! | `globals` | the data passed to all shaders |
@@ -18,6 +19,7 @@ mod draw;
 mod globals;
 mod growing;
 mod pipelines;
+mod scan;
 mod solids;
 mod surface;
 mod target;
@@ -33,6 +35,7 @@ use eframe::egui_wgpu::{RenderState, wgpu};
 use globals::Globals;
 use growing::Growing;
 use pipelines::Pipelines;
+use scan::Scan;
 use surface::Surface;
 pub(super) use target::Target;
 use wgpu::util::DeviceExt as _;
@@ -77,6 +80,10 @@ pub(super) struct Gpu {
     synced: Option<(u64, Colour)>,
     surface: Option<Surface>,
     surface_version: Option<u64>,
+    scan: Option<Scan>,
+    scan_version: Option<u64>,
+    /// The colours of its deviation, bound.
+    scan_binding: wgpu::BindGroup,
     solids: Growing,
 }
 
@@ -84,17 +91,9 @@ impl Gpu {
     pub(super) fn new(state: &RenderState) -> Self {
         let (device, queue) = (state.device.clone(), state.queue.clone());
         let layout = layout(&device);
-        let map = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("colour map"),
-            size: wgpu::Extent3d { width: palette::STEPS as u32, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        let globals = std::array::from_fn(|_| {
+        let [map, scan_map] = std::array::from_fn(|_| colour_map(&device));
+        write_map(&queue, &scan_map, Colour::HeightError, true);
+        let globals: [wgpu::Buffer; LOOKS] = std::array::from_fn(|_| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("globals"),
                 size: size_of::<Globals>() as u64,
@@ -102,10 +101,11 @@ impl Gpu {
                 mapped_at_creation: false,
             })
         });
-        let view = map.create_view(&wgpu::TextureViewDescriptor::default());
+        let [view, scan_view] = [&map, &scan_map].map(|map| map.create_view(&wgpu::TextureViewDescriptor::default()));
         let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &view));
         Self {
             software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+            scan_binding: bind(&device, &layout, &globals[0], &scan_view),
             fans: [fan(&device, 10, &[2]), fan(&device, 20, &[1, 2])],
             device,
             queue,
@@ -119,6 +119,8 @@ impl Gpu {
             synced: None,
             surface: None,
             surface_version: None,
+            scan: None,
+            scan_version: None,
             solids: Growing::new("plate, torch and arm"),
         }
     }
@@ -142,14 +144,11 @@ impl Gpu {
         }
         if self.map_of != Some((style.colour, style.dark)) {
             self.map_of = Some((style.colour, style.dark));
-            let colours = palette::map(style.colour, style.dark);
-            let texels: Vec<u8> = colours.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
-            let row = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(texels.len() as u32),
-                rows_per_image: None,
-            };
-            self.queue.write_texture(self.map.as_image_copy(), &texels, row, self.map.size());
+            write_map(&self.queue, &self.map, style.colour, style.dark);
+        }
+        if self.scan_version != Some(scene.scan_version()) {
+            self.scan_version = Some(scene.scan_version());
+            self.scan = scene.scan().and_then(|scan| Scan::new(&self.device, scan));
         }
     }
 
@@ -221,6 +220,28 @@ fn fan(device: &wgpu::Device, sides: u16, rings: &[u16]) -> (wgpu::Buffer, u32) 
     let (contents, usage) = (bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
     let buffer = wgpu::util::BufferInitDescriptor { label: Some("fan"), contents, usage };
     (device.create_buffer_init(&buffer), indices.len() as u32)
+}
+
+/// An empty colour map.
+fn colour_map(device: &wgpu::Device) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("colour map"),
+        size: wgpu::Extent3d { width: palette::STEPS as u32, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// Sends the colours of a map.
+fn write_map(queue: &wgpu::Queue, map: &wgpu::Texture, colour: Colour, dark: bool) {
+    let texels: Vec<u8> = palette::map(colour, dark).iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let (offset, bytes_per_row, rows_per_image) = (0, Some(texels.len() as u32), None);
+    let row = wgpu::TexelCopyBufferLayout { offset, bytes_per_row, rows_per_image };
+    queue.write_texture(map.as_image_copy(), &texels, row, map.size());
 }
 
 /// The background of a picture.

@@ -21,6 +21,9 @@ pub(super) struct Pipelines {
     pub opaque: wgpu::RenderPipeline,
     pub glass: wgpu::RenderPipeline,
     pub solid: wgpu::RenderPipeline,
+    pub scan: wgpu::RenderPipeline,
+    /// A scan without triangles.
+    pub scan_point: wgpu::RenderPipeline,
 }
 
 type Layout<'a> = Option<wgpu::VertexBufferLayout<'a>>;
@@ -51,12 +54,17 @@ impl Pipelines {
             concat!(include_str!("common.wgsl"), include_str!("beads.wgsl"), include_str!("faces.wgsl")),
         );
         let marks = module("marks", concat!(include_str!("common.wgsl"), include_str!("marks.wgsl")));
-        let surface = module("surface", concat!(include_str!("common.wgsl"), include_str!("surface.wgsl")));
+        let surface = module(
+            "surface",
+            concat!(include_str!("common.wgsl"), include_str!("surface.wgsl"), include_str!("scan.wgsl")),
+        );
         let make = |recipe: &Recipe<'_>| pipeline(device, bindings, samples, recipe);
         let lay = |module, vertex, fragment, buffers, topology, hides| {
             make(&Recipe { module, vertex, fragment, buffers, topology, hides })
         };
         let (ribbon, cap) = (ribbon_buffers(), cap_buffers());
+        let (scan, scan_point) =
+            ([buffer(16, VertexStepMode::Vertex, &SCAN)], [buffer(16, VertexStepMode::Instance, &SCAN)]);
         let (line, dot, plain) = (
             [points(&POINT, VertexStepMode::Vertex)],
             [points(&POINT, VertexStepMode::Instance)],
@@ -66,6 +74,7 @@ impl Pipelines {
         let either = |whole, part| if cut { part } else { whole };
         let bead = either("bead", "cut_bead");
         let (line_colour, dot_colour) = (either("line_colour", "cut_line"), either("dot_colour", "cut_dot"));
+        let scan_colour = either("scan_colour", "cut_scan");
         let (opaque, glass) = (either("opaque", "cut_opaque"), either("glass", "cut_glass"));
         Self {
             samples,
@@ -79,6 +88,8 @@ impl Pipelines {
             opaque: lay(&surface, "surface", opaque, &plain, TRIANGLES, true),
             glass: lay(&surface, "surface", glass, &plain, TRIANGLES, false),
             solid: lay(&surface, "solid", "opaque", &line, TRIANGLES, true),
+            scan: lay(&surface, "scan", scan_colour, &scan, TRIANGLES, true),
+            scan_point: lay(&surface, "scan_point", scan_colour, &scan_point, STRIP, true),
         }
     }
 }
@@ -88,6 +99,7 @@ const fn attribute(format: VertexFormat, offset: u64, shader_location: u32) -> w
 }
 
 const PLAIN: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x3, 0, 0)];
+const SCAN: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x4, 0, 0)];
 const POINT: [wgpu::VertexAttribute; 2] =
     [attribute(VertexFormat::Float32x3, 0, 0), attribute(VertexFormat::Uint32, 12, 1)];
 const BEAD: [wgpu::VertexAttribute; 2] =

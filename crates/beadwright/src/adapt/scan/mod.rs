@@ -5,12 +5,12 @@
 //! | `table` | lines of x, y, z: CSV with or without a header, XYZ, a few touched points |
 //! | `height_map` | a grid of heights |
 //!
-//! The vertices of PLY files are read by `model::ply`.
+//! Surfaces (PLY, STL, OBJ, 3MF, AMF) are read by `model`; they need not be closed.
 
 mod height_map;
 mod table;
 
-use crate::model::{self, ImportError};
+use crate::model::{self, ImportError, Units};
 use crate::task::{Cancelled, Task};
 use crate::text::{self, TextError};
 use glam::DVec3;
@@ -20,6 +20,8 @@ use glam::DVec3;
 pub struct Scan {
     /// The points, mm.
     pub points: Vec<DVec3>,
+    /// Triangles between them, by their numbers; none of a cloud of points.
+    pub triangles: Vec<[u32; 3]>,
     /// The format, for people: `PLY`.
     pub format: &'static str,
     /// Points that the file has without a height.
@@ -32,9 +34,9 @@ pub enum ScanError {
     /// The text cannot be decoded.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// A PLY file that cannot be read.
+    /// A surface that cannot be read.
     #[error(transparent)]
-    Ply(#[from] ImportError),
+    Surface(#[from] ImportError),
     /// A line that cannot be read.
     #[error("line {line} of the scan cannot be read: {reason}.")]
     Line {
@@ -45,8 +47,8 @@ pub enum ScanError {
     },
     /// No points.
     #[error(
-        "the scan holds no points. A scan is a PLY file, lines of x, y and z in mm, or a height map that begins with a line \
-         such as height_map x0=0 y0=0 step=0.5."
+        "the scan holds no points. A scan is a surface or cloud (PLY, STL, OBJ, 3MF), lines of x, y and z in mm, or a height map \
+         that begins with a line such as height_map x0=0 y0=0 step=0.5."
     )]
     Empty,
     /// A coordinate out of all bounds.
@@ -59,7 +61,7 @@ pub enum ScanError {
 
 impl From<Cancelled> for ScanError {
     fn from(cancelled: Cancelled) -> Self {
-        Self::Ply(cancelled.into())
+        Self::Surface(cancelled.into())
     }
 }
 
@@ -68,26 +70,58 @@ impl From<Cancelled> for ScanError {
 /// # Errors
 /// [`ScanError`] with the line where one is at fault.
 pub fn read(bytes: &[u8], task: &Task) -> Result<Scan, ScanError> {
-    let (points, format) = if bytes.starts_with(b"ply") {
-        (model::ply_points(bytes, task)?, "PLY")
+    let (points, triangles, format) = if bytes.starts_with(b"ply") {
+        let (points, triangles) = model::ply_points(bytes, task)?;
+        (points, triangles, "PLY")
+    } else if model::is_solid(bytes) || model::is_stl(bytes) {
+        surface(bytes, task)?
     } else {
         let text = text::of(bytes)?;
         match height_map::read(&text)? {
-            Some(points) => (points, "height map"),
-            None => (table::read(&text)?, "table of points"),
+            Some(points) => (points, Vec::new(), "height map"),
+            None => (table::read(&text)?, Vec::new(), "table of points"),
         }
     };
-    let read = points.len();
-    let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
+    let without_height = points.iter().filter(|point| !point.is_finite()).count();
+    let (points, triangles) = seen(points, &triangles);
     if points.is_empty() {
         return Err(ScanError::Empty);
     }
     if let Some(&at) = points.iter().find(|p| p.abs().max_element() > model::MAX_REACH_MM) {
         return Err(ScanError::TooFar { at });
     }
-    let without_height = read - points.len();
-    Ok(Scan { points, format, without_height })
+    Ok(Scan { points, triangles, format, without_height })
 }
+
+/// The surface in a file of solids, which a scan need not close.
+fn surface(bytes: &[u8], task: &Task) -> Result<Surface, ImportError> {
+    let import = model::import_damaged(bytes, task)?;
+    let millimetres = import.units.unwrap_or(Units::Millimetre).in_mm();
+    let points = import.mesh.vertices.into_iter().map(|point| point * millimetres).collect();
+    Ok((points, import.mesh.triangles, import.format))
+}
+
+/// The points that have a height, and the triangles between them.
+fn seen(points: Vec<DVec3>, triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    if points.iter().all(|point| point.is_finite()) {
+        return (points, triangles.to_vec());
+    }
+    let mut count = 0;
+    let number = |point: &DVec3| {
+        count += u32::from(point.is_finite());
+        point.is_finite().then(|| count - 1)
+    };
+    let numbers: Vec<Option<u32>> = points.iter().map(number).collect();
+    let renumbered = |&[a, b, c]: &[u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| numbers.get(corner as usize).copied().flatten());
+        Some([a?, b?, c?])
+    };
+    let triangles = triangles.iter().filter_map(renumbered).collect();
+    (points.into_iter().filter(|point| point.is_finite()).collect(), triangles)
+}
+
+/// Points, triangles between them, and the format.
+type Surface = (Vec<DVec3>, Vec<[u32; 3]>, &'static str);
 
 /// Lines with their numbers, from 1, less comments and empty ones.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {

@@ -1,0 +1,85 @@
+//! `beadwright deviation`: how far a scan of the built part lies from the part.
+
+use crate::{file, model, profile, progress};
+use anyhow::Context;
+use beadwright::adapt::scan;
+use beadwright::deviation::{Deviation, Doubt, Figures, deviation};
+use beadwright::model::Units;
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: model::Model,
+    /// The scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
+    /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed.
+    scan: PathBuf,
+    /// Unit of the scan's coordinates, where its file does not tell it.
+    #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
+    scan_units: Units,
+    #[command(flatten)]
+    wanted: profile::Wanted,
+    /// Print machine-readable JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+    let profile = profile::load(name, &arguments.wanted.set)?;
+    let (task, bar) = progress::task()?;
+    let part = arguments.model.placed(profile.bead.width, &task)?;
+    let context = || format!("{}", arguments.scan.display());
+    let mut scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
+    let millimetres = arguments.scan_units.in_mm();
+    scan.points.iter_mut().for_each(|point| *point *= millimetres);
+    let compared = deviation(&part.mesh, &scan.points, profile.fill.machining_allowance, &task);
+    bar.finish_and_clear();
+    let Deviation { figures, doubts, .. } = compared.with_context(context)?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let value = serde_json::json!({ "format": scan.format, "figures": figures, "doubts": doubts });
+        return Ok(writeln!(out, "{value:#}")?);
+    }
+    for doubt in &doubts {
+        writeln!(out, "warning: {doubt}{}", remedy(doubt))?;
+    }
+    let (scan, format) = (arguments.scan.display(), scan.format);
+    writeln!(out, "{scan} beside {}: {format} of {} points", arguments.model.model.display(), figures.points)?;
+    print(&mut out, &figures)
+}
+
+/// What to change in the command.
+fn remedy(doubt: &Doubt) -> String {
+    let named = |unit: &Units| Units::ALL.iter().find(|(_, of)| of == unit).map_or("in", |(name, _)| *name);
+    match doubt {
+        Doubt::ScanUnit(unit) => format!(" Give --scan-units {}.", named(unit)),
+        Doubt::PartUnit(unit) => format!(" Give --units {}.", named(unit)),
+        Doubt::Off(_) => " --turn, --centre and --shift place the part.".to_owned(),
+        Doubt::Open(_) => String::new(),
+    }
+}
+
+fn print(out: &mut impl Write, figures: &Figures) -> anyhow::Result<()> {
+    let length = |length: f64| format!("{length:+.3} mm");
+    let extreme = |of: beadwright::deviation::Extreme| {
+        format!("{}  x {:.1} y {:.1} z {:.1}", length(of.distance), of.at.x, of.at.y, of.at.z)
+    };
+    let percent = |part: f64| format!("{:.1} %", 100.0 * part);
+    let allowance = figures.allowance;
+    let rows = [
+        ("mean".to_owned(), length(figures.mean)),
+        ("standard deviation".to_owned(), format!("{:.3} mm", figures.standard_deviation)),
+        ("farthest outside".to_owned(), extreme(figures.highest)),
+        ("farthest inside".to_owned(), extreme(figures.lowest)),
+        (format!("within the allowance, 0 to {allowance} mm"), percent(figures.within)),
+        ("outside beyond it".to_owned(), percent(figures.above)),
+        ("inside, where metal is missing".to_owned(), percent(figures.below)),
+    ];
+    writeln!(out)?;
+    for (name, value) in rows {
+        writeln!(out, "  {name:<40} {value}")?;
+    }
+    Ok(())
+}

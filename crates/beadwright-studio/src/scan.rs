@@ -1,0 +1,109 @@
+//! A scan of the built part, compared with the part in the background.
+
+use crate::disk;
+use crate::jobs::{self, Job};
+use crate::studio::Studio;
+use crate::view::Mode;
+use crate::view3d::Scanned;
+use beadwright::adapt::scan::{self, Scan};
+use beadwright::deviation::{Deviation, deviation};
+use beadwright::model::Part;
+use beadwright::task::Task;
+use eframe::egui::Context;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A scan beside a part.
+pub struct Compared {
+    /// The name of its file.
+    pub name: String,
+    scan: Arc<Scan>,
+    /// The part and the machining allowance (mm) that it was compared with.
+    with: (Arc<Part>, f64),
+    /// How far it lies from the part.
+    pub deviation: Deviation,
+}
+
+/// Reads a file, or takes what was read.
+type Source = Box<dyn FnOnce() -> Result<Arc<Scan>, String> + Send>;
+
+/// Compares a scan with a part.
+fn compare(ctx: &Context, name: String, source: Source, with: (Arc<Part>, f64)) -> Job<Result<Compared, String>> {
+    Job::start(ctx, move || {
+        let scan = source()?;
+        let mesh = with.0.mesh().ok_or("a part given by curves has no surface to compare a scan with.")?;
+        let compared = deviation(mesh, &scan.points, with.1, &Task::new());
+        let deviation = compared.map_err(|error| format!("{name}: {error}"))?;
+        Ok(Compared { name, scan, with, deviation })
+    })
+}
+
+impl Studio {
+    /// Compares a scan with the part, as soon as that is placed.
+    pub fn open_scan(&mut self, path: &Path) {
+        self.jobs.scan_wanted = Some(path.to_owned());
+        self.view.scan = true;
+        self.view.switch(Mode::Solid);
+    }
+
+    /// Takes the scan away.
+    pub(crate) fn close_scan(&mut self) {
+        (self.jobs.scan, self.jobs.scan_job, self.jobs.scan_wanted) = (None, None, None);
+        self.plans.own.scene.set_scan(None);
+    }
+
+    /// The scan, as far as it was compared with the part in view.
+    pub fn scan(&self) -> Option<&Compared> {
+        let own = &self.plans.own;
+        let (part, _) = (own.part.as_ref()?, own.scene.scan()?);
+        self.jobs.scan.as_ref().filter(|scan| Arc::ptr_eq(&scan.with.0, part))
+    }
+
+    /// The part that a scan can be compared with, and what is left of it to be milled off, mm.
+    fn scannable(&self) -> Option<(Arc<Part>, f64)> {
+        let own = &self.plans.own;
+        let part = own.part.clone().filter(|part| part.mesh().is_some())?;
+        Some((part, own.profile.as_ref()?.fill.machining_allowance))
+    }
+
+    /// Takes what was compared; compares a new scan, or the open one after the part or its allowance has changed.
+    pub(crate) fn hear_of_scan(&mut self) {
+        match jobs::take(&mut self.jobs.scan_job) {
+            Some(Ok(Ok(compared))) => {
+                let (scan, distances) = (&compared.scan, &compared.deviation.distances);
+                self.plans.own.scene.set_scan(Scanned::new(&scan.points, &scan.triangles, distances));
+                self.jobs.scan = Some(compared);
+            }
+            Some(Ok(Err(error)) | Err(error)) => {
+                self.close_scan();
+                self.complain(error);
+            }
+            None => {}
+        }
+        match self.scannable() {
+            Some(with) if self.jobs.scan_job.is_none() => self.jobs.scan_job = self.next_scan(with),
+            None if self.jobs.scan_wanted.is_some() && !self.plans.own.is_busy() => {
+                self.jobs.scan_wanted = None;
+                self.complain(self.t("scan-needs-part"));
+            }
+            _ => {}
+        }
+    }
+
+    /// What is to be compared next, if anything is.
+    fn next_scan(&mut self, with: (Arc<Part>, f64)) -> Option<Job<Result<Compared, String>>> {
+        if let Some(path) = self.jobs.scan_wanted.take() {
+            let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            return Some(compare(&self.window.ctx, name, Box::new(move || read(&path)), with));
+        }
+        let open = self.jobs.scan.as_ref()?;
+        let same = Arc::ptr_eq(&open.with.0, &with.0) && open.with.1 == with.1 && self.scan().is_some();
+        let (name, scan) = (open.name.clone(), open.scan.clone());
+        (!same).then(|| compare(&self.window.ctx, name, Box::new(|| Ok(scan)), with))
+    }
+}
+
+fn read(path: &Path) -> Result<Arc<Scan>, String> {
+    let scan = scan::read(&disk::read(path)?, &Task::new());
+    scan.map(Arc::new).map_err(|error| format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,41 @@
+//! A scan as it is drawn: its points, each with the colour of its deviation.
+
+use glam::DVec3;
+
+/// Part of the points whose deviation the colours tell; those beyond have the colour of the end, so that a few spatters do
+/// not take the colours away from the rest.
+const TOLD: f64 = 0.99;
+
+/// The least deviation at an end of the colours, mm.
+const FINEST_MM: f64 = 0.01;
+
+/// A scan, with how far each of its points lies from the part.
+#[derive(Debug)]
+pub struct Scanned {
+    /// x, y, z, mm, and the place in the colour map, 0 to 1: the middle lies on the surface.
+    pub(super) points: Vec<[f32; 4]>,
+    /// Triangles between them; none of a cloud of points.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The deviation at the ends of the colours, mm.
+    range: f64,
+}
+
+impl Scanned {
+    /// None without points. `distances` are those of the points, mm.
+    pub fn new(points: &[DVec3], triangles: &[[u32; 3]], distances: &[f64]) -> Option<Self> {
+        let mut far: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
+        let told = (TOLD * far.len().checked_sub(1)? as f64).round() as usize;
+        let range = far.select_nth_unstable_by(told, f64::total_cmp).1.max(FINEST_MM);
+        let coloured = |(at, distance): (&DVec3, &f64)| {
+            let part = (0.5 + 0.5 * distance / range).clamp(0.0, 1.0);
+            at.as_vec3().extend(part as f32).into()
+        };
+        let points = points.iter().zip(distances).map(coloured).collect();
+        Some(Self { points, triangles: triangles.to_vec(), range })
+    }
+
+    /// The deviation at the ends of the colours, mm.
+    pub fn range(&self) -> f64 {
+        self.range
+    }
+}

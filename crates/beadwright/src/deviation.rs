@@ -1,0 +1,254 @@
+//! How far a scan of the built part lies from the part's surface.
+//!
+//! A point's distance is that to the nearest triangle, found by a tree of boxes (rstar). Its sign is that of the normals
+//! around the nearest place, each weighted by the angle of its triangle there, which tells inside from outside also where
+//! that place is an edge or a corner (Bærentzen and Aanæs 2005, *Signed distance computation using the angle weighted
+//! pseudonormal*).
+
+use crate::model::{Mesh, NO_NEIGHBOUR, Units};
+use crate::task::{Cancelled, Task};
+use glam::DVec3;
+use rayon::prelude::*;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use serde::{Serialize, Serializer};
+use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
+
+/// Places that are nearer to each other count as one, mm.
+const SAME_MM: f64 = 1e-6;
+
+/// A point so near to the surface lies on it, mm: files are rounded.
+const ON_SURFACE_MM: f64 = 1e-3;
+
+/// A scan is taken to be in another unit if it then has this part of the part's size: it need not show all of it.
+const SEEN: RangeInclusive<f64> = 0.5..=1.05;
+
+/// A scan is not where the part is if half its points lie farther off than this part of its size.
+const FAR: f64 = 0.1;
+
+/// Points between two looks at whether the task was cancelled.
+const BATCH: usize = 50_000;
+
+/// A scan beside the part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviation {
+    /// Distance of each point from the surface, mm: above 0 outside the part, below 0 inside.
+    pub distances: Vec<f64>,
+    /// What they come to.
+    pub figures: Figures,
+    /// What speaks against comparing the two as they are.
+    pub doubts: Vec<Doubt>,
+}
+
+/// What the distances of a scan's points come to; every point counts alike.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figures {
+    /// Number of points.
+    pub points: usize,
+    /// Mean distance, mm.
+    pub mean: f64,
+    /// Standard deviation of the distances from their mean, mm.
+    pub standard_deviation: f64,
+    /// The point farthest outside.
+    pub highest: Extreme,
+    /// The point farthest inside.
+    pub lowest: Extreme,
+    /// What is left to be milled off, mm.
+    pub allowance: f64,
+    /// Part of the points that lie outside by the allowance at most, or on the surface, 0 to 1.
+    pub within: f64,
+    /// Part of the points that lie farther outside, 0 to 1.
+    pub above: f64,
+    /// Part of the points that lie inside the part, where metal is missing, 0 to 1.
+    pub below: f64,
+}
+
+/// A point with its distance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Extreme {
+    /// Distance from the surface, mm.
+    pub distance: f64,
+    /// The point, mm.
+    pub at: DVec3,
+}
+
+/// What speaks against comparing a scan with a part as they are.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Doubt {
+    /// The scan is about as much smaller than the part as numbers in this unit are smaller than those in mm.
+    #[error("the scan has about 1/{} of the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
+    ScanUnit(Units),
+    /// The scan is about as much larger.
+    #[error("the scan is about {} times as large as the part: the numbers of the part seem to be {}, not mm.", .0.in_mm(), .0.plural())]
+    PartUnit(Units),
+    /// Half of the scan lies farther than this from the part, mm.
+    #[error(
+        "half of the scan lies more than {0:.1} mm off the part's surface: bring the two into the same coordinates, those of \
+         the part as it is planned, with z = 0 on the plate."
+    )]
+    Off(f64),
+    /// The part's surface has holes, beside which nothing tells inside from outside.
+    #[error(
+        "the part's surface is not closed ({0} open edges): beside its holes inside and outside are not told apart."
+    )]
+    Open(usize),
+}
+
+impl Serialize for Doubt {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Why a scan cannot be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum DeviationError {
+    /// No point.
+    #[error("the scan holds no points, so there is nothing to compare.")]
+    NoPoints,
+    /// No surface.
+    #[error("the part has no triangle with an area, so there is no surface to compare the scan with.")]
+    NoSurface,
+    /// Stopped by the caller.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Compares the points of a scan (mm) with the surface of a part that lies in the same coordinates; `allowance` (mm) is
+/// what is left to be milled off.
+///
+/// # Errors
+/// [`DeviationError`].
+pub fn deviation(part: &Mesh, points: &[DVec3], allowance: f64, task: &Task) -> Result<Deviation, DeviationError> {
+    let surface = Surface::of(part).ok_or(DeviationError::NoSurface)?;
+    let mut distances = Vec::with_capacity(points.len());
+    for batch in points.chunks(BATCH) {
+        task.check()?;
+        distances.par_extend(batch.par_iter().map(|point| surface.signed_distance(*point)));
+    }
+    let figures = figures(points, &distances, allowance).ok_or(DeviationError::NoPoints)?;
+    let doubts = doubts(part, points, &distances);
+    Ok(Deviation { distances, figures, doubts })
+}
+
+fn figures(points: &[DVec3], distances: &[f64], allowance: f64) -> Option<Figures> {
+    let extremes = || points.iter().zip(distances).map(|(&at, &distance)| Extreme { distance, at });
+    let by_distance = |a: &Extreme, b: &Extreme| a.distance.total_cmp(&b.distance);
+    let (lowest, highest) = (extremes().min_by(by_distance)?, extremes().max_by(by_distance)?);
+    let count = distances.len() as f64;
+    let mean = distances.iter().sum::<f64>() / count;
+    let variance = distances.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / count;
+    let part = |is: fn(f64, f64) -> bool| distances.iter().filter(|&&d| is(d, allowance)).count() as f64 / count;
+    let above = part(|distance, allowance| distance > allowance + ON_SURFACE_MM);
+    let below = part(|distance, _| distance < -ON_SURFACE_MM);
+    let within = part(|distance, allowance| (-ON_SURFACE_MM..=allowance + ON_SURFACE_MM).contains(&distance));
+    let (points, standard_deviation) = (distances.len(), variance.sqrt());
+    Some(Figures { points, mean, standard_deviation, highest, lowest, allowance, within, above, below })
+}
+
+fn doubts(part: &Mesh, points: &[DVec3], distances: &[f64]) -> Vec<Doubt> {
+    let size = part.size().length();
+    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let ratio = (high - low).length() / size;
+    let others = || Units::ALL.into_iter().map(|(_, unit)| unit).filter(|unit| *unit != Units::Millimetre);
+    let scan = others().find(|unit| SEEN.contains(&(ratio * unit.in_mm()))).map(Doubt::ScanUnit);
+    let unit = scan.or_else(|| others().find(|unit| SEEN.contains(&(ratio / unit.in_mm()))).map(Doubt::PartUnit));
+    let mut far: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
+    let middle = far.len() / 2;
+    let (_, half, _) = far.select_nth_unstable_by(middle, f64::total_cmp);
+    // A wrong unit explains the distance.
+    let off = Some(*half).filter(|half| *half > FAR * size && unit.is_none()).map(Doubt::Off);
+    let open = part.neighbours.iter().flatten().filter(|&&across| across == NO_NEIGHBOUR).count();
+    unit.into_iter().chain(off).chain((open > 0).then_some(Doubt::Open(open))).collect()
+}
+
+/// The triangles of a part, in a tree of boxes.
+struct Surface(RTree<Facet>);
+
+impl Surface {
+    /// None where no triangle has an area.
+    fn of(part: &Mesh) -> Option<Self> {
+        let corner = |i: u32| part.vertices.get(i as usize).copied();
+        let facet = |&[a, b, c]: &[u32; 3]| Some(Facet { corners: [corner(a)?, corner(b)?, corner(c)?] });
+        let facets = part.triangles.iter().filter_map(facet);
+        let facets: Vec<Facet> = facets.filter(|facet| facet.normal().length_squared() > 0.0).collect();
+        (!facets.is_empty()).then(|| Self(RTree::bulk_load(facets)))
+    }
+
+    /// Distance of a point, mm: above 0 outside, below 0 inside.
+    fn signed_distance(&self, point: DVec3) -> f64 {
+        let at = point.to_array();
+        let Some(nearest) = self.0.nearest_neighbor(&at) else { return f64::INFINITY };
+        let spot = nearest.closest(point);
+        let distance = point.distance(spot);
+        let around = self.0.locate_within_distance(at, (distance + SAME_MM).powi(2));
+        let touching = around.filter(|facet| facet.closest(point).distance(spot) < SAME_MM);
+        let normal: DVec3 = touching.map(|facet| facet.normal().normalize_or_zero() * facet.angle_at(spot)).sum();
+        if normal.dot(point - spot) < 0.0 { -distance } else { distance }
+    }
+}
+
+/// A triangle, wound counter-clockwise seen from outside.
+struct Facet {
+    corners: [DVec3; 3],
+}
+
+impl Facet {
+    fn edges(&self) -> [[DVec3; 2]; 3] {
+        let [a, b, c] = self.corners;
+        [[a, b], [b, c], [c, a]]
+    }
+
+    /// Points outside; its length is twice the area, mm².
+    fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(c - a)
+    }
+
+    /// The place of the triangle that is nearest to a point.
+    fn closest(&self, point: DVec3) -> DVec3 {
+        let (normal, edges) = (self.normal(), self.edges());
+        if edges.iter().all(|[a, b]| normal.dot((b - a).cross(point - a)) >= 0.0) {
+            return point - normal * (normal.dot(point - self.corners[0]) / normal.length_squared());
+        }
+        let [first, others @ ..] = edges.map(|edge| on_edge(edge, point));
+        others.into_iter().fold(first, |best, place| {
+            if place.distance_squared(point) < best.distance_squared(point) { place } else { best }
+        })
+    }
+
+    /// The angle of the triangle around one of its places: all around inside it, half on an edge.
+    fn angle_at(&self, spot: DVec3) -> f64 {
+        let [a, b, c] = self.corners;
+        let corner = [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|[at, ..]| at.distance(spot) < SAME_MM);
+        match corner {
+            Some([at, next, last]) => (next - at).angle_between(last - at),
+            None if self.edges().iter().any(|edge| on_edge(*edge, spot).distance(spot) < SAME_MM) => PI,
+            None => TAU,
+        }
+    }
+}
+
+/// The place of an edge that is nearest to a point.
+fn on_edge([from, to]: [DVec3; 2], point: DVec3) -> DVec3 {
+    let along = to - from;
+    let part = (point - from).dot(along) / along.length_squared();
+    if part.is_finite() { from + along * part.clamp(0.0, 1.0) } else { from }
+}
+
+impl RTreeObject for Facet {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let [a, b, c] = self.corners;
+        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
+    }
+}
+
+impl PointDistance for Facet {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        let point = DVec3::from_array(*point);
+        self.closest(point).distance_squared(point)
+    }
+}
