@@ -10,7 +10,7 @@
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
-//! | [`scan`] | a scan of the built part beside the part |
+//! | [`compared`], `scan` | a scan of the built part beside the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
 //! | [`arm`] | how the robot stands with the torch at a place |
@@ -28,6 +28,7 @@ mod act;
 pub mod actions;
 mod app;
 pub mod arm;
+pub mod compared;
 pub mod disk;
 pub mod export;
 mod files;
@@ -40,7 +41,7 @@ mod panels;
 pub mod planner;
 mod process;
 pub mod project;
-pub mod scan;
+mod scan;
 pub mod settings;
 pub mod state;
 pub mod steps;

@@ -1,42 +1,13 @@
-//! A scan of the built part, compared with the part in the background.
+//! The scan in the window: opened, compared with the part in view, taken away.
 
-use crate::disk;
+use crate::compared::{Compared, compare, read};
 use crate::jobs::{self, Job};
 use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view3d::Scanned;
-use beadwright::adapt::scan::{self, Scan};
-use beadwright::deviation::{Deviation, deviation};
 use beadwright::model::Part;
-use beadwright::task::Task;
-use eframe::egui::Context;
 use std::path::Path;
 use std::sync::Arc;
-
-/// A scan beside a part.
-pub struct Compared {
-    /// The name of its file.
-    pub name: String,
-    scan: Arc<Scan>,
-    /// The part and the machining allowance (mm) that it was compared with.
-    with: (Arc<Part>, f64),
-    /// How far it lies from the part.
-    pub deviation: Deviation,
-}
-
-/// Reads a file, or takes what was read.
-type Source = Box<dyn FnOnce() -> Result<Arc<Scan>, String> + Send>;
-
-/// Compares a scan with a part.
-fn compare(ctx: &Context, name: String, source: Source, with: (Arc<Part>, f64)) -> Job<Result<Compared, String>> {
-    Job::start(ctx, move || {
-        let scan = source()?;
-        let mesh = with.0.mesh().ok_or("a part given by curves has no surface to compare a scan with.")?;
-        let compared = deviation(mesh, &scan.points, with.1, &Task::new());
-        let deviation = compared.map_err(|error| format!("{name}: {error}"))?;
-        Ok(Compared { name, scan, with, deviation })
-    })
-}
 
 impl Studio {
     /// Compares a scan with the part, as soon as that is placed.
@@ -101,9 +72,4 @@ impl Studio {
         let (name, scan) = (open.name.clone(), open.scan.clone());
         (!same).then(|| compare(&self.window.ctx, name, Box::new(|| Ok(scan)), with))
     }
-}
-
-fn read(path: &Path) -> Result<Arc<Scan>, String> {
-    let scan = scan::read(&disk::read(path)?, &Task::new());
-    scan.map(Arc::new).map_err(|error| format!("{}: {error}", path.display()))
 }

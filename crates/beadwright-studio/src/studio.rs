@@ -1,6 +1,7 @@
 //! The program: window, project, plans, background work, views.
 
 use crate::actions::Action;
+use crate::compared::Compared;
 use crate::export::Export;
 use crate::form::Parsed;
 use crate::heat::Temperatures;
@@ -8,7 +9,6 @@ use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
-use crate::scan::Compared;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::steps::Looked;
