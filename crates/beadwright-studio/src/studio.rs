@@ -284,8 +284,8 @@ impl Studio {
             colour: view.colour,
             mesh: view.mesh || view.laying,
             scan,
-            travels: view.show.travels,
-            starts: view.show.starts,
+            travels: view.show.travels && !scan,
+            starts: view.show.starts && !scan,
             marks_from: if view.all_marks { 0 } else { view.last },
             // Beads would lie before the faces to be clicked, and before the scan.
             beads: view.show.beads && !view.laying && !scan,
