@@ -73,12 +73,16 @@ fn print(out: &mut impl Write, figures: &Figures) -> anyhow::Result<()> {
         ("standard deviation".to_owned(), format!("{:.3} mm", figures.standard_deviation)),
         ("farthest outside".to_owned(), extreme(figures.highest)),
         ("farthest inside".to_owned(), extreme(figures.lowest)),
-        (format!("within the allowance, 0 to {allowance} mm"), percent(figures.within)),
-        ("outside beyond it".to_owned(), percent(figures.above)),
+    ];
+    let within = || (format!("within the allowance, 0 to {allowance} mm"), percent(figures.within));
+    let within = (allowance > 0.0).then(within);
+    let beyond = if within.is_some() { "outside beyond it" } else { "outside" };
+    let shares = [
+        (beyond.to_owned(), percent(figures.above)),
         ("inside, where metal is missing".to_owned(), percent(figures.below)),
     ];
     writeln!(out)?;
-    for (name, value) in rows {
+    for (name, value) in rows.into_iter().chain(within).chain(shares) {
         writeln!(out, "  {name:<40} {value}")?;
     }
     Ok(())

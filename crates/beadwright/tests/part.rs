@@ -79,6 +79,23 @@ fn a_part_that_was_turned_is_laid_flat_again() {
     }
 }
 
+/// Both large faces of the plate are the same size: a shift, which rounds their corners anew, does not choose between them.
+#[test]
+fn a_shift_does_not_change_how_a_part_is_laid_flat() {
+    for name in ["plate", "propeller", "gear"] {
+        for turn in [DVec3::new(90.0, 0.0, 0.0), DVec3::new(0.0, 90.0, 0.0), DVec3::new(-37.0, 61.0, 12.0)] {
+            let laid = |shift: DVec2| {
+                let placed = Placement { turn, shift, ..Placement::default() };
+                placed.laid_flat(&placed.solid(solid(name), 7.54).unwrap().mesh)
+            };
+            let still = laid(DVec2::ZERO);
+            for shift in [(250.0, -40.0), (-7.25, 0.0), (1e3 / 3.0, 1e-3)].map(DVec2::from) {
+                assert!(laid(shift).abs_diff_eq(still, 1e-6), "{name} {turn} by {shift}: {} for {still}", laid(shift));
+            }
+        }
+    }
+}
+
 #[test]
 fn the_turn_that_lays_flat_is_one_about_x_then_y_then_z() {
     let mut model = solid("propeller");

@@ -46,8 +46,10 @@ fn figures(studio: &Studio, ui: &mut Ui, figures: &Figures) {
         ui.weak("·");
         ui.label(format!("{} {:+.2} mm", studio.t(key), extreme.distance)).on_hover_text(place);
     }
-    ui.weak("·");
-    ui.label(format!("{} 0–{allowance} mm: {:.0} %", studio.t("scan-within"), percent(figures.within)));
+    if *allowance > 0.0 {
+        ui.weak("·");
+        ui.label(format!("{} 0–{allowance} mm: {:.0} %", studio.t("scan-within"), percent(figures.within)));
+    }
     ui.weak("·");
     ui.label(format!("{}: {:.0} %", studio.t("scan-below"), percent(figures.below)));
 }

@@ -2,10 +2,14 @@
 
 use super::Mesh;
 use glam::DVec3;
+use std::cmp::Reverse;
 use std::collections::HashMap;
 
 /// Normals whose difference is shorter than this belong to one face.
 const SAME_NORMAL: f64 = 1e-3;
+
+/// Areas that differ by less than this, in squared extents of the part, are alike.
+const SAME_AREA: f64 = 1e-6;
 
 /// The part stands on a face if no point is farther below it than this, in extents of the part.
 const STANDING: f64 = 1e-3;
@@ -26,17 +30,14 @@ pub(super) fn faces(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
         let face = faces.entry(key.map(|v| v.round() as i64)).or_insert((0.0, normal, height));
         face.0 += doubled.length() / 2.0;
     }
-    let mut faces: Vec<_> = faces.into_values().collect();
-    // A fixed order of equal faces: hash maps have none.
-    let order = |face: &(f64, DVec3, f64)| (face.1.z, face.1.y, face.1.x, face.2);
-    faces.sort_by(|a, b| {
-        let tie = || order(a).partial_cmp(&order(b)).unwrap_or(std::cmp::Ordering::Equal);
-        b.0.total_cmp(&a.0).then_with(tie)
-    });
+    let mut faces: Vec<_> = faces.into_iter().collect();
+    // Faces as large as each other have a fixed order, which rounding, as after a shift, does not change.
+    let size = |area: f64| (area / (SAME_AREA * extent * extent)).round() as i64;
+    faces.sort_by_key(|&([x, y, z, height], (area, ..))| (Reverse(size(area)), z, y, x, height));
     let stands = move |&(_, normal, height): &(f64, DVec3, f64)| {
         mesh.vertices.iter().all(|v| normal.dot(*v) <= height + STANDING * extent)
     };
-    faces.into_iter().take(CANDIDATES).filter(stands).map(|face| face.1)
+    faces.into_iter().map(|(_, face)| face).take(CANDIDATES).filter(stands).map(|face| face.1)
 }
 
 /// Cosine of the slope from which on a face that looks down counts as hanging over: 45°.
