@@ -79,6 +79,12 @@ fn a_part_that_was_turned_is_laid_flat_again() {
     }
 }
 
+/// A turn about x, then y, then z, in degrees.
+fn rotation(turn: DVec3) -> DMat3 {
+    let turn = turn.map(f64::to_radians);
+    DMat3::from_rotation_z(turn.z) * DMat3::from_rotation_y(turn.y) * DMat3::from_rotation_x(turn.x)
+}
+
 /// Both large faces of the plate are the same size: a shift, which rounds their corners anew, does not choose between them.
 #[test]
 fn a_shift_does_not_change_how_a_part_is_laid_flat() {
@@ -86,7 +92,7 @@ fn a_shift_does_not_change_how_a_part_is_laid_flat() {
         for turn in [DVec3::new(90.0, 0.0, 0.0), DVec3::new(0.0, 90.0, 0.0), DVec3::new(-37.0, 61.0, 12.0)] {
             let laid = |shift: DVec2| {
                 let placed = Placement { turn, shift, ..Placement::default() };
-                placed.laid_flat(&placed.solid(solid(name), 7.54).unwrap().mesh)
+                rotation(placed.laid_flat(&placed.solid(solid(name), 7.54).unwrap().mesh))
             };
             let still = laid(DVec2::ZERO);
             for shift in [(250.0, -40.0), (-7.25, 0.0), (1e3 / 3.0, 1e-3)].map(DVec2::from) {
@@ -100,8 +106,7 @@ fn a_shift_does_not_change_how_a_part_is_laid_flat() {
 fn the_turn_that_lays_flat_is_one_about_x_then_y_then_z() {
     let mut model = solid("propeller");
     model.mesh.place(1.0, DVec3::new(90.0, 0.0, 0.0));
-    let turn = Placement::default().laid_flat(&model.mesh) * std::f64::consts::PI / 180.0;
-    let matrix = DMat3::from_rotation_z(turn.z) * DMat3::from_rotation_y(turn.y) * DMat3::from_rotation_x(turn.x);
+    let matrix = rotation(Placement::default().laid_flat(&model.mesh));
     // The bottom of the propeller looks along +y after that turn.
     let down = matrix * DVec3::Y;
     assert!(down.abs_diff_eq(DVec3::NEG_Z, 1e-9) || (matrix * DVec3::NEG_Y).abs_diff_eq(DVec3::NEG_Z, 1e-9), "{down}");
