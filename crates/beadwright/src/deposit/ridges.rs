@@ -45,7 +45,7 @@ const ALONG: f64 = 1e-9;
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Where the beads leave a void or a hump between them: places across in half bead widths.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Stripe {
     low: f64,
     high: f64,
