@@ -63,7 +63,6 @@ fn agree(name: &str, settings: DepositSettings, [quick, slow]: &[Judgement; 2], 
 
 #[test]
 fn the_quick_way_finds_what_every_point_shows() {
-    let mut computed = [0, 0];
     for (part, strategies) in [
         ("cross", &["zigzag", "compound", "contour"][..]),
         ("plate", &["raster", "zigzag", "hybrid"]),
@@ -76,12 +75,9 @@ fn the_quick_way_finds_what_every_point_shows() {
                 let settings = DepositSettings { step: STEP, ..plan::deposit_settings(&profile()) };
                 let judged = both(settings, &plan.layers[0]);
                 agree(&format!("{part} {turn}° {strategy}"), settings, &judged, LOW);
-                computed[0] += judged[0].work;
-                computed[1] += judged[1].work;
             }
         }
     }
-    assert!(computed[0] < computed[1], "{computed:?}");
 }
 
 fn hatch(spacing: f64, turn: f64) -> Layer {

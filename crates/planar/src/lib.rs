@@ -62,4 +62,5 @@ pub use hull::{OrientedRect, convex_hull, min_area_rect};
 pub use lattice::Lattice;
 pub use offset::Join;
 pub use ring::{Bounds, FillRule, Polygon, Region, Ring};
+pub use rows::PerRow;
 pub use stroke::buffer;

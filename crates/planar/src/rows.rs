@@ -2,10 +2,41 @@
 
 use crate::{Region, Ring};
 
+/// Something of each of many rows, in one piece of memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PerRow<T> {
+    items: Vec<T>,
+    /// Where each row begins, and where the last one ends.
+    starts: Vec<usize>,
+}
+
+impl<T> PerRow<T> {
+    /// What belongs to a row, nothing beyond the last.
+    pub fn row(&self, row: usize) -> &[T] {
+        self.starts.get(row..row + 2).map_or(&[], |ends| &self.items[ends[0]..ends[1]])
+    }
+
+    /// One row after the other.
+    pub fn iter(&self) -> impl Iterator<Item = &[T]> {
+        self.starts.windows(2).map(|ends| &self.items[ends[0]..ends[1]])
+    }
+}
+
+impl<T, R: IntoIterator<Item = T>> FromIterator<R> for PerRow<T> {
+    fn from_iter<I: IntoIterator<Item = R>>(rows: I) -> Self {
+        let (mut items, mut starts) = (Vec::new(), vec![0]);
+        for row in rows {
+            items.extend(row);
+            starts.push(items.len());
+        }
+        Self { items, starts }
+    }
+}
+
 impl Region {
     /// For each of `count` rows y = `first` + k · `step`: the sorted places in x at which it crosses the boundary.
     /// The row is inside between the first and the second, the third and the fourth, and so on.
-    pub fn rows(&self, first: f64, step: f64, count: usize) -> Vec<Vec<f64>> {
+    pub fn rows(&self, first: f64, step: f64, count: usize) -> PerRow<f64> {
         crossings(self.rings(), first, step, count)
     }
 }
@@ -16,30 +47,37 @@ pub(crate) fn crossings<'a>(
     first: f64,
     step: f64,
     count: usize,
-) -> Vec<Vec<f64>> {
-    let mut rows = vec![Vec::new(); count];
+) -> PerRow<f64> {
+    let mut found = Vec::new();
     for ring in rings {
-        cross(ring, first, step, &mut rows);
+        cross(ring, first, step, count, &mut found);
     }
-    for row in &mut rows {
-        row.sort_unstable_by(f64::total_cmp);
+    // Counted row by row, each crossing has its place.
+    let mut starts = vec![0; count + 1];
+    found.iter().for_each(|(row, _)| starts[row + 1] += 1);
+    (0..count).for_each(|row| starts[row + 1] += starts[row]);
+    let (mut items, mut next) = (vec![0.0; found.len()], starts.clone());
+    for (row, x) in found {
+        items[next[row]] = x;
+        next[row] += 1;
     }
-    rows
+    starts.windows(2).for_each(|ends| items[ends[0]..ends[1]].sort_unstable_by(f64::total_cmp));
+    PerRow { items, starts }
 }
 
-/// Adds the crossings of one ring. An edge includes its lower end but not its upper one, so every row is crossed an
-/// even number of times.
-fn cross(ring: &Ring, first: f64, step: f64, rows: &mut [Vec<f64>]) {
+/// Adds the crossings of one ring, each with its row. An edge includes its lower end but not its upper one, so every row
+/// is crossed an even number of times.
+fn cross(ring: &Ring, first: f64, step: f64, count: usize, found: &mut Vec<(usize, f64)>) {
     for (a, b) in ring.edges() {
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
-        let from = ((low.y - first) / step).floor().max(0.0) as usize;
-        for (k, row) in rows.iter_mut().enumerate().skip(from) {
-            let y = first + k as f64 * step;
+        // A cast takes what lies below the first row for that row.
+        for row in ((low.y - first) / step) as usize..count {
+            let y = first + row as f64 * step;
             if y >= high.y {
                 break;
             }
             if y >= low.y {
-                row.push(low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x));
+                found.push((row, low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x)));
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::bead::Section;
 use glam::{DVec2, I64Vec2};
 use planar::Bounds;
 use rayon::prelude::*;
-use std::ops::Range;
+use std::ops::{Add, Mul, Range};
 
 /// A band holds about this many points, so that it stays in the cache.
 const BAND_POINTS: usize = 1 << 14;
@@ -75,7 +75,7 @@ pub(super) fn up(x: f64) -> usize {
 }
 
 /// A height in double or in single precision, mm.
-pub trait Height: Copy + PartialOrd + Default + Send + Sync {
+pub trait Height: Copy + PartialOrd + Default + Send + Sync + Add<Output = Self> + Mul<Output = Self> {
     /// From double precision.
     fn of(height: f64) -> Self;
     /// In double precision.

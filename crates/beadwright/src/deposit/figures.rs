@@ -49,14 +49,18 @@ impl Figures {
         let h = nominal.bead.height;
         let mut tally = Tally::new(nominal);
         let metal = |heights: &[H]| heights.iter().map(|&height| u32::from(height > H::of(OUTSIDE * h))).sum::<u32>();
-        let mut outside = 0_i64;
+        let mut outside = 0;
         for (row, heights) in band.rows() {
             band.parts(mask.core(row)).for_each(|columns| tally.add(&heights[columns]));
-            let allowed = band.parts(mask.allowed(row)).map(|columns| i64::from(metal(&heights[columns])));
-            outside += i64::from(metal(heights)) - allowed.sum::<i64>();
+            let mut end = 0;
+            for columns in band.parts(mask.allowed(row)) {
+                outside += metal(&heights[end..columns.start]);
+                end = columns.end;
+            }
+            outside += metal(&heights[end..]);
         }
         let cell = band.grid.step * band.grid.step;
-        Self { outside: outside as f64 * cell, ..tally.figures(cell) }
+        Self { outside: f64::from(outside) * cell, ..tally.figures(cell) }
     }
 
     /// The figures of a square of ridges with its voids and humps.
@@ -172,6 +176,8 @@ pub mod whole {
 
 /// Heights are added up side by side in so many sums, as the processor does; the order never changes.
 const LANES: usize = 8;
+/// So many heights are added up in their own precision.
+const MOST_ADDED: usize = 64;
 
 /// The points of the judged area.
 struct Tally<H> {
@@ -179,8 +185,8 @@ struct Tally<H> {
     limits: [H; 3],
     points: usize,
     counts: [[u32; LANES]; 3],
-    sums: [f64; LANES],
-    squares: [f64; LANES],
+    sum: f64,
+    squares: f64,
     min: [H; LANES],
     max: [H; LANES],
 }
@@ -191,8 +197,8 @@ impl<H: Height> Tally<H> {
             limits: [VOID, LOW, OVERFILL].map(|limit| H::of(limit * nominal.bead.height)),
             points: 0,
             counts: Default::default(),
-            sums: Default::default(),
-            squares: Default::default(),
+            sum: 0.0,
+            squares: 0.0,
             min: [H::of(f64::INFINITY); LANES],
             max: Default::default(),
         }
@@ -200,25 +206,29 @@ impl<H: Height> Tally<H> {
 
     fn add(&mut self, heights: &[H]) {
         self.points += heights.len();
-        let (whole, rest) = heights.as_chunks::<LANES>();
-        whole.iter().for_each(|heights| self.add_lanes(heights, LANES));
-        let mut last = [H::default(); LANES];
-        last[..rest.len()].copy_from_slice(rest);
-        self.add_lanes(&last, rest.len());
+        // A few dozen points are added up in their own precision, more in double.
+        heights.chunks(MOST_ADDED).for_each(|heights| self.add_few(heights));
     }
 
-    #[inline(always)]
-    fn add_lanes(&mut self, heights: &[H; LANES], lanes: usize) {
+    fn add_few(&mut self, heights: &[H]) {
         let [void, low, overfill] = self.limits;
-        for (k, &height) in heights.iter().enumerate().take(lanes) {
-            self.counts[0][k] += u32::from(height < void);
-            self.counts[1][k] += u32::from(height < low);
-            self.counts[2][k] += u32::from(height > overfill);
-            self.sums[k] += height.mm();
-            self.squares[k] += height.mm() * height.mm();
-            self.min[k] = if height < self.min[k] { height } else { self.min[k] };
-            self.max[k] = if height > self.max[k] { height } else { self.max[k] };
-        }
+        let [mut sums, mut squares] = [[H::default(); LANES]; 2];
+        let mut add = |heights: &[H]| {
+            for (k, &height) in heights.iter().enumerate() {
+                self.counts[0][k] += u32::from(height < void);
+                self.counts[1][k] += u32::from(height < low);
+                self.counts[2][k] += u32::from(height > overfill);
+                sums[k] = sums[k] + height;
+                squares[k] = squares[k] + height * height;
+                self.min[k] = if height < self.min[k] { height } else { self.min[k] };
+                self.max[k] = if height > self.max[k] { height } else { self.max[k] };
+            }
+        };
+        let (whole, rest) = heights.as_chunks::<LANES>();
+        whole.iter().for_each(|heights| add(heights));
+        add(rest);
+        self.sum += sums.iter().map(|sum| sum.mm()).sum::<f64>();
+        self.squares += squares.iter().map(|square| square.mm()).sum::<f64>();
     }
 
     fn figures(&self, cell: f64) -> Figures {
@@ -231,8 +241,8 @@ impl<H: Height> Tally<H> {
             overfill: f64::from(overfill) * cell,
             min: if self.points > 0 { min } else { 0.0 },
             max: self.max.iter().map(|h| h.mm()).fold(0.0, f64::max),
-            sum: self.sums.iter().sum::<f64>() * cell,
-            squares: self.squares.iter().sum::<f64>() * cell,
+            sum: self.sum * cell,
+            squares: self.squares * cell,
             ..Figures::default()
         }
     }

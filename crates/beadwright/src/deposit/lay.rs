@@ -37,53 +37,101 @@ pub(super) fn add(frame: &Frame, band: &mut Band<'_, f32>) {
 fn lay<F: Pool>(frame: &Frame, band: &mut Band<'_, f32>) {
     let (grid, width, first) = (band.grid, band.columns.len(), band.first);
     let way = frame.along / frame.a;
-    let piece = Piece {
-        length: (frame.length / frame.a) as f32,
-        height: frame.height as f32,
-        step: ((way.x * grid.step) as f32, (-way.y * grid.step) as f32),
-    };
+    let piece = Piece::new(frame, grid.step);
     let (a, b) = (frame.from.y, frame.from.y + frame.along.y * frame.length);
     let row_of = |y: f64| (grid.row_at(y) - first as f64).max(0.0) as usize;
     let rows = row_of(a.min(b) - frame.a)..(row_of(a.max(b) + frame.a) + 1).min(band.heights.len() / width);
+    // Along and across, of the first column.
+    let d = grid.place(band.columns.start, first) - frame.from;
+    let (along, across) = (d.dot(way), way.perp_dot(d));
     for k in rows {
-        let Some((low, high, plain_low, plain_high)) = frame.row(grid.place(0, first + k).y) else { continue };
-        let all = band.within(&grid.columns_between(low, high));
-        if all.is_empty() {
-            continue;
-        }
-        let plain = band.within(&grid.columns_between(plain_low, plain_high));
-        let plain = plain.start.clamp(all.start, all.end)..plain.end.clamp(all.start, all.end);
-        let plain = if plain.is_empty() { all.end..all.end } else { plain };
-        let d = grid.place(band.columns.start, first + k) - frame.from;
-        let start = (d.dot(way) as f32, way.perp_dot(d) as f32);
-        let row = &mut band.heights[k * width..][..width];
-        for part in [all.start..plain.start, plain.clone(), plain.end..all.end] {
-            piece.lay::<F>(row, part, start);
-        }
-        band.work += all.len();
+        let y = k as f64 * grid.step;
+        let start = ((along + y * way.y) as f32, (across + y * way.x) as f32);
+        let columns = piece.reaches(start, width);
+        band.work += columns.len();
+        let row = &mut band.heights[k * width..][columns.clone()];
+        let (whole, rest) = row.as_chunks_mut::<LANES>();
+        let (ramp, last) = RAMP[columns].as_chunks::<LANES>();
+        whole.iter_mut().zip(ramp).for_each(|(heights, ramp)| piece.lay::<F>(heights, ramp, start));
+        piece.lay::<F>(rest, last, start);
     }
 }
+
+/// So many columns are computed side by side.
+const LANES: usize = 8;
+/// The corners beside the round ends of longer pieces, in half bead widths, cost less than to look where they begin.
+const SHORT: f32 = 4.0;
 
 /// A piece of bead in half bead widths.
 struct Piece {
     length: f32,
     height: f32,
-    /// How far a column lies along the piece and across it.
+    /// How far a column lies along the piece and across it, and one over each.
     step: (f32, f32),
+    per_step: (f32, f32),
+    /// Columns in half a bead width.
+    columns: f32,
 }
 
 impl Piece {
-    /// Adds the piece to some columns of a row whose first lies at `start` along and across.
-    fn lay<F: Pool>(&self, row: &mut [f32], columns: Range<usize>, start: (f32, f32)) {
-        if columns.is_empty() {
-            return;
+    fn new(frame: &Frame, grid_step: f64) -> Self {
+        let step = frame.along * grid_step / frame.a;
+        Self {
+            length: (frame.length / frame.a) as f32,
+            height: frame.height as f32,
+            step: (step.x as f32, -step.y as f32),
+            per_step: ((1.0 / step.x) as f32, (-1.0 / step.y) as f32),
+            columns: (frame.a / grid_step) as f32,
         }
+    }
+
+    /// The columns of a row that the piece may reach, a few more so that they are computed side by side: beyond its end
+    /// the piece adds nothing. The first of `width` columns lies at `start` along and across.
+    fn reaches(&self, start: (f32, f32), width: usize) -> Range<usize> {
+        let (low, high) = if self.length < SHORT { self.round(start) } else { self.boxed(start, 1.0) };
+        if low <= high && low < width as f32 && high >= 0.0 {
+            let (first, end) = (low as u32 as usize, (high.min(width as f32) as u32 as usize + 1).min(width));
+            first..(first + (end - first).next_multiple_of(LANES)).min(width)
+        } else {
+            0..0
+        }
+    }
+
+    /// The columns from which on and up to which the row lies within the piece, made longer by `more` at both ends.
+    fn boxed(&self, start: (f32, f32), more: f32) -> (f32, f32) {
+        let between = |low: f32, high: f32, start: f32, per_step: f32| {
+            let (a, b) = ((low - start) * per_step, (high - start) * per_step);
+            (a.min(b), a.max(b))
+        };
+        let across = between(-1.0, 1.0, start.1, self.per_step.1);
+        let along = between(-more, self.length + more, start.0, self.per_step.0);
+        (across.0.max(along.0), across.1.min(along.1))
+    }
+
+    /// The same with round ends.
+    fn round(&self, start: (f32, f32)) -> (f32, f32) {
+        // The pool at an end, where the row meets it; not a number, which is passed over, where it does not.
+        let pool = |t: f32| {
+            let aside = (t * self.step.1 - start.1 * self.step.0) * self.columns;
+            let middle = -(t * self.step.0 + start.1 * self.step.1) * self.columns;
+            let half = (1.0 - aside * aside).sqrt();
+            ((middle - half) * self.columns, (middle + half) * self.columns)
+        };
+        let (low, high) = self.boxed(start, 0.0);
+        let (low, high) = if low <= high { (low, high) } else { (f32::INFINITY, f32::NEG_INFINITY) };
+        let [begin, end] = [pool(start.0), pool(start.0 - self.length)];
+        (low.min(begin.0).min(end.0), high.max(begin.1).max(end.1))
+    }
+
+    /// Adds the piece to some columns of a row; `ramp` says how far each lies from that at `start` along and across.
+    #[inline(always)]
+    fn lay<F: Pool>(&self, heights: &mut [f32], ramp: &[f32], start: (f32, f32)) {
+        let (Some(first), Some(last)) = (ramp.first(), ramp.last()) else { return };
         let (length, height) = (self.length, self.height);
-        let along = |column: usize| start.0 + RAMP[column] * self.step.0;
-        let ends = (along(columns.start), along(columns.end - 1));
+        let ends = (start.0 + first * self.step.0, start.0 + last * self.step.0);
         // Where the pool has wholly come, or is not yet to go, that end is left out.
         let (low, high) = (ends.0.min(ends.1), ends.0.max(ends.1));
-        let places = row[columns.clone()].iter_mut().zip(&RAMP[columns]);
+        let places = heights.iter_mut().zip(ramp);
         let places = places.map(|(value, k)| (value, start.0 + k * self.step.0, start.1 + k * self.step.1));
         match (low >= 1.0, high <= length - 1.0) {
             (true, true) => places.for_each(|(value, _, y)| *value += height * F::whole(1.0 - y * y)),

@@ -32,10 +32,8 @@ use field::{Band, Grid, Height};
 use glam::DVec2;
 use patch::Run;
 use picture::Canvas;
-use planar::{Bounds, Join, Polygon, Region};
-use rayon::prelude::*;
+use planar::{Bounds, Join, PerRow, Polygon, Region};
 use serde::{Deserialize, Serialize};
-use std::mem::take;
 use std::ops::Range;
 
 /// Below this fraction of the nominal bead height a point is a void.
@@ -190,7 +188,7 @@ impl Judge {
         seen.iter().for_each(|s| figures.add(&s.figures));
         figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
         let work = seen.iter().map(|s| s.work).sum();
-        let runs: Vec<_> = seen.par_iter_mut().flat_map_iter(|s| patch::in_order(take(&mut s.runs))).collect();
+        let runs = patch::in_order(seen.iter().flat_map(|seen| &seen.runs), grid.rows);
         let (voids, peaks) = patch::patches(&runs, &grid, layer, &nominal);
         let picture = eye.canvas.map(|canvas| canvas.picture(seen.into_iter().filter_map(|s| s.picture)));
         Judgement { figures, voids, peaks, picture, work }
@@ -238,12 +236,13 @@ impl Eye<'_> {
             |seen, part| match part {
                 tiles::Part::Band(band) => self.take(seen, band),
                 tiles::Part::Ridges(square, ridges) => {
-                    let runs = patch::runs_of_ridges(square, ridges, self.grid);
-                    seen.figures.add(&Figures::of_ridges(square, ridges, &runs, self.grid));
+                    let begun = seen.runs.len();
+                    patch::find_between(ridges, square, self.grid, &mut seen.runs);
+                    let runs = &seen.runs[begun..];
+                    seen.figures.add(&Figures::of_ridges(square, ridges, runs, self.grid));
                     if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
-                        canvas.paint_ridges(strip, square, ridges, &runs);
+                        canvas.paint_ridges(strip, square, ridges, runs);
                     }
-                    seen.runs.extend(runs);
                 }
             },
         )
@@ -255,11 +254,11 @@ impl Eye<'_> {
 
     fn take<H: Height>(&self, seen: &mut Seen, band: &Band<'_, H>) {
         seen.figures.add(&Figures::of(band, self.mask, self.nominal));
-        let runs = patch::runs(band, self.mask, self.nominal);
+        let begun = seen.runs.len();
+        patch::find(band, self.mask, self.nominal, &mut seen.runs);
         if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
-            canvas.paint(strip, band, &runs);
+            canvas.paint(strip, band, &seen.runs[begun..]);
         }
-        seen.runs.extend(runs);
         seen.excess.extend(self.keeps.then(|| stack::Excess::of(band, self.mask, self.nominal.rise)));
         seen.work += band.work;
     }
@@ -280,8 +279,8 @@ fn grid_of(layer: &Layer, strokes: &[Stroke], step: f64) -> Option<Grid> {
 
 /// The outline less its rim, and the area where metal is allowed, as the columns that lie in them, row after row.
 pub(crate) struct Mask {
-    core: Vec<Vec<Range<usize>>>,
-    allowed: Vec<Vec<Range<usize>>>,
+    core: PerRow<Range<usize>>,
+    allowed: PerRow<Range<usize>>,
 }
 
 impl Mask {
@@ -289,7 +288,7 @@ impl Mask {
         let whole = Region::from_normalised(islands.to_vec());
         let rows = |region: &Region| {
             let crossings = region.rows(grid.place(0, 0).y, grid.step, grid.rows);
-            crossings.iter().map(|crossings| columns(crossings, grid).collect()).collect()
+            crossings.iter().map(|crossings| columns(crossings, grid)).collect()
         };
         let core = rows(&whole.offset(-RIM * settings.nominal.bead.width, Join::ROUND));
         let allowance = settings.machining_allowance;
@@ -299,12 +298,12 @@ impl Mask {
 
     /// The columns of a row inside the outline less its rim, from left to right.
     fn core(&self, row: usize) -> &[Range<usize>] {
-        self.core.get(row).map_or(&[], Vec::as_slice)
+        self.core.row(row)
     }
 
     /// The columns of a row where metal may be, from left to right.
     fn allowed(&self, row: usize) -> &[Range<usize>] {
-        self.allowed.get(row).map_or(&[], Vec::as_slice)
+        self.allowed.row(row)
     }
 }
 

@@ -59,72 +59,62 @@ pub struct Patch {
 }
 
 /// Neighbouring points of a row that are all void, or all overfilled.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Run {
     pub(super) overfilled: bool,
-    pub(super) row: usize,
-    pub(super) columns: Range<usize>,
+    pub(super) row: u32,
+    pub(super) columns: Range<u32>,
     /// The least or greatest height, mm, and the column it is found in.
     pub(super) extreme: f64,
-    pub(super) at: usize,
-}
-
-impl Run {
-    /// Takes in a run that goes on where this one ends, as at the border of two bands.
-    fn takes(&mut self, next: &Self) -> bool {
-        let goes_on = (self.overfilled, self.row, self.columns.end) == (next.overfilled, next.row, next.columns.start);
-        if goes_on {
-            self.columns.end = next.columns.end;
-            if (next.extreme > self.extreme) == self.overfilled {
-                (self.extreme, self.at) = (next.extreme, next.at);
-            }
-        }
-        goes_on
-    }
+    pub(super) at: u32,
 }
 
 /// Points looked at together for whether any of them is void or overfilled.
 const LOOK: usize = 16;
 
-/// The runs of a band, row after row.
-pub(super) fn runs<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal) -> Vec<Run> {
+/// Adds the runs of a band, row after row.
+pub(super) fn find<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal, runs: &mut Vec<Run>) {
     let (void, overfill) = (H::of(VOID * nominal.bead.height), H::of(OVERFILL * nominal.bead.height));
-    let stands_out = |height: &H| *height < void || *height > overfill;
-    let mut runs: Vec<Run> = Vec::new();
+    let stands_out = |height: &H| (*height < void) | (*height > overfill);
+    let any = |heights: &[H]| heights.iter().fold(false, |any, height| any | stands_out(height));
     for (row, heights) in band.rows() {
         for columns in band.parts(mask.core(row)) {
             let begun = runs.len();
             for (k, heights) in heights[columns.clone()].chunks(LOOK).enumerate() {
-                if !heights.iter().fold(false, |any, height| any | stands_out(height)) {
+                // Of known length they are looked at side by side.
+                if !heights.first_chunk::<LOOK>().map_or_else(|| any(heights), |all| any(all)) {
                     continue;
                 }
                 let first = band.columns.start + columns.start + k * LOOK;
                 let places = heights.iter().enumerate().filter(|(_, height)| stands_out(height));
-                places
-                    .for_each(|(k, &height)| extend(&mut runs, begun, row, first + k, height.mm(), height > overfill));
+                places.for_each(|(k, &height)| extend(runs, begun, (row, first + k), height.mm(), height > overfill));
             }
         }
     }
-    runs
 }
 
-/// The runs of a square of ridges, in any order.
-pub(super) fn runs_of_ridges(square: &Square, ridges: &Ridges, grid: &Grid) -> Vec<Run> {
+/// Adds the runs of a square of ridges; those of a row come from left to right.
+pub(super) fn find_between(ridges: &Ridges, square: &Square, grid: &Grid, runs: &mut Vec<Run>) {
     let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
     let (rows, columns) = (square.rows.start, square.columns.start);
     let along = square.along * grid.step;
     let from_middle = DVec2::new(columns as f64 - middle(&square.columns), rows as f64 - middle(&square.rows));
     let places = (along.perp_dot(from_middle), -along.y, along.x);
-    let mut runs = Vec::new();
     ridges.stripes(places, (square.rows.len(), square.columns.len()), |overfilled, row, points, at, extreme| {
-        let found = columns + points.start..columns + points.end;
-        runs.push(Run { overfilled, row: rows + row, columns: found, extreme, at: columns + at });
+        let columns_of = (columns + points.start) as u32..(columns + points.end) as u32;
+        runs.push(Run {
+            overfilled,
+            row: (rows + row) as u32,
+            columns: columns_of,
+            extreme,
+            at: (columns + at) as u32,
+        });
     });
-    runs
 }
 
 /// Adds a point to the last run if that began at `begun` or later and reaches it, or begins another.
-fn extend(runs: &mut Vec<Run>, begun: usize, row: usize, at: usize, height: f64, overfilled: bool) {
+fn extend(runs: &mut Vec<Run>, begun: usize, (row, at): (usize, usize), height: f64, overfilled: bool) {
+    let (row, at) = (row as u32, at as u32);
     match runs[begun..].last_mut() {
         Some(run) if run.overfilled == overfilled && run.columns.end == at => {
             run.columns.end = at + 1;
@@ -136,16 +126,25 @@ fn extend(runs: &mut Vec<Run>, begun: usize, row: usize, at: usize, height: f64,
     }
 }
 
-/// Puts runs in the order of the rows, and joins those that go on at the border of two parts.
-pub(super) fn in_order(mut runs: Vec<Run>) -> Vec<Run> {
-    runs.sort_unstable_by_key(|run| (run.row, run.columns.start));
-    runs.dedup_by(|next, run| run.takes(next));
-    runs
+/// The runs of all parts of a layer in the order of its rows. The parts come row of squares by row of squares from left
+/// to right, and the runs of a row in each part from left to right.
+pub(super) fn in_order<'r>(parts: impl Iterator<Item = &'r Run> + Clone, rows: usize) -> Vec<Run> {
+    // Counted row by row, each run has its place.
+    let mut next = vec![0; rows + 1];
+    parts.clone().for_each(|run| next[run.row as usize + 1] += 1);
+    (0..rows).for_each(|row| next[row + 1] += next[row]);
+    let mut ordered = vec![Run::default(); next[rows]];
+    for run in parts {
+        let place = &mut next[run.row as usize];
+        ordered[*place] = run.clone();
+        *place += 1;
+    }
+    ordered
 }
 
 /// Runs in the order of the rows joined where they touch: voids, the largest first, and peaks, the highest first.
 pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
-    let mut parents: Vec<usize> = (0..runs.len()).collect();
+    let mut parents: Vec<u32> = (0..runs.len() as u32).collect();
     // Both rows are walked once: each run is compared with the runs of the row before that end after it begins.
     let (mut row_start, mut last_row) = (0, 0..0);
     for i in 0..runs.len() {
@@ -157,10 +156,13 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
         while last_row.start < last_row.end && runs[last_row.start].columns.end < runs[i].columns.start {
             last_row.start += 1;
         }
-        for j in last_row.clone().take_while(|&j| runs[j].columns.start <= runs[i].columns.end) {
+        // The run before goes on in this one where a part of the layer ends between them.
+        let before = (row_start < i && runs[i - 1].columns.end == runs[i].columns.start).then(|| i - 1);
+        let above = last_row.clone().take_while(|&j| runs[j].columns.start <= runs[i].columns.end);
+        for j in before.into_iter().chain(above) {
             if runs[j].overfilled == runs[i].overfilled {
                 let (a, b) = (root(&mut parents, i), root(&mut parents, j));
-                parents[a.max(b)] = a.min(b);
+                parents[a.max(b)] = a.min(b) as u32;
             }
         }
     }
@@ -170,7 +172,7 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
     let mut patch_of = vec![0; runs.len()];
     for (i, run) in runs.iter().enumerate() {
         let area = run.columns.len() as f64 * cell;
-        let (place, height) = (grid.place(run.at, run.row), run.extreme);
+        let (place, height) = (grid.place(run.at as usize, run.row as usize), run.extreme);
         let first = root(&mut parents, i);
         if first == i {
             patch_of[i] = found.len();
@@ -197,12 +199,14 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
 /// How many of the highest peaks of a layer get a cause.
 const TOLD_PEAKS: usize = 32;
 
-fn root(parents: &mut [usize], mut i: usize) -> usize {
-    while parents[i] != i {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
+fn root(parents: &mut [u32], i: usize) -> usize {
+    let mut i = i as u32;
+    while parents[i as usize] != i {
+        let parent = parents[parents[i as usize] as usize];
+        parents[i as usize] = parent;
+        i = parent;
     }
-    i
+    i as usize
 }
 
 /// A turn sharper than this piles metal up on its inner side: cos 30°.
@@ -220,14 +224,16 @@ fn cause(place: DVec2, passes: &[Pass], nominal: &Nominal) -> Option<Cause> {
     };
     let mut passes_near = 0;
     for pass in passes {
-        let points: Vec<DVec2> = pass.points.iter().map(|p| p.truncate()).collect();
         let beside = pass.segments().any(|s| {
             let (a, b) = (s.from.truncate(), s.to.truncate());
-            planar::polyline::distance_squared_to_segment(place, a, b) < reach * reach
+            // Nearly all lie farther off than that already in y alone.
+            (a.y.min(b.y) - reach..a.y.max(b.y) + reach).contains(&place.y)
+                && planar::polyline::distance_squared_to_segment(place, a, b) < reach * reach
         });
         if !beside {
             continue;
         }
+        let points: Vec<DVec2> = pass.points.iter().map(|p| p.truncate()).collect();
         passes_near += 1;
         if !pass.closed {
             points.first().into_iter().for_each(|p| near(*p, Cause::Start));

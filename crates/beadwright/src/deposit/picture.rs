@@ -104,8 +104,9 @@ impl Canvas {
 
     fn paint_voids(&self, strip: &mut Strip, runs: &[Run]) {
         for run in runs.iter().filter(|run| !run.overfilled) {
-            let line = self.line(strip, run.row);
-            self.pixels(&run.columns).for_each(|(pixel, _)| line[pixel].void = true);
+            let line = self.line(strip, run.row as usize);
+            let columns = run.columns.start as usize..run.columns.end as usize;
+            self.pixels(&columns).for_each(|(pixel, _)| line[pixel].void = true);
         }
     }
 
@@ -114,14 +115,14 @@ impl Canvas {
         self.paint_voids(strip, runs);
         let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
         let center = DVec2::new(middle(&square.columns), middle(&square.rows));
+        let (mean, scale) = (ridges.means(self.side as f64 * self.grid.step), (1.0 / self.unit) as f32);
         for (_, rows) in self.pixels(&square.rows) {
             let line = self.line(strip, rows.start);
             for (pixel, columns) in self.pixels(&square.columns) {
                 let from_center = DVec2::new(middle(&columns), middle(&rows)) - center;
                 let across = square.along.perp_dot(from_center) * self.grid.step;
-                let height = ridges.mean_around(across, self.side as f64 * self.grid.step);
                 let points = rows.len() * columns.len();
-                line[pixel].sum += points as f32 * ((height / self.unit) as f32).min(STEPS);
+                line[pixel].sum += points as f32 * (mean(across) * scale).min(STEPS);
                 line[pixel].points += points as u32;
             }
         }

@@ -67,27 +67,27 @@ impl Lines {
     /// Calls `found` with each row that has points in a stripe: the row, the points, the one nearest to the extreme and where
     /// that lies across.
     fn meet(&self, stripe: &Stripe, mut found: impl FnMut(usize, Range<usize>, usize, f64)) {
-        let along = self.step.abs() < ALONG;
-        let mut met = if along { u32::MAX } else { self.rows_met(stripe) };
+        let start = |row: usize| self.start + row as f64 * self.row_step;
+        if self.step.abs() < ALONG {
+            let inside = |row: &usize| stripe.low < start(*row) && start(*row) < stripe.high;
+            return (0..self.rows).filter(inside).for_each(|row| found(row, 0..self.points, 0, start(row)));
+        }
+        let at = |place: f64| (place - self.start) / self.step;
+        let (low, high, extreme) = (at(stripe.low), at(stripe.high), at(stripe.extreme));
+        let (low, high, by) = (low.min(high), low.max(high), self.row_step / self.step);
+        let mut met = self.rows_met(stripe);
         while met != 0 {
             let row = met.trailing_zeros() as usize;
             met &= met - 1;
             if row >= self.rows {
                 break;
             }
-            let start = self.start + row as f64 * self.row_step;
-            let at = |place: f64| ((place - start) / self.step).clamp(-1.0, self.points as f64);
-            let inside = stripe.low < start && start < stripe.high;
-            let (a, b) = match (along, inside) {
-                (true, false) => continue,
-                (true, true) => (-1.0, self.points as f64),
-                (false, _) => (at(stripe.low), at(stripe.high)),
-            };
-            let (first, end) = ((a.min(b) + 1.0) as u32, a.max(b));
-            if f64::from(first) < end {
-                let points = first as usize..field::up(end);
-                let extreme = (at(stripe.extreme).max(0.0).round() as usize).clamp(points.start, points.end - 1);
-                found(row, points, extreme, start + extreme as f64 * self.step);
+            let moved = row as f64 * by;
+            let within = |at: f64| (at - moved).clamp(-1.0, self.points as f64);
+            let (first, end) = ((within(low) + 1.0) as usize, field::up(within(high).max(0.0)));
+            if first < end {
+                let extreme = ((within(extreme) + 0.5).max(0.0) as usize).clamp(first, end - 1);
+                found(row, first..end, extreme, start(row) + extreme as f64 * self.step);
             }
         }
     }
@@ -98,12 +98,10 @@ impl Lines {
         let at = (0.5 * (stripe.low + stripe.high) - self.start) / self.step;
         let by = self.row_step / self.step;
         let half = (0.5 * (stripe.high - stripe.low) / self.step).abs() + ALONG;
-        let meets = |row: usize| {
-            let place = at - row as f64 * by;
-            ((place + TO_WHOLE) - TO_WHOLE - place).abs() <= half
-        };
+        let from_whole = |place: f64| ((place + TO_WHOLE) - TO_WHOLE - place).abs();
+        let meets = |row: usize| from_whole(at - row as f64 * by) <= half;
         // Along the grid and at 45° to it all rows are alike.
-        if SIDE as f64 * (by - by.round()).abs() < ALONG {
+        if SIDE as f64 * from_whole(by) < ALONG {
             return if meets(0) { u32::MAX } else { 0 };
         }
         (0..SIDE).fold(0, |rows, row| rows | u32::from(meets(row)) << row)
@@ -149,7 +147,8 @@ impl Ridges {
 
     /// Finds the points of a square that lie in a void or a hump. Its first point lies `start` mm across from its middle,
     /// the next in a row `step` mm farther and the next row `row_step`; it has so many `rows` of so many `points`. `found` is
-    /// told whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm.
+    /// told whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm; those of
+    /// a row come from its first point to its last.
     pub(super) fn stripes(
         &self,
         (start, step, row_step): (f64, f64, f64),
@@ -161,27 +160,46 @@ impl Ridges {
         }
         let a = self.half_width;
         let lines = Lines { start: start / a, step: step / a, row_step: row_step / a, rows, points };
-        for pair in self.crests[..self.count].windows(2) {
+        let pairs = self.crests[..self.count].windows(2);
+        let stripes =
+            pairs.flat_map(|pair| between(pair[0], pair[1], self.scale).into_iter().flatten().map(move |s| (pair, s)));
+        let tell = |(pair, stripe): (&[f64], Stripe)| {
             // No third bead reaches in between.
             let bead = |crest: f64, place: f64| (1.0 - (place - crest).powi(2)).max(0.0);
             let height = |place: f64| (bead(pair[0], place) + bead(pair[1], place)) * self.height;
-            for stripe in between(pair[0], pair[1], self.scale).into_iter().flatten() {
-                lines.meet(&stripe, |row, points, at, place| {
-                    found(stripe.overfilled, row, points, at, height(place));
-                });
-            }
-        }
+            lines.meet(&stripe, |row, points, at, place| found(stripe.overfilled, row, points, at, height(place)));
+        };
+        if step < 0.0 { stripes.rev().for_each(tell) } else { stripes.for_each(tell) }
     }
 
-    /// Mean height, mm, over a stretch of `length` mm across the beads around `middle`.
-    pub(super) fn mean_around(&self, middle: f64, length: f64) -> f64 {
-        let (middle, half) = ((middle / self.half_width) as f32, (0.5 * length / self.half_width) as f32);
+    /// Tells the mean height, mm, over a stretch of `length` mm across the beads from where its middle lies.
+    pub(super) fn means(&self, length: f64) -> impl Fn(f64) -> f32 {
+        const THIRD: f32 = 1.0 / 3.0;
+        let per_mm = 1.0 / self.half_width;
+        let half = (0.5 * length * per_mm) as f32;
+        let scale = self.height as f32 / (2.0 * half);
+        // Some crests side by side; those that there are not lie too far off to count.
+        let mut crests = [[f32::INFINITY; 4]; MOST / 4];
+        crests
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(&self.crests[..self.count])
+            .for_each(|(to, crest)| *to = *crest as f32);
+        let some = self.count.div_ceil(4);
         let swept = |s: f32| {
             let s = s.clamp(-1.0, 1.0);
-            s - s * s * s / 3.0
+            s - s * s * s * THIRD
         };
-        let of = |crest: &f64| swept(middle + half - *crest as f32) - swept(middle - half - *crest as f32);
-        f64::from(self.crests[..self.count].iter().map(of).sum::<f32>() / (2.0 * half)) * self.height
+        move |middle| {
+            let middle = (middle * per_mm) as f32;
+            let mut sums = [0.0; 4];
+            for crests in &crests[..some] {
+                for (sum, crest) in sums.iter_mut().zip(crests) {
+                    *sum += swept(middle - crest + half) - swept(middle - crest - half);
+                }
+            }
+            sums.iter().sum::<f32>() * scale
+        }
     }
 }
 
@@ -248,9 +266,15 @@ impl Means {
         let mut heights = [0.0_f32; SAMPLES];
         for crest in crests {
             let crest = *crest as f32;
-            for (height, place) in heights.iter_mut().zip(&places) {
-                let s = place - crest;
-                *height += (1.0 - s * s).max(0.0);
+            // The places that the bead reaches, and a few more: there it adds nothing.
+            let at = |place: f32| ((place + reach) / step).max(0.0) as usize;
+            let near = at(crest - 1.0) / LANES..(at(crest + 1.0) / LANES + 1).min(SAMPLES / LANES);
+            let lanes = heights.as_chunks_mut::<LANES>().0.iter_mut().zip(places.as_chunks::<LANES>().0);
+            for (heights, places) in lanes.take(near.end).skip(near.start) {
+                for (height, place) in heights.iter_mut().zip(places) {
+                    let s = place - crest;
+                    *height += (1.0 - s * s).max(0.0);
+                }
             }
         }
         // How much of the square lies at a distance across: all its width up to `flat`, then less and less.
