@@ -76,7 +76,8 @@ fn moved(ring: &Ring, distance: f64, join: Join) -> Option<Vec<DVec2>> {
     let edges: Vec<Edge> = ring
         .edges()
         .filter_map(|(a, b)| {
-            let (length, way) = (a.distance(b), (b - a).try_normalize()?);
+            let length = a.distance(b);
+            let way = Some((b - a) / length).filter(|way| way.is_finite())?;
             Some(Edge { from: a, moved: a - distance * way.perp(), way, length })
         })
         .collect();
@@ -181,10 +182,17 @@ fn close(
     }
 }
 
+/// An arc this much shorter than its tip, in tolerances, is drawn as the tip: one point for two.
+const TIP: f64 = 0.2;
+
 /// The points that join two edges that move apart; `None` for a tip that would be too long.
 fn join_gap(points: &mut Vec<DVec2>, edge: &Edge, next: &Edge, distance: f64, join: Join) -> Option<()> {
     let (start, end) = (edge.moved + edge.length * edge.way, next.moved);
     match join {
+        // The tip reaches farther than the arc by a quarter of the distance times the versed sine.
+        Join::Round(tolerance) if distance.abs() * (1.0 - edge.way.dot(next.way)) < 4.0 * TIP * tolerance => {
+            points.push(edge.moved + edge.meets(next).0 * edge.way);
+        }
         Join::Round(tolerance) => {
             // As the boolean does: whole steps, and what is left of the angle at the end.
             let (angle, step) = (edge.way.angle_to(next.way), Join::step(tolerance, distance));

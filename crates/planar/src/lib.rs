@@ -7,8 +7,8 @@
 //! | --- | --- |
 //! | [`ring`] | [`Ring`], [`Polygon`], [`Region`]: the shapes and their measures |
 //! | [`arcs`] | lines fitted by straight pieces and arcs |
-//! | [`bands`] | straight pieces sorted so that those that may meet are found |
 //! | [`boolean`] | union, difference, intersection of regions |
+//! | [`boxes`] | straight pieces sorted so that those that may meet are found |
 //! | [`offset`](mod@offset) | growing and shrinking, with round or mitred joins |
 //! | [`clip`] | open lines cut by a region |
 //! | [`scan`] | parallel scan lines through a region, and how their ends are connected along its boundary |
@@ -34,8 +34,8 @@
 //! rings that an offset draws edge by edge (`edgewise`). The result is rounded to the same grid.
 
 pub mod arcs;
-pub mod bands;
 pub mod boolean;
+pub mod boxes;
 pub mod clip;
 mod disc;
 mod edgewise;

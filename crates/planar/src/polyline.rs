@@ -42,7 +42,16 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut keep = vec![false; points.len()];
     keep[0] = true;
     keep[last] = true;
-    mark_kept(points, 0, last, tolerance * tolerance, &mut keep);
+    // A point that far from the line between its neighbours is always kept; that leaves short stretches.
+    let corner = |w: &[DVec2]| distance_squared_to_segment(w[1], w[0], w[2]) > 4.0 * tolerance * tolerance;
+    keep.iter_mut().skip(1).zip(points.windows(3)).for_each(|(keep, w)| *keep = corner(w));
+    let mut from = 0;
+    for to in 1..=last {
+        if keep[to] {
+            mark_kept(points, from, to, tolerance * tolerance, &mut keep);
+            from = to;
+        }
+    }
     points.iter().zip(&keep).filter(|&(_, &k)| k).map(|(&p, _)| p).collect()
 }
 
@@ -74,6 +83,9 @@ fn lexicographic(a: DVec2, b: DVec2) -> std::cmp::Ordering {
 
 /// Marks what must stay between `first` and `last`; own stack, so that long lines cannot overflow the real one.
 fn mark_kept(points: &[DVec2], first: usize, last: usize, tolerance_squared: f64, keep: &mut [bool]) {
+    if first + 1 == last {
+        return;
+    }
     let mut open = vec![(first, last)];
     while let Some((a, b)) = open.pop() {
         let mut worst = (tolerance_squared, None);

@@ -53,6 +53,16 @@ impl Bounds {
         Some(points.fold(start, |b, p| Self { min: b.min.min(p), max: b.max.max(p) }))
     }
 
+    /// The box around both.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Whether they have a point in common.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        (self.min.cmple(other.max) & other.min.cmple(self.max)).all()
+    }
+
     /// Width and height, mm.
     pub fn size(&self) -> DVec2 {
         self.max - self.min

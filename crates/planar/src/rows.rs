@@ -11,6 +11,43 @@ pub struct PerRow<T> {
 }
 
 impl<T> PerRow<T> {
+    /// Puts things into `count` rows, each behind what came before it.
+    pub fn grouped(count: usize, things: impl Iterator<Item = (usize, T)> + Clone) -> Self
+    where
+        T: Clone + Default,
+    {
+        let mut starts = vec![0; count + 1];
+        things.clone().for_each(|(row, _)| starts[row + 1] += 1);
+        (0..count).for_each(|row| starts[row + 1] += starts[row]);
+        // Counted row by row, each has its place.
+        let (mut items, mut next) = (vec![T::default(); starts[count]], starts.clone());
+        for (row, thing) in things {
+            items[next[row]] = thing;
+            next[row] += 1;
+        }
+        Self { items, starts }
+    }
+
+    /// How many rows there are.
+    pub fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// All things, one row after the other.
+    pub fn into_items(self) -> Vec<T> {
+        self.items
+    }
+
+    /// The things of each row.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
+        let mut rest = self.items.as_mut_slice();
+        self.starts.windows(2).map(move |ends| {
+            let (row, after) = std::mem::take(&mut rest).split_at_mut(ends[1] - ends[0]);
+            rest = after;
+            row
+        })
+    }
+
     /// What belongs to a row, nothing beyond the last.
     pub fn row(&self, row: usize) -> &[T] {
         self.starts.get(row..row + 2).map_or(&[], |ends| &self.items[ends[0]..ends[1]])
@@ -52,17 +89,9 @@ pub(crate) fn crossings<'a>(
     for ring in rings {
         cross(ring, first, step, count, &mut found);
     }
-    // Counted row by row, each crossing has its place.
-    let mut starts = vec![0; count + 1];
-    found.iter().for_each(|(row, _)| starts[row + 1] += 1);
-    (0..count).for_each(|row| starts[row + 1] += starts[row]);
-    let (mut items, mut next) = (vec![0.0; found.len()], starts.clone());
-    for (row, x) in found {
-        items[next[row]] = x;
-        next[row] += 1;
-    }
-    starts.windows(2).for_each(|ends| items[ends[0]..ends[1]].sort_unstable_by(f64::total_cmp));
-    PerRow { items, starts }
+    let mut rows = PerRow::grouped(count, found.into_iter());
+    rows.iter_mut().for_each(|row| row.sort_unstable_by(f64::total_cmp));
+    rows
 }
 
 /// Adds the crossings of one ring, each with its row. An edge includes its lower end but not its upper one, so every row

@@ -4,7 +4,7 @@
 //! cross nowhere, and beside each of them the winding number is the same all along. Those with the wanted number on their
 //! left and one less on their right bound the result. What touches without crossing is left to the boolean.
 
-use crate::bands::{Bands, Piece};
+use crate::boxes::{Boxes, Piece};
 use crate::grid::{GridPoint, from_grid, to_grid};
 use crate::{Bounds, Polygon, Region, Ring};
 use glam::DVec2;
@@ -14,12 +14,12 @@ use std::ops::RangeBounds;
 /// overlap, and where they wind around anything a number of times that is not `allowed`.
 pub(crate) fn region_within(rings: Vec<Vec<DVec2>>, level: i32, allowed: impl RangeBounds<i32>) -> Option<Region> {
     let edges = Edges::of(&rings)?;
-    let bands = Bands::new(edges.ends.clone());
-    let crossings = edges.crossings(&bands)?;
+    let boxes = Boxes::new(edges.ends.clone());
+    let crossings = edges.crossings(&boxes)?;
     let curves = if crossings.is_empty() { as_they_are(rings) } else { edges.exchanged(&crossings)? };
     let (mut kept, mut turns_off) = (Vec::new(), false);
     for curve in curves {
-        let right = curve.winding_on_the_right(&bands);
+        let right = curve.winding_on_the_right(&boxes);
         if !allowed.contains(&right) || !allowed.contains(&(right + 1)) {
             return None;
         }
@@ -36,7 +36,7 @@ pub(crate) fn region_within(rings: Vec<Vec<DVec2>>, level: i32, allowed: impl Ra
 /// Whether no two edges of some rings cross or touch but neighbours at their common end; exact on the grid.
 fn cross_nowhere(rings: &[Vec<GridPoint>]) -> bool {
     let rings: Vec<Vec<DVec2>> = rings.iter().map(|ring| ring.iter().map(|&p| from_grid(p)).collect()).collect();
-    let crossings = Edges::of(&rings).and_then(|edges| edges.crossings(&Bands::new(edges.ends.clone())));
+    let crossings = Edges::of(&rings).and_then(|edges| edges.crossings(&Boxes::new(edges.ends.clone())));
     crossings.is_some_and(|crossings| crossings.is_empty())
 }
 
@@ -91,9 +91,9 @@ impl Edges {
     }
 
     /// Where edges cross; `None` where two touch otherwise than as neighbours.
-    fn crossings(&self, bands: &Bands) -> Option<Vec<Crossing>> {
+    fn crossings(&self, boxes: &Boxes) -> Option<Vec<Crossing>> {
         let (mut found, mut touching) = (Vec::new(), false);
-        bands.pairs(|i, j| {
+        boxes.pairs(|i, j| {
             if touching {
                 return;
             }
@@ -203,13 +203,13 @@ enum Meeting {
 }
 
 impl Curve {
-    fn winding_on_the_right(&self, bands: &Bands) -> i32 {
+    fn winding_on_the_right(&self, boxes: &Boxes) -> i32 {
         let piece = |k: usize| [self.points[k], self.points[(k + 1) % self.points.len()]];
-        let rise = |k: &usize| bands.rise(piece(*k)).abs();
+        let rise = |k: &usize| boxes.rise(piece(*k)).abs();
         let steepest = (0..self.points.len()).max_by(|a, b| rise(a).total_cmp(&rise(b))).unwrap_or(0);
         let [a, b] = piece(steepest);
-        let before = bands.winding_before((a + b) / 2.0, self.edges[steepest]);
-        if bands.rise([a, b]) > 0.0 { before - 1 } else { before }
+        let before = boxes.winding_before((a + b) / 2.0, self.edges[steepest]);
+        if boxes.rise([a, b]) > 0.0 { before - 1 } else { before }
     }
 }
 

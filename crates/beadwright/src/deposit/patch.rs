@@ -8,6 +8,7 @@ use super::{Mask, OVERFILL, VOID};
 use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};
 use glam::DVec2;
+use planar::PerRow;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -129,17 +130,7 @@ fn extend(runs: &mut Vec<Run>, begun: usize, (row, at): (usize, usize), height: 
 /// The runs of all parts of a layer in the order of its rows. The parts come row of squares by row of squares from left
 /// to right, and the runs of a row in each part from left to right.
 pub(super) fn in_order<'r>(parts: impl Iterator<Item = &'r Run> + Clone, rows: usize) -> Vec<Run> {
-    // Counted row by row, each run has its place.
-    let mut next = vec![0; rows + 1];
-    parts.clone().for_each(|run| next[run.row as usize + 1] += 1);
-    (0..rows).for_each(|row| next[row + 1] += next[row]);
-    let mut ordered = vec![Run::default(); next[rows]];
-    for run in parts {
-        let place = &mut next[run.row as usize];
-        ordered[*place] = run.clone();
-        *place += 1;
-    }
-    ordered
+    PerRow::grouped(rows, parts.map(|run| (run.row as usize, run.clone()))).into_items()
 }
 
 /// Runs in the order of the rows joined where they touch: voids, the largest first, and peaks, the highest first.

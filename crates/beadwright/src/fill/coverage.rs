@@ -4,11 +4,11 @@
 use super::Path;
 use crate::pass::Along;
 use glam::DVec2;
-use planar::{Bounds, Region};
+use planar::{Bounds, PerRow, Region};
 use std::ops::Range;
 
 /// Rows in a bead's width.
-const ROWS: f64 = 8.0;
+const ROWS: f64 = 6.0;
 /// The rows run aslant, radians: beads along them would be counted in whole rows.
 const ASLANT: f64 = 0.3;
 /// Beads count as wider by this fraction: neighbours that just touch leave nothing.
@@ -34,8 +34,11 @@ pub struct Coverage {
     first: f64,
     step: f64,
     /// Of each row, by where they begin.
-    covered: Vec<Vec<(f64, f64)>>,
+    covered: PerRow<Span>,
 }
+
+/// From one place on a row to another, mm.
+type Span = (f64, f64);
 
 impl Coverage {
     /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
@@ -45,21 +48,19 @@ impl Coverage {
         let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
         let step = bounds.size().y / count as f64;
         let first = bounds.min.y + step / 2.0;
-        let mut rows = Rows { first, step, covered: vec![Vec::new(); count], starts: vec![0.0; count] };
+        let mut rows = Rows::new(first, step, count);
         for path in paths {
-            let line: Vec<DVec2> = path.path().iter().map(turned).collect();
-            rows.cover(&line, &path.width);
+            let line: Vec<DVec2> = path.points.iter().map(turned).collect();
+            rows.cover(&line, path.closed, &path.width);
         }
-        let mut covered = rows.covered;
-        covered.iter_mut().for_each(|row| row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0)));
-        Some(Self { first, step, covered })
+        Some(Self { first, step, covered: rows.covered() })
     }
 
     /// What is left bare of a region that lies within the one whose rows these are.
     pub fn bare(&self, region: &Region) -> Bare {
         let (mut found, mut widest) = (Bare::default(), 0.0);
-        let inside = region.turned(DVec2::from_angle(-ASLANT)).rows(self.first, self.step, self.covered.len());
-        for (k, (inside, covered)) in inside.iter().zip(&self.covered).enumerate() {
+        let inside = region.turned(DVec2::from_angle(-ASLANT)).rows(self.first, self.step, self.covered.count());
+        for (k, (inside, covered)) in inside.iter().zip(self.covered.iter()).enumerate() {
             for span in inside.chunks_exact(2) {
                 for gap in gaps(span[0]..span[1], covered) {
                     let length = gap.end - gap.start;
@@ -76,7 +77,7 @@ impl Coverage {
 }
 
 /// What sorted spans leave bare of one.
-fn gaps(span: Range<f64>, covered: &[(f64, f64)]) -> impl Iterator<Item = Range<f64>> {
+fn gaps(span: Range<f64>, covered: &[Span]) -> impl Iterator<Item = Range<f64>> {
     let mut from = span.start;
     let before_end = covered.iter().copied().take_while(move |(low, _)| *low < span.end);
     before_end.chain([(span.end, f64::INFINITY)]).filter_map(move |(low, high)| {
@@ -91,10 +92,17 @@ struct Rows {
     /// Height of the first row and distance of the rows, mm.
     first: f64,
     step: f64,
-    covered: Vec<Vec<(f64, f64)>>,
+    /// Rows in a millimetre.
+    per_mm: f64,
+    /// The last span of each row, and those before it.
+    last: Vec<Span>,
+    before: Vec<(u32, Span)>,
     /// Where the run in progress begins on each row.
     starts: Vec<f64>,
 }
+
+/// The last span of a row of which nothing is covered yet.
+const NOWHERE: Span = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// Parallel strips, each overlapping the one before: the scan lines of a zigzag. On a row that crosses several of them
 /// only the outer sides of the first and of the last matter, so a line costs as much as its rows differ from its
@@ -108,18 +116,21 @@ struct Run {
 }
 
 impl Rows {
-    fn cover(&mut self, line: &[DVec2], width: &Along) {
+    fn new(first: f64, step: f64, count: usize) -> Self {
+        let (last, before, starts) = (vec![NOWHERE; count], Vec::new(), vec![0.0; count]);
+        Self { first, step, per_mm: step.recip(), last, before, starts }
+    }
+
+    fn cover(&mut self, line: &[DVec2], closed: bool, width: &Along) {
         let mut run: Option<Run> = None;
-        for (i, ends) in line.windows(2).enumerate() {
-            let strip = Strip::new(ends[0], ends[1], width.after(i) * (0.5 + TOUCHING / 2.0));
-            let all = self.within(strip.low, strip.high);
-            let core = strip.core().map_or(0..0, |(low, high)| self.within(low, high));
-            if core.is_empty() || strip.is_short() {
-                self.cover_by(&strip, all);
+        for strip in self.strips(line, closed, width) {
+            let (all, core) = (self.within(strip.all()), self.within(strip.core()));
+            if core.is_empty() || strip.length < SHORT * strip.radius {
+                self.cover_strip(&strip, all);
                 continue;
             }
-            self.cover_by(&strip, all.start..core.start);
-            self.cover_by(&strip, core.end..all.end);
+            self.cover_strip(&strip, all.start..core.start);
+            self.cover_strip(&strip, core.end..all.end);
             run = Some(match run.take() {
                 Some(run) => self.go_on(run, strip, core),
                 None => Run { last: strip, rows: core, rising: None },
@@ -130,23 +141,93 @@ impl Rows {
         }
     }
 
+    /// The strips that the pieces of a line cover. Where it bends a little they reach on until they meet outside; where it
+    /// bends more, and at its ends, it covers a disc.
+    fn strips(&mut self, line: &[DVec2], closed: bool, width: &Along) -> Vec<Strip> {
+        let radius = |i: usize| width.after(i) * (0.5 + TOUCHING / 2.0);
+        let again = closed.then(|| line.first()).flatten();
+        let pieces = line.iter().zip(line.iter().skip(1).chain(again)).enumerate();
+        let mut strips: Vec<Strip> = pieces.filter_map(|(i, (a, b))| Strip::new(*a, *b, radius(i))).collect();
+        let Some(last) = strips.len().checked_sub(1) else {
+            line.iter().take(1).for_each(|point| self.cover_disc(*point, radius(0)));
+            return strips;
+        };
+        (1..=last).for_each(|i| self.join(&mut strips, i - 1, i));
+        if closed {
+            self.join(&mut strips, last, 0);
+        } else {
+            self.cover_disc(strips[0].from, strips[0].radius);
+            self.cover_disc(strips[last].to(), strips[last].radius);
+        }
+        strips
+    }
+
+    /// Covers what a strip and the one that follows it leave between them.
+    fn join(&mut self, strips: &mut [Strip], one: usize, other: usize) {
+        let (into, out) = (strips[one], strips[other]);
+        let (sine, cosine) = (into.way.perp_dot(out.way), into.way.dot(out.way));
+        let radius = into.radius.max(out.radius);
+        if cosine < LITTLE {
+            self.cover_disc(out.from, radius);
+        } else {
+            // The tangent of half the turn.
+            let on = radius * sine.abs() / (1.0 + cosine);
+            (strips[one].on.1, strips[other].on.0) = (on, on);
+        }
+    }
+
     /// The rows from one height to another.
-    fn within(&self, low: f64, high: f64) -> Range<usize> {
-        let row = |y: f64| ((y - self.first) / self.step).clamp(0.0, self.covered.len() as f64);
-        let to = (row(high).floor() as usize + 1).min(self.covered.len());
-        (row(low).ceil() as usize).min(to)..to
+    fn within(&self, (low, high): (f64, f64)) -> Range<usize> {
+        // The first row at or above a height; casts round what is not negative down.
+        let from = |y: f64| ((y - self.first) * self.per_mm + 1.0).max(0.0) as usize;
+        let to = from(high).min(self.last.len());
+        from(low).min(to)..to
     }
 
     fn height(&self, row: usize) -> f64 {
         self.first + row as f64 * self.step
     }
 
-    fn cover_by(&mut self, strip: &Strip, rows: Range<usize>) {
-        for row in rows {
-            if let Some(span) = strip.across(self.height(row)) {
-                add(&mut self.covered[row], span);
-            }
+    fn cover_strip(&mut self, strip: &Strip, rows: Range<usize>) {
+        if rows.is_empty() {
+            return;
         }
+        let (sides, ends) = (strip.sides(), strip.ends());
+        for row in rows {
+            let y = self.height(row);
+            self.add(row, sides.meet(&ends, y));
+        }
+    }
+
+    fn cover_disc(&mut self, middle: DVec2, radius: f64) {
+        for row in self.within((middle.y - radius, middle.y + radius)) {
+            let up = self.height(row) - middle.y;
+            let half = (radius * radius - up * up).max(0.0).sqrt();
+            self.add(row, (middle.x - half, middle.x + half));
+        }
+    }
+
+    /// Adds a span to those of a row. Neighbouring passes are laid one after another, so most spans continue the last one.
+    fn add(&mut self, row: usize, (low, high): Span) {
+        let last = &mut self.last[row];
+        if low > high {
+        } else if low <= last.1 && high >= last.0 {
+            *last = (last.0.min(low), last.1.max(high));
+        } else {
+            if *last != NOWHERE {
+                self.before.push((row as u32, *last));
+            }
+            *last = (low, high);
+        }
+    }
+
+    /// All spans of each row, by where they begin.
+    fn covered(self) -> PerRow<Span> {
+        let last = self.last.iter().copied().enumerate().filter(|(_, span)| *span != NOWHERE);
+        let before = self.before.iter().map(|&(row, span)| (row as usize, span));
+        let mut covered = PerRow::grouped(self.last.len(), before.chain(last));
+        covered.iter_mut().for_each(|row| row.sort_unstable_by(|a, b| a.0.total_cmp(&b.0)));
+        covered
     }
 
     /// Adds a strip to a run, or begins another run where it does not continue this one.
@@ -172,22 +253,24 @@ impl Rows {
 
     /// Notes where a run begins on some rows.
     fn open(&mut self, strip: &Strip, rows: Range<usize>, rising: bool) {
+        let sides = strip.sides();
         for row in rows {
-            let (low, high) = strip.between_sides(self.height(row));
+            let (low, high) = sides.at(self.height(row));
             self.starts[row] = if rising { low } else { high };
         }
     }
 
     /// Covers some rows from where a run begins to where its last strip ends.
     fn close(&mut self, run: &Run, rows: Range<usize>) {
+        let sides = run.last.sides();
         for row in rows {
-            let (low, high) = run.last.between_sides(self.height(row));
+            let (low, high) = sides.at(self.height(row));
             let span = match run.rising {
                 None => (low, high),
                 Some(true) => (self.starts[row], high),
                 Some(false) => (low, self.starts[row]),
             };
-            add(&mut self.covered[row], span);
+            self.add(row, span);
         }
     }
 }
@@ -198,82 +281,103 @@ const SHORT: f64 = 8.0;
 /// Strips of a run overlap by this part of their width at least, and lean alike to this part of it.
 const OVERLAP: f64 = 1e-3;
 
-/// Adds a span to those of a row. Neighbouring passes are laid one after another, so most spans continue the last one.
-fn add(spans: &mut Vec<(f64, f64)>, (low, high): (f64, f64)) {
-    match spans.last_mut() {
-        Some(last) if low <= last.1 && high >= last.0 => *last = (last.0.min(low), last.1.max(high)),
-        _ => spans.push((low, high)),
-    }
-}
+/// Cosine of a turn that is little: on its outer side strips meet 1 % of a radius beyond the round join.
+const LITTLE: f64 = 0.96;
 
-/// The strip with round ends that a straight piece covers.
+/// The strip that a straight piece covers.
+#[derive(Debug, Clone, Copy)]
 struct Strip {
-    ends: [DVec2; 2],
+    from: DVec2,
+    /// Unit vector along it.
+    way: DVec2,
+    length: f64,
     radius: f64,
-    /// The long sides: lowest and highest y, x at the lowest, and how x grows with y. None along a row.
-    sides: Option<[(f64, f64, f64, f64); 2]>,
-    low: f64,
-    high: f64,
+    /// How far it reaches beyond both ends.
+    on: (f64, f64),
 }
 
 impl Strip {
-    fn new(a: DVec2, b: DVec2, radius: f64) -> Self {
-        let out = (b - a).perp().normalize_or_zero() * radius;
-        let side = |out: DVec2| {
-            let (from, to) = if a.y < b.y { (a + out, b + out) } else { (b + out, a + out) };
-            let lean = (to.x - from.x) / (to.y - from.y);
-            (from.y, to.y, from.x, lean)
-        };
-        let sides = (a.y != b.y).then(|| [side(out), side(-out)]);
-        Self { ends: [a, b], radius, sides, low: a.y.min(b.y) - radius, high: a.y.max(b.y) + radius }
+    /// `None` for a piece without length.
+    fn new(from: DVec2, to: DVec2, radius: f64) -> Option<Self> {
+        let length = from.distance(to);
+        (length > 0.0).then(|| Self { from, way: (to - from) / length, length, radius, on: (0.0, 0.0) })
     }
 
-    /// Where a row crosses it.
-    #[inline]
-    fn across(&self, y: f64) -> Option<(f64, f64)> {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for end in self.ends {
-            let square = self.radius * self.radius - (y - end.y) * (y - end.y);
-            if square >= 0.0 {
-                let half = square.sqrt();
-                (low, high) = (low.min(end.x - half), high.max(end.x + half));
-            }
-        }
-        for (from, to, x, lean) in self.sides.into_iter().flatten() {
-            if from <= y && y <= to {
-                let x = x + (y - from) * lean;
-                (low, high) = (low.min(x), high.max(x));
-            }
-        }
-        (low <= high).then_some((low, high))
+    fn to(&self) -> DVec2 {
+        self.from + self.length * self.way
     }
 
-    fn is_short(&self) -> bool {
-        self.ends[0].distance(self.ends[1]) < SHORT * self.radius
+    /// Its lowest and its highest place.
+    fn all(&self) -> (f64, f64) {
+        let (low, high) = self.along();
+        let across = self.way.x.abs() * self.radius;
+        (low - across, high + across)
     }
 
     /// The heights between which rows cross both long sides.
-    fn core(&self) -> Option<(f64, f64)> {
-        let [a, b] = self.sides?;
-        Some((a.0.max(b.0), a.1.min(b.1)))
+    fn core(&self) -> (f64, f64) {
+        let (low, high) = self.along();
+        let across = self.way.x.abs() * self.radius;
+        (low + across, high - across)
     }
 
-    /// Where a row between them does.
-    fn between_sides(&self, y: f64) -> (f64, f64) {
-        let [a, b] = self.sides.unwrap_or_default().map(|(from, _, x, lean)| x + (y - from) * lean);
+    /// The lowest and the highest place of its middle.
+    fn along(&self) -> (f64, f64) {
+        let (a, b) = (self.from.y - self.on.0 * self.way.y, self.from.y + (self.length + self.on.1) * self.way.y);
         (a.min(b), a.max(b))
+    }
+
+    /// What lies between its long sides.
+    fn sides(&self) -> Slab {
+        let half = self.radius / self.way.y.abs();
+        Slab { y: self.from.y, low: self.from.x - half, high: self.from.x + half, lean: self.way.x / self.way.y }
+    }
+
+    /// What lies between its ends.
+    fn ends(&self) -> Slab {
+        let (a, b) = (-self.on.0 / self.way.x, (self.length + self.on.1) / self.way.x);
+        Slab {
+            y: self.from.y,
+            low: self.from.x + a.min(b),
+            high: self.from.x + a.max(b),
+            lean: -self.way.y / self.way.x,
+        }
     }
 
     /// Whether another strip lies beside this one, parallel, as wide, and overlapping: then, whether towards greater x.
     fn beside(&self, other: &Self) -> Option<bool> {
-        let (way, next) = (self.ends[1] - self.ends[0], other.ends[1] - other.ends[0]);
-        let (own, along) = (way.try_normalize()?, next.try_normalize()?);
-        let reach = way.length().max(next.length()) + self.ends[0].distance(other.ends[0]);
-        let parallel = own.perp_dot(along).abs() * reach < OVERLAP * self.radius;
-        let apart = own.perp_dot(other.ends[0] - self.ends[0]);
+        let reach = self.length.max(other.length) + self.from.distance(other.from);
+        let parallel = self.way.perp_dot(other.way).abs() * reach < OVERLAP * self.radius;
+        let apart = self.way.perp_dot(other.from - self.from);
         let near = (OVERLAP..2.0 - OVERLAP).contains(&(apart.abs() / self.radius));
         // To the left of an upward way x decreases.
-        (parallel && near && self.radius == other.radius).then_some((apart > 0.0) != (own.y > 0.0))
+        (parallel && near && self.radius == other.radius).then_some((apart > 0.0) != (self.way.y > 0.0))
+    }
+}
+
+/// What lies between two parallel lines.
+struct Slab {
+    /// The height at which it reaches from `low` to `high`.
+    y: f64,
+    low: f64,
+    high: f64,
+    /// How it moves with the height.
+    lean: f64,
+}
+
+impl Slab {
+    #[inline]
+    fn at(&self, y: f64) -> Span {
+        let moved = (y - self.y) * self.lean;
+        (self.low + moved, self.high + moved)
+    }
+
+    /// What it has in common with another on a row that meets both.
+    #[inline]
+    fn meet(&self, other: &Self, y: f64) -> Span {
+        let (a, b) = (self.at(y), other.at(y));
+        // Lines along the row have no place on it, and are passed over.
+        (a.0.max(b.0), a.1.min(b.1))
     }
 }
 
@@ -345,9 +449,15 @@ mod tests {
 
     #[test]
     fn a_row_crosses_a_slanted_strip_between_its_sides() {
-        let (low, high) = Strip::new(DVec2::new(0.0, 0.0), DVec2::new(10.0, 10.0), 1.0).across(5.0).unwrap_or_default();
+        let strip = |x, y| Strip::new(DVec2::ZERO, DVec2::new(x, y), 1.0).unwrap();
+        let on = |strip: Strip, y| strip.sides().meet(&strip.ends(), y);
+        let (low, high) = on(strip(10.0, 10.0), 5.0);
         let half = 2.0_f64.sqrt();
         assert!((low - (5.0 - half)).abs() < 1e-12 && (high - (5.0 + half)).abs() < 1e-12);
-        assert_eq!(Strip::new(DVec2::ZERO, DVec2::X, 1.0).across(2.0), None);
+        // Near its end only one long side is crossed.
+        let (low, high) = on(strip(10.0, 10.0), 10.0);
+        assert!((low - (10.0 - half)).abs() < 1e-12 && (high - 10.0).abs() < 1e-12, "{low} {high}");
+        assert_eq!(on(strip(3.0, 0.0), 0.5), (0.0, 3.0));
+        assert_eq!(on(strip(0.0, -3.0), -0.5), (-1.0, 1.0));
     }
 }

@@ -5,7 +5,7 @@
 use super::Path;
 use glam::DVec2;
 use planar::Polygon;
-use planar::bands::{Bands, Piece};
+use planar::boxes::{Boxes, Piece};
 use planar::polyline::distance_squared_to_segment;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -41,15 +41,15 @@ pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault>
     }
     let edges: Vec<Piece> = island.rings().flat_map(|ring| ring.edges()).map(|(a, b)| [a, b]).collect();
     let (numbers, laid) = pieces(&lines);
-    let bands = Bands::new([edges.as_slice(), &laid].concat());
+    let boxes = Boxes::new([edges.as_slice(), &laid].concat());
     let (mut cuts, mut found): (BTreeMap<Number, Vec<f64>>, Vec<_>) = (BTreeMap::new(), Vec::new());
-    bands.pairs(|i, j| match (i.checked_sub(edges.len()), j.checked_sub(edges.len())) {
+    boxes.pairs(|i, j| match (i.checked_sub(edges.len()), j.checked_sub(edges.len())) {
         (None, None) => {}
         (Some(i), Some(j)) => found.extend(crossing((numbers[i], laid[i]), (numbers[j], laid[j]))),
         (Some(piece), None) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[j])),
         (None, Some(piece)) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[i])),
     });
-    let inside = |p: DVec2| bands.inside(p, edges.len());
+    let inside = |p: DVec2| boxes.inside(p, edges.len());
     outside(&lines, &cuts, &edges, inside, allowance)
         .or_else(|| first(found).map(|(_, _, place)| Fault::Crossing { place }))
 }
@@ -118,8 +118,8 @@ const MOST_SAMPLES: f64 = 4000.0;
 pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = Crossing> {
     let (numbers, pieces) = pieces(lines);
     let mut found = Vec::new();
-    let bands = Bands::new(pieces.clone());
-    bands.pairs(|i, j| found.extend(crossing((numbers[i], pieces[i]), (numbers[j], pieces[j]))));
+    let boxes = Boxes::new(pieces.clone());
+    boxes.pairs(|i, j| found.extend(crossing((numbers[i], pieces[i]), (numbers[j], pieces[j]))));
     found.sort_by(by_line);
     found.into_iter()
 }
