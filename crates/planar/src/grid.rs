@@ -14,7 +14,11 @@ pub(crate) type GridPoint = IntPoint<i32>;
 pub(crate) type GridShapes = Vec<Vec<Vec<GridPoint>>>;
 
 pub(crate) fn to_grid(p: DVec2) -> GridPoint {
-    let scale = |v: f64| (v.clamp(-MAX_COORDINATE_MM, MAX_COORDINATE_MM) / GRID_MM).round() as i32;
+    let scale = |v: f64| {
+        let steps = v.clamp(-MAX_COORDINATE_MM, MAX_COORDINATE_MM) / GRID_MM;
+        // A cast takes the rest away.
+        (steps + 0.5_f64.copysign(steps)) as i32
+    };
     IntPoint::new(scale(p.x), scale(p.y))
 }
 

@@ -112,11 +112,14 @@ fn emptied_corners(ring: &Ring, radius: f64, smallest: f64) -> f64 {
     let n = points.len();
     let corner = |i: usize| {
         let (into, out) = (points[i] - points[(i + n - 1) % n], points[(i + 1) % n] - points[i]);
-        let turn = into.angle_to(out);
-        let tangent = radius * (turn / 2.0).tan();
-        let area = radius * (tangent - radius * turn / 2.0);
-        let alone = 2.0 * tangent <= into.length().min(out.length());
-        if turn > 0.0 && alone && area <= smallest { area } else { 0.0 }
+        let lengths = (into.length_squared(), out.length_squared());
+        // Of half the turn: the disc touches each edge so many radii from the corner.
+        let tangent = into.perp_dot(out) / ((lengths.0 * lengths.1).sqrt() + into.dot(out));
+        if tangent <= 0.0 || 4.0 * (radius * tangent).powi(2) > lengths.0.min(lengths.1) {
+            return 0.0;
+        }
+        let area = radius * radius * (tangent - tangent.atan());
+        if area <= smallest { area } else { 0.0 }
     };
     (0..n).map(corner).sum()
 }

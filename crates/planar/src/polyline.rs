@@ -42,9 +42,7 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut keep = vec![false; points.len()];
     keep[0] = true;
     keep[last] = true;
-    // A point that far from the line between its neighbours is always kept; that leaves short stretches.
-    let corner = |w: &[DVec2]| distance_squared_to_segment(w[1], w[0], w[2]) > 4.0 * tolerance * tolerance;
-    keep.iter_mut().skip(1).zip(points.windows(3)).for_each(|(keep, w)| *keep = corner(w));
+    keep.iter_mut().skip(1).zip(points.windows(3)).for_each(|(keep, w)| *keep = is_corner(w[0], w[1], w[2], tolerance));
     let mut from = 0;
     for to in 1..=last {
         if keep[to] {
@@ -53,6 +51,14 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
         }
     }
     points.iter().zip(&keep).filter(|&(_, &k)| k).map(|(&p, _)| p).collect()
+}
+
+/// Whether a point between two others is kept in any case: it lies more than three times the tolerance from the line
+/// between them, and no line that keeps within the tolerance of all three bends less. So only the short stretches between
+/// corners are left to be simplified.
+fn is_corner(before: DVec2, point: DVec2, after: DVec2, tolerance: f64) -> bool {
+    let turns_back = (point - before).dot(after - point) <= 0.0;
+    !turns_back && distance_squared_to_segment(point, before, after) > 9.0 * tolerance * tolerance
 }
 
 /// [`simplify`] for a closed ring, anchored at two far points so that the start vertex does not matter.

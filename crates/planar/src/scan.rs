@@ -5,7 +5,7 @@
 //! meets no scan line in between. A path that goes from line to line along chains can therefore neither leave
 //! the region nor cross another line: no geometric test is needed.
 
-use crate::{Region, Ring};
+use crate::{PerRow, Region, Ring};
 use glam::DVec2;
 
 /// Lines are moved off exact vertices by this, mm.
@@ -166,8 +166,10 @@ impl Scan {
     /// Crossings in the order in which each ring meets them.
     fn find_crossings(&mut self, lines: &[f64]) {
         for (ring_index, ring) in self.rings.iter().enumerate() {
+            let mut high = ring.points().first().map_or(0, |p| lines_up_to(lines, 0, p.y));
             for (edge, (a, b)) in ring.edges().enumerate() {
-                let (low, high) = (lines_up_to(lines, a.y), lines_up_to(lines, b.y));
+                let low = high;
+                high = lines_up_to(lines, low, b.y);
                 let crossing = |line: usize| {
                     let t = ((lines[line] - a.y) / (b.y - a.y)).clamp(0.0, 1.0);
                     let at = DVec2::new(a.x + (b.x - a.x) * t, lines[line]);
@@ -185,17 +187,15 @@ impl Scan {
 
     /// The inside lies to the left of an upward crossing and to the right of a downward one.
     fn pair_spans(&mut self, line_count: usize) {
-        let mut by_line: Vec<Vec<usize>> = vec![Vec::new(); line_count];
-        for (i, crossing) in self.crossings.iter().enumerate() {
-            by_line[crossing.line].push(i);
-        }
-        for (line, mut on_line) in by_line.into_iter().enumerate() {
+        let numbers = self.crossings.iter().enumerate().map(|(i, crossing)| (crossing.line, i));
+        let mut by_line = PerRow::grouped(line_count, numbers);
+        for (line, on_line) in by_line.iter_mut().enumerate() {
             let key = |i: usize| self.crossings[i].at.x;
             on_line.sort_by(|&i, &j| {
                 key(i).total_cmp(&key(j)).then(self.crossings[i].upward.cmp(&self.crossings[j].upward))
             });
             let mut open = None;
-            for i in on_line {
+            for &mut i in on_line {
                 match (self.crossings[i].upward, open) {
                     (false, _) => open = Some(i),
                     (true, Some(left)) => {
@@ -270,9 +270,12 @@ impl Scan {
     }
 }
 
-/// Number of lines at or below `y`: a vertex on a line counts as above it, for both of its edges alike.
-fn lines_up_to(lines: &[f64], y: f64) -> usize {
-    lines.partition_point(|&line| line <= y)
+/// Number of lines at or below `y`, searched from a `guess` on: a vertex on a line counts as above it, for both of its
+/// edges alike.
+fn lines_up_to(lines: &[f64], guess: usize, y: f64) -> usize {
+    let (below, above) = lines.split_at(guess);
+    let less = below.iter().rev().take_while(|&&line| line > y).count();
+    guess - less + above.iter().take_while(|&&line| line <= y).count()
 }
 
 /// Cosine and sine of `angle`, exact at multiples of 90° so that axis-parallel parts stay axis-parallel.

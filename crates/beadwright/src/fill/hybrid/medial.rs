@@ -301,7 +301,21 @@ fn hit(piece: &Polygon, from: DVec2, way: DVec2) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Joins lines whose ends lie near each other, the nearest first; no link crosses laid lines or these lines.
+/// Cosine of the turn at which a link runs back along the line that it leaves.
+const BACK: f64 = -0.9;
+
+/// Whether a link from an end of a line to a place would lie on the line itself.
+fn runs_back(line: &Line, last: bool, to: DVec2) -> bool {
+    let way = match line.points[..] {
+        [.., a, b] if last => (a, b),
+        [b, a, ..] => (a, b),
+        _ => return false,
+    };
+    (way.1 - way.0).normalize_or_zero().dot((to - way.1).normalize_or_zero()) < BACK
+}
+
+/// Joins lines whose ends lie near each other, the nearest first; no link crosses laid lines or these lines, or runs back
+/// along one of them.
 fn join(mut lines: Vec<Line>, reach: f64, laid: &LineIndex) -> Vec<Line> {
     let mut own = LineIndex::new(laid.sight_mm());
     lines.iter().for_each(|line| own.add_line(0, &line.points));
@@ -318,7 +332,8 @@ fn join(mut lines: Vec<Line>, reach: f64, laid: &LineIndex) -> Vec<Line> {
                     let distance = p.distance(q);
                     let nearer = distance <= reach && best.is_none_or(|best| distance < best.0);
                     let (c, d) = (p.lerp(q, 1e-3), q.lerp(p, 1e-3));
-                    if nearer && !laid.crosses(c, d) && !own.crosses(c, d) {
+                    let back = runs_back(&lines[i], a, q) || runs_back(&lines[j], b, p);
+                    if nearer && !back && !laid.crosses(c, d) && !own.crosses(c, d) {
                         best = Some((distance, i, a, j, b));
                     }
                 }
