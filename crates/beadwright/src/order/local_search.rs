@@ -6,7 +6,6 @@
 //! exchanged at random and the tour is repaired; exchanges that do not shorten it are undone. Finally the starts of
 //! closed passes slide along their edges.
 
-use super::exact;
 use super::nearest;
 use super::tour::{self, Circle, Ends, Gate, Stop, Visit, gap, neighbours};
 use crate::random::Random;
@@ -17,10 +16,9 @@ use rstar::primitives::GeomWithData;
 /// Moves are tried with this many of the nearest stops.
 const NEAR: usize = 8;
 
-/// Random exchanges per stop; with few stops they are cheap, and more are needed. The last value limits the total.
-const KICKS_PER_STOP: usize = 3;
+/// With so few stops every exchange is tried; with more so many random ones per stop, up to a limit.
 const FEW_STOPS: usize = 9;
-const KICKS_PER_FEW: usize = 25;
+const KICKS_PER_STOP: usize = 3;
 const MOST_KICKS: usize = 800;
 
 /// A stretch that is exchanged has at most this many stops.
@@ -31,9 +29,10 @@ const LEAST_GAIN: f64 = 1e-3;
 
 /// A short tour through all stops.
 pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
-    // Three stops are too few for exchanges: find the optimum.
-    let start = if stops.len() <= 3 { exact::tour(stops, ends) } else { nearest::tour(stops, ends) };
-    let mut search = Search::new(stops, ends, start);
+    let mut search = Search::new(stops, ends, nearest::tour(stops, ends));
+    if stops.len() < 2 {
+        return search.tour;
+    }
     let mut queue: Vec<usize> = (0..stops.len()).collect();
     search.improve(&mut queue);
     search.choose_gates();
@@ -62,8 +61,9 @@ impl<'a> Search<'a> {
         let place = vec![0; stops.len()];
         let all_reversible = stops.iter().all(Stop::reversible);
         let gates: Vec<Vec<Gate>> = stops.iter().map(|s| s.gates().collect()).collect();
-        let circles = stops.iter().map(Circle::around).collect();
-        let mut search = Self { stops, gates, circles, ends, tour, place, near: near(stops), all_reversible };
+        let circles: Vec<Circle> = stops.iter().map(Circle::around).collect();
+        let near = if stops.len() <= FEW_STOPS { all_near(&circles) } else { near(stops) };
+        let mut search = Self { stops, gates, circles, ends, tour, place, near, all_reversible };
         search.number(0, stops.len());
         search
     }
@@ -273,36 +273,42 @@ impl<'a> Search<'a> {
         self.around([i.min(last), j.min(last), place, place + length - 1])
     }
 
-    /// Exchanges neighbouring stretches at random, repairs the tour at their ends, and undoes what does not shorten it.
+    /// Exchanges neighbouring stretches, repairs the tour at their ends, and undoes what does not shorten it.
     fn kick(&mut self) {
         let n = self.tour.len();
-        if n < 4 {
+        let mut kept = (self.tour.clone(), self.place.clone());
+        if n > FEW_STOPS {
+            let mut random = Random::new(n as u64);
+            for _ in 0..(KICKS_PER_STOP * n).min(MOST_KICKS) {
+                let a = random.below(n - 1);
+                let b = a + 1 + random.below((n - 1 - a).min(KICK_LENGTH));
+                let c = b + 1 + random.below((n - b).min(KICK_LENGTH)) - 1;
+                self.exchange(a, b, c.max(b + 1).min(n), &mut kept);
+            }
             return;
         }
-        let mut random = Random::new(n as u64);
-        let (mut kept, mut kept_place) = (self.tour.clone(), self.place.clone());
-        let each = if n <= FEW_STOPS { KICKS_PER_FEW } else { KICKS_PER_STOP };
-        for _ in 0..(each * n).min(MOST_KICKS) {
-            let a = random.below(n - 1);
-            let b = a + 1 + random.below((n - 1 - a).min(KICK_LENGTH));
-            let c = b + 1 + random.below((n - b).min(KICK_LENGTH)) - 1;
-            let c = c.max(b + 1).min(n);
-            let old = self.cost_of_kick(a, b, c);
-            self.tour[a..c].rotate_left(b - a);
-            self.number(a, c);
-            let middle = a + c - b;
-            let lost = self.cost_of_kick(a, middle, c) - old;
-            let ends = [a.saturating_sub(1), a, middle - 1, middle, c - 1, c.min(n - 1)];
-            let mut queue = ends.map(|i| self.tour[i].stop).to_vec();
-            let gained = self.improve(&mut queue) - lost;
-            if gained > LEAST_GAIN {
-                kept.clone_from(&self.tour);
-                kept_place.clone_from(&self.place);
-            } else {
-                self.tour.clone_from(&kept);
-                self.place.clone_from(&kept_place);
-            }
+        let all = || (0..n).flat_map(|a| (a + 1..n).flat_map(move |b| (b + 1..=n).map(move |c| (a, b, c))));
+        while all().fold(false, |gained, (a, b, c)| gained | self.exchange(a, b, c, &mut kept)) {}
+    }
+
+    /// Exchanges the stretches a..b and b..c of a tour that is kept if that does not shorten it, and tells whether it did.
+    fn exchange(&mut self, a: usize, b: usize, c: usize, kept: &mut (Vec<Visit>, Vec<usize>)) -> bool {
+        let old = self.cost_of_kick(a, b, c);
+        self.tour[a..c].rotate_left(b - a);
+        self.number(a, c);
+        let middle = a + c - b;
+        let lost = self.cost_of_kick(a, middle, c) - old;
+        let ends = [a.saturating_sub(1), a, middle - 1, middle, c - 1, c.min(self.tour.len() - 1)];
+        let mut queue = ends.map(|i| self.tour[i].stop).to_vec();
+        let shorter = self.improve(&mut queue) - lost > LEAST_GAIN;
+        if shorter {
+            kept.0.clone_from(&self.tour);
+            kept.1.clone_from(&self.place);
+        } else {
+            self.tour.clone_from(&kept.0);
+            self.place.clone_from(&kept.1);
         }
+        shorter
     }
 
     /// Length of the ways at the three ends of the stretches a..b and b..c.
@@ -382,6 +388,17 @@ impl<'a> Search<'a> {
 /// No way through a stop that is left where it is entered is shorter than the straight one past it, mm.
 fn straight(before: Option<DVec2>, after: Option<DVec2>, visit: &Visit) -> f64 {
     if visit.enter == visit.leave { gap(before, after) } else { 0.0 }
+}
+
+/// For each of a few stops all others, with a distance that their gates have at least.
+fn all_near(circles: &[Circle]) -> Vec<Vec<(f64, usize)>> {
+    let of = |s: usize| {
+        let others = (0..circles.len()).filter(|&other| other != s);
+        let mut list: Vec<_> = others.map(|other| (circles[s].least_distance(&circles[other]), other)).collect();
+        list.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        list
+    };
+    (0..circles.len()).map(of).collect()
 }
 
 /// For each stop the stops whose gates lie nearest to its own, with the distance.

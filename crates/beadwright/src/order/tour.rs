@@ -155,6 +155,11 @@ impl Circle {
         (gap(from, Some(self.middle)) - self.radius).max(0.0)
     }
 
+    /// Any gates of two stops lie at least as far from each other, mm.
+    pub(super) fn least_distance(&self, other: &Self) -> f64 {
+        (self.middle.distance(other.middle) - self.radius - other.radius).max(0.0)
+    }
+
     /// A way through any gate is at least as long, mm.
     pub(super) fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
         self.least_gap(from) + self.least_gap(to)
