@@ -3,20 +3,54 @@
 /// Appends `value` with that many decimals (at most 9). What is not finite is written as 0; callers keep such
 /// values out.
 pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
-    const POWERS: [u64; 10] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
-    let power = POWERS[decimals.min(9)];
+    const POWERS: [f64; 10] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
     debug_assert!(value.is_finite());
-    let scaled = (value * power as f64).abs();
+    let decimals = decimals.min(9);
+    let scaled = (value * POWERS[decimals]).abs();
     // Halves are rounded away from zero; a call of `round` costs more than all else here.
     let whole = scaled as u64;
     let digits = whole + u64::from(scaled - whole as f64 >= 0.5);
-    if value < 0.0 && digits > 0 {
-        text.push('-');
-    }
-    push_digits(text, digits / power, 1);
+    let mut number = Number { bytes: [b'0'; 24], start: 24, left: digits };
+    number.take(decimals);
     if decimals > 0 {
-        text.push('.');
-        push_digits(text, digits % power, decimals.min(9));
+        number.put(b'.');
+    }
+    number.take(1);
+    while number.left > 0 {
+        number.take(1);
+    }
+    if value < 0.0 && digits > 0 {
+        number.put(b'-');
+    }
+    text.push_str(std::str::from_utf8(&number.bytes[number.start..]).unwrap_or_default());
+}
+
+/// A number written from its last digit to its first; a sign, twenty digits and a point at most.
+struct Number {
+    bytes: [u8; 24],
+    start: usize,
+    left: u64,
+}
+
+impl Number {
+    /// Writes the last digits of what is left.
+    fn take(&mut self, digits: usize) {
+        for _ in 0..digits / 2 {
+            let pair = (self.left % 100) as u8;
+            self.left /= 100;
+            self.put(b'0' + pair % 10);
+            self.put(b'0' + pair / 10);
+        }
+        if digits % 2 == 1 {
+            let digit = (self.left % 10) as u8;
+            self.left /= 10;
+            self.put(b'0' + digit);
+        }
+    }
+
+    fn put(&mut self, byte: u8) {
+        self.start -= 1;
+        self.bytes[self.start] = byte;
     }
 }
 
@@ -27,16 +61,12 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     text
 }
 
-/// Appends digits, with zeros in front up to `width`.
-fn push_digits(text: &mut String, mut value: u64, width: usize) {
-    let mut digits = [b'0'; 20];
-    let mut start = digits.len();
-    while value > 0 || digits.len() - start < width {
-        start -= 1;
-        digits[start] = b'0' + (value % 10) as u8;
-        value /= 10;
-    }
-    text.push_str(std::str::from_utf8(&digits[start..]).unwrap_or_default());
+/// The nearest whole number, halves away from zero, as `f64::round` has it but for numbers that are a hair below a half;
+/// without a call into the library of mathematics.
+pub fn rounded(value: f64) -> f64 {
+    /// From here on numbers are whole.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if value.abs() < WHOLE { (value + 0.5_f64.copysign(value)) as i64 as f64 } else { value }
 }
 
 /// Seconds as `1 h 02 min 03 s`.

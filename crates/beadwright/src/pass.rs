@@ -137,9 +137,9 @@ impl Segment {
 impl Pass {
     /// The straight pieces in order, with the closing one of a closed pass.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
-        let count = if self.closed { self.points.len() } else { self.points.len().saturating_sub(1) };
-        let to = self.points.iter().cycle().skip(1);
-        self.points.iter().zip(to).take(count).enumerate().map(|(i, (&from, &to))| Segment {
+        let closing = self.closed.then(|| self.points.last().copied().zip(self.points.first().copied())).flatten();
+        let pieces = self.points.windows(2).map(|w| (w[0], w[1])).chain(closing);
+        pieces.enumerate().map(|(i, (from, to))| Segment {
             from,
             to,
             width: self.width.after(i),

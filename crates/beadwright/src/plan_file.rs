@@ -8,7 +8,7 @@ use crate::deposit::{DepositSettings, Nominal};
 use crate::heat::LONGEST_WAIT;
 use crate::layer::Layer;
 use crate::model::MAX_REACH_MM;
-use crate::number::push_fixed;
+use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
 use crate::plan::{self, Header};
 use crate::profile::{Profile, ProfileError};
@@ -60,7 +60,20 @@ pub fn tail() -> &'static str {
 
 fn pass(text: &mut String, pass: &Pass) {
     text.push_str(&format!("{{\"kind\":\"{}\",\"closed\":{},\"points\":", pass.kind.name(), pass.closed));
-    list(text, &pass.points, |text, p| numbers(text, &p.to_array()));
+    // Nearly all points of a pass lie at one height, which is written once.
+    let (mut height, mut z) = (f64::NAN, String::new());
+    list(text, &pass.points, |text, p| {
+        if p.z != height {
+            (height, z) = (p.z, fixed(p.z, DECIMALS));
+        }
+        text.push('[');
+        push_fixed(text, p.x, DECIMALS);
+        text.push(',');
+        push_fixed(text, p.y, DECIMALS);
+        text.push(',');
+        text.push_str(&z);
+        text.push(']');
+    });
     text.push_str(",\"width\":");
     along(text, &pass.width);
     text.push_str(",\"pace\":");

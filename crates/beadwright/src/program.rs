@@ -19,6 +19,7 @@ pub use settings::ProgramSettings;
 pub use weave::Weave;
 
 use crate::layer::Layer;
+use crate::number;
 use crate::pass::{Pass, PassKind};
 use crate::process::Follow;
 use crate::weld::{Pause, Torch, WeldSettings, path};
@@ -383,7 +384,7 @@ fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<Stretch> {
 
 /// The points of a path, rounded, without those too close to the last one; the end point is always kept.
 fn distinct(path: Vec<(DVec3, f64)>) -> Vec<(DVec3, f64)> {
-    let round = |p: DVec3| (p / RESOLUTION_MM).round() * RESOLUTION_MM;
+    let round = |p: DVec3| DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM));
     let end = path.last().map(|(to, _)| round(*to));
     let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(path.len());
     for (to, pace) in path {

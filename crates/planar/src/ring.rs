@@ -92,8 +92,8 @@ impl Ring {
 
     /// The edges as (from, to), the closing one last.
     pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
-        let next = self.0.iter().cycle().skip(1);
-        self.0.iter().zip(next).map(|(&a, &b)| (a, b))
+        let closing = self.0.last().copied().zip(self.0.first().copied());
+        self.0.windows(2).map(|w| (w[0], w[1])).chain(closing)
     }
 
     /// Signed area, mm²: positive when counter-clockwise.

@@ -154,7 +154,8 @@ fn kind(kind: PassKind) -> u32 {
 fn differences(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<[i16; 2]> {
     let mut last = I64Vec2::ZERO;
     let step = |p: DVec2| {
-        let at = ((p - origin) / resolution).round().as_i64vec2();
+        // What is not negative is rounded down by a cast.
+        let at = ((p - origin) / resolution + 0.5).as_i64vec2();
         let difference = at - std::mem::replace(&mut last, at);
         [difference.x as i16, difference.y as i16]
     };

@@ -205,26 +205,23 @@ impl Torch {
 
     /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them.
     pub fn weld(&mut self, moves: &[(DVec3, f64)]) -> Welded {
-        let pieces = || moves.windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
+        let (mut length, mut steady, mut metal) = (0.0, 0.0, 0.0);
+        for ends in moves.windows(2) {
+            let (piece, pace) = (ends[0].0.distance(ends[1].0), ends[1].1);
+            length += piece;
+            steady += piece / self.speed_at(pace);
+            metal += piece / pace;
+        }
         let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_at(pace)));
-        let steady: f64 = pieces().map(|(length, pace)| length / self.speed_at(pace)).sum();
         let moving = match (&self.motion, moves.first()) {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
             _ => steady,
         };
         let crater = self.ends.crater_fill_time;
         let filling = crater * self.crater_feed();
-        let metal = pieces().map(|(length, pace)| length / pace).sum::<f64>() + filling;
+        let metal = metal + filling;
         let [before, after] = self.delays();
-        let welded = Welded {
-            length: pieces().map(|p| p.0).sum(),
-            moving,
-            slowed: moving - steady,
-            metal,
-            crater,
-            before,
-            after,
-        };
+        let welded = Welded { length, moving, slowed: moving - steady, metal, crater, before, after };
         self.seconds += before + moving + crater + after;
         if let Some(&(end, _)) = moves.last() {
             (self.at, self.low) = (Some(end), end.z);

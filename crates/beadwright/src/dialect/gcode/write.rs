@@ -146,14 +146,13 @@ impl CncGcode {
     }
 
     fn motion(&mut self, text: &mut String, word: &str, to: DVec3, circle: Option<Circle>, feed: Option<f64>) {
-        let moved = |axis: usize| self.at.is_none_or(|at| at[axis] != to[axis]);
-        let axes: Vec<usize> = (0..3).filter(|&axis| moved(axis)).collect();
-        if axes.is_empty() {
+        let moved = [0, 1, 2].map(|axis| self.at.is_none_or(|at| at[axis] != to[axis]));
+        if moved == [false; 3] {
             return;
         }
         self.begin_block(text);
         text.push_str(word);
-        for axis in axes {
+        for axis in (0..3).filter(|&axis| moved[axis]) {
             text.push_str([" X", " Y", " Z"][axis]);
             push_fixed(text, to[axis], self.gcode.decimals);
         }
