@@ -125,7 +125,7 @@ impl Rows {
         let mut run: Option<Run> = None;
         for strip in self.strips(line, closed, width) {
             let (all, core) = (self.within(strip.all()), self.within(strip.core()));
-            if core.is_empty() || strip.length < SHORT * strip.radius {
+            if core.is_empty() || strip.is_short() {
                 self.cover_strip(&strip, all);
                 continue;
             }
@@ -156,8 +156,8 @@ impl Rows {
         if closed {
             self.join(&mut strips, last, 0);
         } else {
-            self.cover_disc(strips[0].from, strips[0].radius);
-            self.cover_disc(strips[last].to(), strips[last].radius);
+            self.end(&mut strips[0], 0);
+            self.end(&mut strips[last], 1);
         }
         strips
     }
@@ -166,12 +166,23 @@ impl Rows {
     fn join(&mut self, strips: &mut [Strip], one: usize, other: usize) {
         let (into, out) = (strips[one], strips[other]);
         let (sine, cosine) = (into.way.perp_dot(out.way), into.way.dot(out.way));
-        if cosine < LITTLE || into.radius != out.radius {
-            self.cover_disc(out.from, into.radius.max(out.radius));
-        } else {
+        if cosine >= LITTLE && into.radius == out.radius {
             // The tangent of half the turn.
             let on = out.radius * sine.abs() / (1.0 + cosine);
-            (strips[one].on.1, strips[other].on.0) = (on, on);
+            (strips[one].on[1], strips[other].on[0]) = (on, on);
+        } else if into.radius > out.radius || (into.radius == out.radius && into.length < out.length) {
+            self.end(&mut strips[one], 1);
+        } else {
+            self.end(&mut strips[other], 0);
+        }
+    }
+
+    /// Rounds an end of a strip: of a short one with the strip itself, else at once.
+    fn end(&mut self, strip: &mut Strip, end: usize) {
+        if strip.is_short() {
+            strip.round[end] = true;
+        } else {
+            self.cover_disc(strip.ends()[end], strip.radius);
         }
     }
 
@@ -191,18 +202,23 @@ impl Rows {
         if rows.is_empty() {
             return;
         }
-        let (sides, ends) = (strip.sides(), strip.ends());
+        let (sides, between) = (strip.sides(), strip.between_ends());
+        let discs = [0, 1].map(|end| Disc { middle: strip.ends()[end], radius: strip.radius });
         for row in rows {
             let y = self.height(row);
-            self.add(row, sides.meet(&ends, y));
+            let span = sides.meet(&between, y);
+            let mut span = if span.0 <= span.1 { span } else { NOWHERE };
+            for (disc, _) in discs.iter().zip(strip.round).filter(|(_, round)| *round) {
+                span = union(span, disc.on(y));
+            }
+            self.add(row, span);
         }
     }
 
     fn cover_disc(&mut self, middle: DVec2, radius: f64) {
+        let disc = Disc { middle, radius };
         for row in self.within((middle.y - radius, middle.y + radius)) {
-            let up = self.height(row) - middle.y;
-            let half = (radius * radius - up * up).max(0.0).sqrt();
-            self.add(row, (middle.x - half, middle.x + half));
+            self.add(row, disc.on(self.height(row)));
         }
     }
 
@@ -292,24 +308,38 @@ struct Strip {
     length: f64,
     radius: f64,
     /// How far it reaches beyond both ends.
-    on: (f64, f64),
+    on: [f64; 2],
+    /// Whether these are round.
+    round: [bool; 2],
 }
 
 impl Strip {
     /// `None` for a piece without length.
     fn new(from: DVec2, to: DVec2, radius: f64) -> Option<Self> {
         let length = from.distance(to);
-        (length > 0.0).then(|| Self { from, way: (to - from) / length, length, radius, on: (0.0, 0.0) })
+        (length > 0.0).then(|| Self {
+            from,
+            way: (to - from) / length,
+            length,
+            radius,
+            on: [0.0; 2],
+            round: [false; 2],
+        })
     }
 
-    fn to(&self) -> DVec2 {
-        self.from + self.length * self.way
+    fn ends(&self) -> [DVec2; 2] {
+        [self.from, self.from + self.length * self.way]
+    }
+
+    fn is_short(&self) -> bool {
+        self.length < SHORT * self.radius
     }
 
     /// Its lowest and its highest place.
     fn all(&self) -> (f64, f64) {
         let (low, high) = self.along();
-        let across = self.way.x.abs() * self.radius;
+        let [one, other] = self.round;
+        let across = if one || other { self.radius } else { self.way.x.abs() * self.radius };
         (low - across, high + across)
     }
 
@@ -322,7 +352,7 @@ impl Strip {
 
     /// The lowest and the highest place of its middle.
     fn along(&self) -> (f64, f64) {
-        let (a, b) = (self.from.y - self.on.0 * self.way.y, self.from.y + (self.length + self.on.1) * self.way.y);
+        let (a, b) = (self.from.y - self.on[0] * self.way.y, self.from.y + (self.length + self.on[1]) * self.way.y);
         (a.min(b), a.max(b))
     }
 
@@ -333,8 +363,8 @@ impl Strip {
     }
 
     /// What lies between its ends.
-    fn ends(&self) -> Slab {
-        let (a, b) = (-self.on.0 / self.way.x, (self.length + self.on.1) / self.way.x);
+    fn between_ends(&self) -> Slab {
+        let (a, b) = (-self.on[0] / self.way.x, (self.length + self.on[1]) / self.way.x);
         Slab {
             y: self.from.y,
             low: self.from.x + a.min(b),
@@ -352,6 +382,28 @@ impl Strip {
         // To the left of an upward way x decreases.
         (parallel && near && self.radius == other.radius).then_some((apart > 0.0) != (self.way.y > 0.0))
     }
+}
+
+/// A round end of a strip.
+struct Disc {
+    middle: DVec2,
+    radius: f64,
+}
+
+impl Disc {
+    #[inline]
+    fn on(&self, y: f64) -> Span {
+        let up = y - self.middle.y;
+        // Not a number where the row passes it by.
+        let half = (self.radius * self.radius - up * up).sqrt();
+        (self.middle.x - half, self.middle.x + half)
+    }
+}
+
+/// From the lower place of two spans to the higher one; what is not a number is passed over.
+#[inline]
+fn union(a: Span, b: Span) -> Span {
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// What lies between two parallel lines.
@@ -449,7 +501,7 @@ mod tests {
     #[test]
     fn a_row_crosses_a_slanted_strip_between_its_sides() {
         let strip = |x, y| Strip::new(DVec2::ZERO, DVec2::new(x, y), 1.0).unwrap();
-        let on = |strip: Strip, y| strip.sides().meet(&strip.ends(), y);
+        let on = |strip: Strip, y| strip.sides().meet(&strip.between_ends(), y);
         let (low, high) = on(strip(10.0, 10.0), 5.0);
         let half = 2.0_f64.sqrt();
         assert!((low - (5.0 - half)).abs() < 1e-12 && (high - (5.0 + half)).abs() < 1e-12);
