@@ -68,8 +68,9 @@ fn combine_by_winding(subject: &[Vec<GridPoint>], clip: &[Vec<GridPoint>], rule:
 pub(crate) fn unite_rings(rings: &[Ring], rule: FillRule) -> Region {
     let rings: Vec<Vec<GridPoint>> = rings.iter().map(ring_to_grid).collect();
     let by_winding = match rule {
-        FillRule::EvenOdd => None,
-        // Where nothing is wound around clockwise, both rules say the same.
+        // Where everything is wound around once or not at all, all rules say the same.
+        FillRule::EvenOdd => region_within(in_mm(&distinct(&rings)), 1, 0..=1),
+        // Where nothing is wound around clockwise, both other rules do.
         FillRule::NonZero => region_within(in_mm(&distinct(&rings)), 1, 0..),
         FillRule::Positive => region_within(in_mm(&distinct(&rings)), 1, ..),
     };

@@ -86,6 +86,12 @@ impl Polygon {
         Region::from(self.clone()).offset(distance, join)
     }
 
+    /// Where the centre of a disc of a radius (mm) may lie that stays inside: [`Self::offset`] inwards, but not simplified, so
+    /// that areas are exact.
+    pub fn centres_of_disc(&self, radius: f64, join: Join) -> Region {
+        Region::from(self.clone()).unsimplified_offset(-radius, join)
+    }
+
     /// Area (mm²) that a disc of a radius (mm) reaches without leaving the polygon, given where its centre may lie: area +
     /// radius · perimeter + π radius² · euler of that region (Steiner). `None` where the region is connected in another way
     /// than the polygon: then parts of it may reach the same points.
@@ -95,13 +101,12 @@ impl Polygon {
         (part.holes.len() == self.holes.len()).then(|| centre.area() + radius * centre.perimeter() + round)
     }
 
-    /// Whether a disc of a radius (mm) that rolls through the polygon leaves nowhere more than `smallest` (mm²) empty in one
-    /// place. Corners between long edges may be left as empty as they must be; "no" may be wrong, where many other corners
-    /// together are left emptier.
-    pub fn is_roomy_for_disc(&self, radius: f64, smallest: f64, join: Join) -> bool {
-        let centre = Region::from(self.clone()).unsimplified_offset(-radius, join);
+    /// Whether a disc of a radius (mm) that rolls through the polygon, its centre where it may lie, leaves nowhere more than
+    /// `smallest` (mm²) empty in one place. Corners between long edges may be left as empty as they must be; "no" may be
+    /// wrong, where many other corners together are left emptier.
+    pub fn is_roomy_for_disc(&self, radius: f64, centre: &Region, smallest: f64) -> bool {
         let corners: f64 = self.rings().map(|ring| emptied_corners(ring, radius, smallest)).sum();
-        self.reached_by_disc(radius, &centre).is_some_and(|reached| self.area() - reached - corners <= smallest)
+        self.reached_by_disc(radius, centre).is_some_and(|reached| self.area() - reached - corners <= smallest)
     }
 }
 

@@ -226,7 +226,10 @@ fn a_disc_reaches_all_of_a_rectangle_but_its_corners() {
 /// Corners do not count, however many: a fin that holds no disc does.
 #[test]
 fn a_part_is_roomy_unless_it_has_a_fin() {
-    let roomy = |width: f64, length: f64| plate_with_fin(width, length).is_roomy_for_disc(1.0, 0.25, Join::ROUND);
+    let roomy = |width: f64, length: f64| {
+        let plate = plate_with_fin(width, length);
+        plate.is_roomy_for_disc(1.0, &plate.centres_of_disc(1.0, Join::ROUND), 0.25)
+    };
     assert!(roomy(4.5, 0.0) && roomy(4.5, 6.0), "nothing is thin");
     assert!(!roomy(1.5, 6.0) && !roomy(1.9, 4.0) && !roomy(0.3, 3.0), "a fin is thin");
 }

@@ -240,6 +240,9 @@ fn arc_time(pass: &Path, profile: &Profile, layer: usize) -> f64 {
 /// A feature is reported from this area on, in squared bead widths.
 const THIN_FEATURE: f64 = 0.25;
 
+/// Lost pieces end this far, in bead widths, before what a bead reaches: their edges then touch nowhere else.
+const CLEAR: f64 = 0.01;
+
 /// Area of an island that a bead of the given width can reach without leaving it, mm²; warns of places it cannot reach.
 ///
 /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
@@ -248,7 +251,7 @@ const THIN_FEATURE: f64 = 0.25;
 fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
     let r = width / 2.0;
     let area = island.area();
-    let centre = island.offset(-r, Join::ROUND);
+    let centre = island.centres_of_disc(r, Join::ROUND);
     if centre.is_empty() {
         let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
         warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
@@ -258,11 +261,10 @@ fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>
     if let Some(opened) = island.reached_by_disc(r, &centre).filter(|opened| area - opened <= smallest) {
         return opened.clamp(0.0, area);
     }
-    let opened = centre.offset(r, Join::ROUND);
-    let lost = Region::from(island.clone()).difference(&opened);
+    let lost = Region::from(island.clone()).difference(&centre.offset(r + CLEAR * width, Join::ROUND));
     for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
         let place = piece.outer.points().first().copied().unwrap_or_default();
         warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
     }
-    opened.area().min(area)
+    (area - lost.area()).max(0.0)
 }

@@ -91,10 +91,11 @@ pub(super) fn around<'a>(
     let limits = ThinLimits { bead_width: w, single: (single.0, single.1.min(DOUBLE * w)), double: DOUBLE * w };
     let mut result = Fill::default();
     for grown in island.offset(settings.machining_allowance, Join::ROUND).polygons() {
-        if limits.single.1 <= limits.double && is_thick(grown, &limits) {
+        let centres = centres(grown, &limits);
+        if limits.single.1 <= limits.double && is_thick(grown, &centres, &limits) {
             return fill(island, settings);
         }
-        let split = split(grown, &limits);
+        let split = split_by(grown, &centres, &limits);
         if split.thin.is_empty() {
             // Nothing was cut off.
             return fill(island, settings);
@@ -146,20 +147,30 @@ fn nearest_stage(stages: &[Vec<Path>], walls: &[ThinWall]) -> usize {
     (0..stages.len()).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0)
 }
 
-/// Whether [`split`] would surely find no thin wall, told by one offset.
-fn is_thick(island: &Polygon, limits: &ThinLimits) -> bool {
-    let smallest = SMALLEST * limits.bead_width * limits.bead_width;
-    island.is_roomy_for_disc(limits.double / 2.0, smallest, Join::Round(ACCURACY * limits.bead_width))
+/// Where the centre of a disc for two beads may lie.
+fn centres(island: &Polygon, limits: &ThinLimits) -> Region {
+    island.centres_of_disc(limits.double / 2.0, round(limits))
+}
+
+/// Round joins as accurate as the shapes that are cut out.
+fn round(limits: &ThinLimits) -> Join {
+    Join::Round(ACCURACY * limits.bead_width)
+}
+
+/// Whether [`split`] would surely find no thin wall.
+fn is_thick(island: &Polygon, centres: &Region, limits: &ThinLimits) -> bool {
+    island.is_roomy_for_disc(limits.double / 2.0, centres, SMALLEST * limits.bead_width * limits.bead_width)
 }
 
 /// Takes an island apart.
 pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
-    // Scanned outlines have more points than matter here.
-    let rings: Vec<Ring> =
-        island.rings().filter_map(|ring| simplify_ring(ring.clone(), SIMPLER * limits.bead_width)).collect();
-    let whole = Region::from_rings(&rings, FillRule::NonZero);
-    let round = Join::Round(ACCURACY * limits.bead_width);
-    let open = opened(&whole, limits.double / 2.0, GROWN * limits.bead_width, round);
+    split_by(island, &centres(island, limits), limits)
+}
+
+/// [`split`], given where the centre of a disc for two beads may lie.
+fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
+    let whole = with_fewer_points(island, SIMPLER * limits.bead_width);
+    let open = centres.offset(limits.double / 2.0 + GROWN * limits.bead_width, round(limits));
     let needs_two = |part: &&Polygon| part.holds_disc(limits.single.1 / 2.0);
     // The disc that opened a part fits into it.
     let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || needs_two(part);
@@ -171,7 +182,7 @@ pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     let roomy = |piece: &Polygon| piece.holds_disc(ROOMY * limits.single.0 / 2.0);
     let candidates = rest.into_polygons().into_iter().filter(|piece| piece.area() > smallest && roomy(piece));
     let candidates: Vec<Polygon> = candidates.collect();
-    let axis = axis(&candidates, &whole, round, limits);
+    let axis = axis(&candidates, &whole, limits);
     for piece in candidates {
         let walls = walls(&piece, &axis, limits);
         if !walls.is_empty() {
@@ -187,14 +198,20 @@ pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
 }
 
-fn opened(region: &Region, radius: f64, grown: f64, round: Join) -> Region {
-    region.offset(-radius, round).offset(radius + grown, round)
+/// An island without points that hardly matter: scanned outlines have many.
+fn with_fewer_points(island: &Polygon, tolerance: f64) -> Region {
+    let rings: Vec<Ring> = island.rings().filter_map(|ring| simplify_ring(ring.clone(), tolerance)).collect();
+    let count = |rings: &mut dyn Iterator<Item = &Ring>| rings.map(|ring| ring.points().len()).sum::<usize>();
+    if count(&mut rings.iter()) == count(&mut island.rings()) {
+        return island.clone().into();
+    }
+    Region::from_rings(&rings, FillRule::NonZero)
 }
 
 /// The medial axis about thin pieces of `whole`.
-fn axis(pieces: &[Polygon], whole: &Region, round: Join, limits: &ThinLimits) -> MedialAxis {
+fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     // The piece is extended beyond its mouths, so that the axis runs straight through them.
-    let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round);
+    let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round(limits));
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
 }
