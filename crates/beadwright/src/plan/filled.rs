@@ -258,7 +258,9 @@ fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>
         return 0.0;
     }
     let smallest = THIN_FEATURE * width * width;
-    if let Some(opened) = island.reached_by_disc(r, &centre).filter(|opened| area - opened <= smallest) {
+    if let Some(opened) = island.reached_by_disc(r, &centre)
+        && island.is_roomy_for_disc(r, &centre, smallest)
+    {
         return opened.clamp(0.0, area);
     }
     let lost = Region::from(island.clone()).difference(&centre.offset(r + CLEAR * width, Join::ROUND));

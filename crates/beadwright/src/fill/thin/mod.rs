@@ -63,8 +63,9 @@ const SHORTEST: f64 = 1.5;
 /// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
 /// The open region is grown by this many bead widths: its edges then stay clear of those of the island, and the pieces
-/// cut from the island have no slivers.
-const GROWN: f64 = 0.02;
+/// cut from the island have no slivers. Four times [`ACCURACY`] would put a point of its arcs onto the edges beside every
+/// right angle.
+const GROWN: f64 = 0.024;
 /// Outline points closer than this to the line between their neighbours are dropped, in bead widths.
 const SIMPLER: f64 = 0.001;
 /// Accuracy of the shapes that are cut out, in bead widths.
@@ -194,7 +195,8 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
         let thick = Some(island.clone()).filter(|island| needs_two(&island)).into_iter().collect();
         return Split { thick, thin, open };
     }
-    let rest = whole.difference(&Region::from_normalised(pieces));
+    // A little more is cut off: edges that lie on each other take long to resolve.
+    let rest = whole.difference(&Region::from_normalised(pieces).offset(ACCURACY * limits.bead_width, round(limits)));
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
 }
 
