@@ -3,8 +3,9 @@
 //! Every edge moves sideways. Where two edges move apart an arc or a tip joins them, where they move into each other they
 //! are cut off at their intersection; an edge between two such places that is used up is left out, which is exact since
 //! there the offset is what the half-planes of the edges have in common. Where an edge beside a gap is used up, the way leads
-//! over the corner itself, and winds clockwise around what must not count. The offset is what the rings that result wind
-//! around ([`winding`](crate::winding)); what touches itself is left to the boolean ([`offset`](mod@crate::offset)).
+//! over the corner on its other side itself, and winds clockwise around what must not count. The offset is what the rings
+//! that result wind around ([`winding`](crate::winding)); what touches itself is left to the boolean
+//! ([`offset`](mod@crate::offset)).
 
 use crate::winding::region_within;
 use crate::{Join, Region, Ring};
@@ -76,6 +77,14 @@ enum Corner {
     Over,
 }
 
+impl Corner {
+    fn is_cut(self) -> bool {
+        matches!(self, Self::Cut(..))
+    }
+}
+
+/// How an edge goes on to a later one, if those between them are left out. `None` where they do not meet, and between
+/// neighbours where one runs back over the other.
 fn corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
     let (edge, next) = (&edges[i], &edges[j]);
     let (sine, cosine) = (edge.way.perp_dot(next.way), edge.way.dot(next.way));
@@ -90,15 +99,9 @@ fn corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
     }
 }
 
-/// [`corner`], unless the edges turn back so sharply that the half-planes of their neighbours matter.
-fn blunt_corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
-    let sharp = |corner: &Corner| matches!(corner, Corner::Cut(..)) && edges[i].way.dot(edges[j].way) < SHARPEST;
-    corner(edges, i, j, distance).filter(|corner| !sharp(corner))
-}
-
 /// A ring offset by itself; it may cross itself.
 fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
-    let edges: Vec<Edge> = ring
+    let mut edges: Vec<Edge> = ring
         .edges()
         .filter_map(|(a, b)| {
             let length = a.distance(b);
@@ -109,11 +112,11 @@ fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
     if edges.len() < 3 {
         return Some(Vec::new());
     }
-    let (kept, corners) = without_used_up(&edges, distance).map_or_else(|| over_corners(&edges, distance), Some)?;
-    let mut points: Vec<DVec2> = Vec::with_capacity(kept.len() + 8);
-    for (k, &i) in kept.iter().enumerate() {
-        let (edge, next) = (&edges[i], &edges[kept[(k + 1) % kept.len()]]);
-        match corners[k] {
+    let left = Left::of(&mut edges, distance)?;
+    let mut points: Vec<DVec2> = Vec::with_capacity(left.edges.len() + 8);
+    for (k, corner) in left.corners.into_iter().enumerate() {
+        let (edge, next) = (&edges[left.edges[k]], &edges[left.edges[(k + 1) % left.edges.len()]]);
+        match corner {
             Corner::Straight => points.push(next.moved),
             Corner::Cut(end, _) => points.push(edge.moved + end * edge.way),
             Corner::Gap => join_gap(&mut points, edge, next, gaps)?,
@@ -127,84 +130,105 @@ fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
     Some(points)
 }
 
-/// All edges, each cut off where it meets the next one if that leaves something of both; else the way leads over the corner.
-fn over_corners(edges: &[Edge], distance: f64) -> Option<(Vec<usize>, Vec<Corner>)> {
-    let n = edges.len();
-    let plain = (0..n).map(|i| corner(edges, i, (i + 1) % n, distance)).collect::<Option<Vec<_>>>()?;
-    let start = |i: usize| if let Corner::Cut(_, start) = plain[(i + n - 1) % n] { start } else { 0.0 };
-    let end = |i: usize| if let Corner::Cut(end, _) = plain[i] { end } else { edges[i].length };
-    let left = |i: usize| start(i) >= 0.0 && start(i) < end(i) && end(i) <= edges[i].length;
-    let corner = |i: usize| match plain[i] {
-        Corner::Cut(..) if !left(i) || !left((i + 1) % n) => Corner::Over,
-        corner => corner,
-    };
-    Some(((0..n).collect(), (0..n).map(corner).collect()))
+/// What is left of the edges of a ring when those that are used up between two cuts are left out.
+struct Left {
+    /// Their numbers.
+    edges: Vec<usize>,
+    /// How each goes on to the next, the last one to the first.
+    corners: Vec<Corner>,
 }
 
-/// The numbers of the edges that are left, and how each goes on to the next; edges between two cuts that are used up are
-/// left out. `None` where an edge beside a gap is used up.
-fn without_used_up(edges: &[Edge], distance: f64) -> Option<(Vec<usize>, Vec<Corner>)> {
-    let (mut kept, mut corners): (Vec<usize>, Vec<Corner>) =
-        (Vec::with_capacity(edges.len()), Vec::with_capacity(edges.len()));
-    let used_up = |before: Corner, i: usize, after: Corner| {
-        let start = if let Corner::Cut(_, start) = before { start } else { 0.0 };
-        let end = if let Corner::Cut(end, _) = after { end } else { edges[i].length };
-        end <= start
-    };
-    for i in 0..edges.len() {
-        while let Some(&last) = kept.last() {
-            let after = blunt_corner(edges, last, i, distance)?;
-            let Some(&before) = corners.last() else {
-                corners.push(after);
-                break;
-            };
-            if !used_up(before, last, after) {
-                corners.push(after);
-                break;
-            }
-            if !matches!((before, after), (Corner::Cut(..), Corner::Cut(..))) {
+impl Left {
+    /// `None` where an edge runs back over its neighbour. The edges are rotated so that they begin behind a gap if there is
+    /// one: what is left out never reaches across it.
+    fn of(edges: &mut [Edge], distance: f64) -> Option<Self> {
+        let n = edges.len();
+        let behind = (0..n).find(|&i| corner(edges, i, (i + 1) % n, distance) == Some(Corner::Gap));
+        edges.rotate_left(behind.map_or(0, |gap| (gap + 1) % n));
+        let seam = if behind.is_some() { Corner::Gap } else { Corner::Over };
+        let mut left = Self { edges: vec![0], corners: Vec::with_capacity(n) };
+        for i in 1..n {
+            left.go_on(edges, i, distance)?;
+        }
+        left.give_way(edges, seam);
+        left.corners.push(seam);
+        if seam == Corner::Over {
+            left.cut_seam(edges, distance);
+        }
+        Some(left)
+    }
+
+    /// Adds an edge, and leaves out those before it that are used up.
+    fn go_on(&mut self, edges: &[Edge], i: usize, distance: f64) -> Option<()> {
+        while let Some(&last) = self.edges.last() {
+            let after = corner(edges, last, i, distance);
+            if after.is_none() && last + 1 == i {
                 return None;
             }
-            kept.pop();
-            corners.pop();
+            let before = self.before();
+            match after.filter(|after| !is_sharp(*after, &edges[last], &edges[i])) {
+                Some(after) if is_used_up(before, &edges[last], after) && before.is_cut() && after.is_cut() => {
+                    self.edges.pop();
+                    self.corners.pop();
+                }
+                Some(after) if !is_used_up(before, &edges[last], after) || !after.is_cut() => {
+                    self.give_way(edges, after);
+                    self.corners.push(after);
+                    self.edges.push(i);
+                    break;
+                }
+                _ => {
+                    self.lead_over(last, i);
+                    break;
+                }
+            }
         }
-        kept.push(i);
+        Some(())
     }
-    close(edges, kept, corners, distance, used_up)
+
+    /// The corner before the last edge; nothing is cut off the first one.
+    fn before(&self) -> Corner {
+        self.corners.last().copied().unwrap_or(Corner::Over)
+    }
+
+    /// Where the last edge is used up by the cut before it alone, the way leads over that corner instead.
+    fn give_way(&mut self, edges: &[Edge], after: Corner) {
+        let before = self.before();
+        if let [.., one, last] = self.edges[..]
+            && before.is_cut()
+            && is_used_up(before, &edges[last], after)
+        {
+            self.edges.pop();
+            self.corners.pop();
+            self.lead_over(one, last);
+        }
+    }
+
+    /// Goes on from the last edge over all corners to another, along what was left out between them.
+    fn lead_over(&mut self, last: usize, to: usize) {
+        self.edges.extend(last + 1..=to);
+        self.corners.resize(self.edges.len() - 1, Corner::Over);
+    }
+
+    /// Cuts the last edge and the first off where they meet, if that leaves something of both.
+    fn cut_seam(&mut self, edges: &[Edge], distance: f64) {
+        let ([after, .., before, seam], [first, .., last]) = (&mut self.corners[..], edges) else { return };
+        let cut = corner(edges, edges.len() - 1, 0, distance).filter(|cut| !is_sharp(*cut, last, first));
+        let left = |cut: &Corner| !is_used_up(*before, last, *cut) && !is_used_up(*cut, first, *after);
+        *seam = cut.filter(left).unwrap_or(*seam);
+    }
 }
 
-/// Joins the last edge to the first, and leaves out what is used up there.
-fn close(
-    edges: &[Edge],
-    mut kept: Vec<usize>,
-    mut corners: Vec<Corner>,
-    distance: f64,
-    used_up: impl Fn(Corner, usize, Corner) -> bool,
-) -> Option<(Vec<usize>, Vec<Corner>)> {
-    loop {
-        let (&[first, .., last], &[after_first, .., before_last]) = (&kept[..], &corners[..]) else { return None };
-        if kept.len() < 4 {
-            return None;
-        }
-        let seam = blunt_corner(edges, last, first, distance)?;
-        let cut = |corner: Corner| matches!(corner, Corner::Cut(..));
-        if used_up(before_last, last, seam) {
-            if !cut(before_last) || !cut(seam) {
-                return None;
-            }
-            kept.pop();
-            corners.pop();
-        } else if used_up(seam, first, after_first) {
-            if !cut(seam) || !cut(after_first) {
-                return None;
-            }
-            kept.remove(0);
-            corners.remove(0);
-        } else {
-            corners.push(seam);
-            return Some((kept, corners));
-        }
-    }
+/// Whether two edges that are cut off turn back so sharply that the half-planes of their neighbours matter.
+fn is_sharp(corner: Corner, edge: &Edge, next: &Edge) -> bool {
+    corner.is_cut() && edge.way.dot(next.way) < SHARPEST
+}
+
+/// Whether nothing is left of an edge between two corners.
+fn is_used_up(before: Corner, edge: &Edge, after: Corner) -> bool {
+    let start = if let Corner::Cut(_, start) = before { start } else { 0.0 };
+    let end = if let Corner::Cut(end, _) = after { end } else { edge.length };
+    end <= start
 }
 
 /// The points that join two edges that move apart; `None` for a tip that would be too long.

@@ -43,14 +43,17 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     keep[0] = true;
     keep[last] = true;
     keep.iter_mut().skip(1).zip(points.windows(3)).for_each(|(keep, w)| *keep = is_corner(w[0], w[1], w[2], tolerance));
-    let mut from = 0;
+    let (mut from, mut open) = (0, Vec::new());
     for to in 1..=last {
         if keep[to] {
-            mark_kept(points, from, to, tolerance * tolerance, &mut keep);
+            open.push((from, to));
+            mark_kept(points, &mut open, tolerance * tolerance, &mut keep);
             from = to;
         }
     }
-    points.iter().zip(&keep).filter(|&(_, &k)| k).map(|(&p, _)| p).collect()
+    let mut kept = Vec::with_capacity(keep.iter().filter(|&&k| k).count());
+    kept.extend(points.iter().zip(&keep).filter(|&(_, &k)| k).map(|(&p, _)| p));
+    kept
 }
 
 /// Whether a point between two others is kept in any case: it lies more than three times the tolerance from the line
@@ -87,12 +90,9 @@ fn lexicographic(a: DVec2, b: DVec2) -> std::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
 }
 
-/// Marks what must stay between `first` and `last`; own stack, so that long lines cannot overflow the real one.
-fn mark_kept(points: &[DVec2], first: usize, last: usize, tolerance_squared: f64, keep: &mut [bool]) {
-    if first + 1 == last {
-        return;
-    }
-    let mut open = vec![(first, last)];
+/// Marks what must stay within stretches from one point to another; own stack, so that long lines cannot overflow the real
+/// one.
+fn mark_kept(points: &[DVec2], open: &mut Vec<(usize, usize)>, tolerance_squared: f64, keep: &mut [bool]) {
     while let Some((a, b)) = open.pop() {
         let mut worst = (tolerance_squared, None);
         let (from, way) = (points[a], points[b] - points[a]);

@@ -141,7 +141,8 @@ impl Edges {
         cuts.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         // Stations: where an edge begins, and its crossings in order.
         let count = self.ends.len() + cuts.len();
-        let (mut points, mut edges, mut begins) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::new());
+        let (mut points, mut edges) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut begins = Vec::with_capacity(self.ends.len());
         let mut visits = vec![[None; 2]; crossings.len()];
         let mut cuts = cuts.into_iter().peekable();
         for (i, &[from, to]) in self.ends.iter().enumerate() {
@@ -176,9 +177,10 @@ impl Edges {
 
     /// Follows stations from one to the next.
     fn curves(&self, points: &[DVec2], edges: &[usize], next: &[usize]) -> Vec<Curve> {
-        let (mut seen, mut curves) = (vec![false; points.len()], Vec::new());
+        let (mut seen, mut curves, mut stations) = (vec![false; points.len()], Vec::new(), Vec::new());
         for start in 0..points.len() {
-            let (mut stations, mut at) = (Vec::new(), start);
+            let mut at = start;
+            stations.clear();
             while !std::mem::replace(&mut seen[at], true) {
                 stations.push(at);
                 at = next[at];
@@ -227,7 +229,9 @@ fn on_grid(curve: &[DVec2]) -> Vec<GridPoint> {
         let ((ux, uy), (vx, vy)) = (way(points[(i + n - 1) % n], points[*i]), way(points[*i], points[(i + 1) % n]));
         ux * vy != uy * vx
     };
-    (0..n).filter(bends).map(|i| points[i]).collect()
+    let mut bent = Vec::with_capacity(n);
+    bent.extend((0..n).filter(bends).map(|i| points[i]));
+    bent
 }
 
 /// Curves that cross nowhere, with the region on their left, as polygons: each hole in the smallest ring around it. As the

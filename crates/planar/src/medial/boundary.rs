@@ -72,28 +72,30 @@ impl Boundary {
 
     /// [`Self::nearest`] without the edges that `skip` names.
     pub(super) fn nearest_but(&self, p: DVec2, limit: f64, skip: impl Fn(usize) -> bool) -> Option<Foot> {
-        let mut best: Option<Foot> = None;
-        let mut limit = limit;
-        let mut open: Vec<(f64, usize)> = vec![(0.0, 1)];
-        while let Some((distance, index)) = open.pop() {
-            if distance >= limit {
-                continue;
-            }
-            if let Some(leaf) = index.checked_sub(self.boxes.len() / 2) {
-                for edge in (leaf * LEAF..self.edges.len().min((leaf + 1) * LEAF)).filter(|&e| !skip(e)) {
-                    let foot = self.foot_on(edge, p);
-                    if foot.distance < limit {
-                        limit = foot.distance;
-                        best = Some(foot);
-                    }
+        let mut best = None;
+        self.search(1, p, limit, &skip, &mut best);
+        best
+    }
+
+    /// Looks under one box for a point nearer than `limit` and the best so far; the nearer half first.
+    fn search(&self, index: usize, p: DVec2, limit: f64, skip: &impl Fn(usize) -> bool, best: &mut Option<Foot>) {
+        let limit_now = |best: &Option<Foot>| best.map_or(limit, |foot| foot.distance);
+        if let Some(leaf) = index.checked_sub(self.boxes.len() / 2) {
+            for edge in (leaf * LEAF..self.edges.len().min((leaf + 1) * LEAF)).filter(|&e| !skip(e)) {
+                let foot = self.foot_on(edge, p);
+                if foot.distance < limit_now(best) {
+                    *best = Some(foot);
                 }
-            } else {
-                let child = |i: usize| (distance_to_box(self.boxes[i], p), i);
-                let (near, far) = (child(2 * index), child(2 * index + 1));
-                open.extend(if near.0 <= far.0 { [far, near] } else { [near, far] });
+            }
+            return;
+        }
+        let child = |i: usize| (distance_to_box(self.boxes[i], p), i);
+        let (near, far) = (child(2 * index), child(2 * index + 1));
+        for (distance, child) in if near.0 <= far.0 { [near, far] } else { [far, near] } {
+            if distance < limit_now(best) {
+                self.search(child, p, limit, skip, best);
             }
         }
-        best
     }
 
     /// How far apart two points of the boundary lie along it, mm; infinite on different rings.

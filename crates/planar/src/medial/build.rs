@@ -2,7 +2,7 @@
 
 use super::boundary::Boundary;
 use super::disc::{Disc, Tent, TentDisc, at_junction, on_tent, through_samples, widest_angle};
-use super::graph::Graph;
+use super::graph::{Graph, Links};
 use super::mesh::{Cell, Mesh};
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -12,7 +12,7 @@ impl<'a> Graph<'a> {
         let tents: Vec<Tent> = (0..mesh.chords.len()).map(|chord| mesh.tent(boundary, chord)).collect();
         let chords: Vec<TentDisc> = tents.iter().map(|tent| on_tent(boundary, tent)).collect();
         let discs: Vec<Disc> = chords.iter().map(|c| c.disc).collect();
-        let (links, out) = (vec![Vec::new(); discs.len()], vec![false; discs.len()]);
+        let (links, out) = (vec![Links::new(); discs.len()], vec![false; discs.len()]);
         let mut graph = Self { boundary, mesh, discs, tents, links, out };
         let mut junctions = Vec::new();
         for (number, cell) in mesh.cells.iter().enumerate() {

@@ -4,6 +4,7 @@ use super::boundary::Boundary;
 use super::disc::{Disc, Tent, on_tent};
 use super::mesh::{Mesh, Sample};
 use super::{Branch, MERGE_MM, MedialAxis, MedialOptions, Node};
+use smallvec::SmallVec;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
@@ -18,6 +19,9 @@ const MOST_PIECES: f64 = 50.0;
 /// it.
 const SPUR_TURN: f64 = PI / 6.0;
 
+/// The neighbours of a disc: three at most but where junctions fall together.
+pub(super) type Links = SmallVec<[usize; 3]>;
+
 /// Discs and which of them follow each other. The discs of chords come first, under the numbers of their chords.
 pub(super) struct Graph<'a> {
     pub boundary: &'a Boundary,
@@ -26,7 +30,7 @@ pub(super) struct Graph<'a> {
     /// How the disc of each chord was found.
     pub tents: Vec<Tent>,
     /// Neighbours; none where a disc has been taken out.
-    pub links: Vec<Vec<usize>>,
+    pub links: Vec<Links>,
     pub out: Vec<bool>,
 }
 
@@ -39,7 +43,7 @@ impl Graph<'_> {
     pub(super) fn add(&mut self, disc: Disc, neighbours: &[usize]) {
         let number = self.discs.len();
         self.discs.push(disc);
-        self.links.push(Vec::new());
+        self.links.push(Links::new());
         self.out.push(false);
         for &other in neighbours {
             self.link(number, other);

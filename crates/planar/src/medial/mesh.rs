@@ -4,8 +4,8 @@ use super::MedialOptions;
 use super::boundary::{Boundary, Edge};
 use super::disc::Tent;
 use glam::DVec2;
+use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-use std::collections::HashMap;
 
 /// Rough upper limit on the number of samples; the spacing grows where more would be needed.
 const MOST_SAMPLES: f64 = 1e6;
@@ -104,8 +104,9 @@ impl Mesh {
         let ends = self.chords[chord].map(|s| self.samples[s]);
         let [p, q] = self.sides[chord].map(|cell| self.centres[cell]);
         let peak = p.zip(q).map(|(p, q)| (p + q) / 2.0).filter(|&peak| {
-            let foot = boundary.nearest(peak, f64::INFINITY);
-            foot.is_some_and(|f| f.distance > FREE_REACH * peak.distance(ends[0].at) && boundary.inside(&f, peak))
+            let reach = peak.distance(ends[0].at);
+            let foot = boundary.nearest(peak, reach * (1.0 + 1e-9));
+            foot.is_some_and(|f| f.distance > FREE_REACH * reach && boundary.inside(&f, peak))
         });
         Tent { ends, peak }
     }
@@ -161,7 +162,7 @@ fn sample(boundary: &Boundary, options: &MedialOptions) -> (Vec<Sample>, Vec<[us
     let spacing = options.spacing.max(boundary.length() / MOST_SAMPLES);
     let guards: Vec<Option<f64>> = (0..boundary.edges.len()).map(|e| guard(boundary, e, options.min_angle)).collect();
     let mut samples: Vec<Sample> = Vec::new();
-    let mut known = HashMap::new();
+    let mut known = FxHashMap::default();
     let mut index = |at: DVec2, edge: usize| {
         // Rings may share a vertex. Adding zero turns −0 into 0.
         let bits = [(at.x + 0.0).to_bits(), (at.y + 0.0).to_bits()];
