@@ -6,7 +6,7 @@
 //! that could miss the best one. A ring has few extremes at any angle, so there are few such angles.
 
 use crate::Region;
-use crate::scan::{Scan, Spacing};
+use crate::scan::{Spacing, count_and_length};
 use glam::DVec2;
 use std::f64::consts::PI;
 
@@ -115,7 +115,7 @@ fn widest_gap(piece: &Piece, events: &[(f64, i64)]) -> (f64, usize) {
 
 /// The number of ends of scan lines through a region at one angle, radians.
 pub fn ends_at(region: &Region, angle: f64, spacing: Spacing) -> i64 {
-    2 * Scan::new(region, angle, spacing).spans().len() as i64
+    2 * count_and_length(region, angle, spacing).0 as i64
 }
 
 /// A vertex that is an extreme across the lines for the angles from `from` to `from + turn`.

@@ -3,7 +3,7 @@
 
 mod shapes;
 
-use planar::scan::{End, Scan, Spacing};
+use planar::scan::{End, Scan, Spacing, count_and_length};
 use planar::{DVec2, Region};
 use proptest::prelude::*;
 use shapes::{config, distance_to_boundary, map_points, plate, star, three_holes, v};
@@ -112,6 +112,14 @@ proptest! {
             }
         }
         prop_assert_eq!(scan.spans().last().unwrap().line, gaps as usize);
+    }
+
+    #[test]
+    fn count_and_length_are_those_of_the_spans(region in region(), angle in 0.0..TAU, spacing in spacing()) {
+        let spans = lengths(&Scan::new(&region, angle, spacing));
+        let (count, length) = count_and_length(&region, angle, spacing);
+        prop_assert_eq!(count, spans.len());
+        prop_assert!((length - spans.iter().sum::<f64>()).abs() < 1e-9 * (1.0 + length));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{FillSettings, Strategy};
 use glam::DVec2;
-use planar::scan::{End, Scan};
+use planar::scan::count_and_length;
 use planar::turns::{Turns, ends_at};
 use planar::{Polygon, Region};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -93,11 +93,6 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
         let at = |angle: f64| regions.iter().map(|region| value(region, angle)).sum::<f64>();
         (0..=180).map(|degree| f64::from(degree) * PI / 180.0).map(|angle| place((angle, at(angle)))).collect()
     };
-    let length = |region: &Region, angle: f64| {
-        let scan = Scan::new(region, angle, spacing);
-        (0..scan.spans().len()).map(|s| scan.end(s, End::Right).x - scan.end(s, End::Left).x).sum()
-    };
-    let corner_area = |region: &Region, angle: f64| corner_area(region, angle, settings);
     let exact = || {
         let turns = regions.iter().fold(Turns::default(), |sum, region| sum.plus(&Turns::new(region, spacing)));
         let corners = turns.steps().windows(2).flat_map(|w| [(w[0].0, w[0].1), (w[1].0, w[0].1)]);
@@ -107,19 +102,19 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
     let few = edges <= MOST_EDGES;
     Curves {
         turns: if few { exact() } else { sampled(&|region, angle| ends_at(region, angle, spacing) as f64) },
-        length: sampled(&length),
-        corner_area: sampled(&corner_area),
+        length: sampled(&|region, angle| count_and_length(region, angle, spacing).1),
+        corner_area: sampled(&|region, angle| corner_area(region, angle, settings)),
     }
 }
 
 /// Area laid twice at all turns, mm²: `S = r² (cot(θ/2) + θ/2 − π/2)` at a turn of the angle θ between line and edge,
-/// r half a bead (eqs 10 and 11). An edge has as many turns as lines fit across it, half of them at π − θ.
+/// r half a bead (eqs 10 and 11). An edge has as many turns as lines fit across it, half of them at π − θ: together
+/// `r² (2 / sin θ − π/2)` for two, and none along the lines.
 fn corner_area(region: &Region, angle: f64, settings: &FillSettings) -> f64 {
     let (r, line) = (settings.bead.width / 2.0, DVec2::from_angle(angle));
-    let area = |theta: f64| r * r * (1.0 / (theta / 2.0).tan() + theta / 2.0 - FRAC_PI_2);
     let edge = |(a, b): (DVec2, DVec2)| {
-        let theta = line.angle_to(b - a).rem_euclid(PI).clamp(1e-6, PI - 1e-6);
-        line.perp_dot(b - a).abs() / settings.stepover * (area(theta) + area(PI - theta)) / 2.0
+        let (length, across) = (a.distance(b), line.perp_dot(b - a).abs());
+        if across > SAME_ANGLE * length { 2.0 * length - FRAC_PI_2 * across } else { 0.0 }
     };
-    region.rings().flat_map(|ring| ring.edges()).map(edge).sum()
+    region.rings().flat_map(|ring| ring.edges()).map(edge).sum::<f64>() * r * r / (2.0 * settings.stepover)
 }
