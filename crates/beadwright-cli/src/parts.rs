@@ -93,7 +93,7 @@ fn one<'a>(
     let folder = arguments.output.join(format!("{}-{name}", index + 1));
     let programs = arguments.programs(named, profile, name, clearance.height())?;
     let settings = plan::deposit_settings(arguments.grid, profile, model.bounds())?;
-    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let mut files = Files::new(&folder, programs, profile)?.judged(judge);
     let torch = torch_of(profile).map_err(|error| refused(error, Path::new(name)))?;
     let mut watch = Watch { sink: &mut files, clearance, torch, width: profile.bead.width };

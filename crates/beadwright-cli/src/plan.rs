@@ -191,7 +191,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let (first, last) = arguments.layers.unwrap_or((arguments.from_layer, u32::MAX));
     let start = Start { layer: first as usize - 1, pass: arguments.from_pass as usize - 1, last: last as usize - 1 };
-    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let files = Files::new(&arguments.output, programs, &profile)?.judged(judge);
     let mut files = Files { start, pictures: &arguments.picture, ..files };
     let planned = match arguments.several.order {

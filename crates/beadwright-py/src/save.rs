@@ -44,7 +44,7 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
     }
     let programs = Programs::of(wanted.posts, &profile.job(&planned.header.part))?;
     let settings = plan::deposit_settings_over(profile, planned.part.bounds());
-    let mut judge = wanted.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let mut judge = wanted.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let mut folder = Folder::new(wanted.folder)?;
     let (mut files, chunks) = PlanFiles::begin(&planned.header, profile, programs, Start::default());
     folder.extend(chunks)?;

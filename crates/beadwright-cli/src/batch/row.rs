@@ -66,7 +66,7 @@ pub(super) fn plan(run: &Run, asked: &Asked<'_>, task: &Task) -> anyhow::Result<
     let Choice { profile, note } = choice::choose(&part, &profile, run.strategy.is_some(), task)?;
     let settings = deposit_settings(asked.grid, &profile, part.bounds())?;
     // Pictures make the judge look closer at a few squares, so it draws them as for `plan`: the figures are the same.
-    let judge = asked.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS));
+    let judge = asked.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let mut kept = Kept { profile: &profile, judge, pictures: asked.pictures, middle: 0, picture: None };
     let summary = plan::plan_into(&model.part(), &part, &profile, task, &mut kept);
     let mut summary = summary.map_err(|error| refused(error, &run.file))?;

@@ -87,9 +87,9 @@ pub struct Judgement {
     /// Areas and heights.
     #[serde(with = "figures::whole")]
     pub figures: Figures,
-    /// Connected voids, the largest first.
+    /// Connected voids, the largest first; none for a judge without patches.
     pub voids: Vec<Patch>,
-    /// Connected overfilled patches, the highest first.
+    /// Connected overfilled patches, the highest first; none for a judge without patches.
     pub peaks: Vec<Patch>,
     /// The height field as a coarse picture.
     pub picture: Option<Picture>,
@@ -103,6 +103,7 @@ pub struct Judge {
     settings: DepositSettings,
     stack: Option<Stack>,
     picture_pixels: Option<usize>,
+    patches: bool,
     every_point: bool,
     known: repeat::Known,
     total: Figures,
@@ -115,6 +116,7 @@ impl Judge {
             settings,
             stack: None,
             picture_pixels: None,
+            patches: true,
             every_point: false,
             known: repeat::Known::default(),
             total: Figures::default(),
@@ -137,6 +139,12 @@ impl Judge {
     /// Also draws the layers, at most `pixels` wide or high.
     pub fn with_pictures(mut self, pixels: usize) -> Self {
         self.picture_pixels = Some(pixels);
+        self
+    }
+
+    /// Does not join voids and overfilled places to patches; their areas are in the figures.
+    pub fn without_patches(mut self) -> Self {
+        self.patches = false;
         self
     }
 
@@ -177,6 +185,7 @@ impl Judge {
             mask: &Mask::new(&layer.islands, &self.settings, &grid),
             canvas: self.picture_pixels.map(|pixels| Canvas::new(&grid, pixels, &nominal)),
             keeps: self.stack.is_some(),
+            patches: self.patches,
             nominal: &nominal,
             grid: &grid,
         };
@@ -188,8 +197,12 @@ impl Judge {
         seen.iter().for_each(|s| figures.add(&s.figures));
         figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
         let work = seen.iter().map(|s| s.work).sum();
-        let runs = patch::in_order(seen.iter().flat_map(|seen| &seen.runs), grid.rows);
-        let (voids, peaks) = patch::patches(&runs, &grid, layer, &nominal);
+        let (voids, peaks) = if self.patches {
+            let runs = patch::in_order(seen.iter().flat_map(|seen| &seen.runs), grid.rows);
+            patch::patches(&runs, &grid, layer, &nominal)
+        } else {
+            Default::default()
+        };
         let picture = eye.canvas.map(|canvas| canvas.picture(seen.into_iter().filter_map(|s| s.picture)));
         Judgement { figures, voids, peaks, picture, work }
     }
@@ -203,6 +216,8 @@ struct Eye<'a> {
     canvas: Option<Canvas>,
     /// Whether the stack wants its heights.
     keeps: bool,
+    /// Whether its runs are joined to patches.
+    patches: bool,
 }
 
 /// What is taken from a part of a layer before it is forgotten.
@@ -236,7 +251,7 @@ impl Eye<'_> {
             |seen, part| match part {
                 tiles::Part::Band(band) => self.take(seen, band),
                 tiles::Part::Ridges(square, ridges) => {
-                    let begun = seen.runs.len();
+                    let begun = self.next_runs(seen);
                     patch::find_between(ridges, square, self.grid, &mut seen.runs);
                     let runs = &seen.runs[begun..];
                     seen.figures.add(&Figures::of_ridges(square, ridges, runs, self.grid));
@@ -252,9 +267,17 @@ impl Eye<'_> {
         Seen { picture: self.canvas.as_ref().map(|canvas| canvas.strip(rows)), ..Seen::default() }
     }
 
+    /// Where the runs of the next part begin.
+    fn next_runs(&self, seen: &mut Seen) -> usize {
+        if !self.patches {
+            seen.runs.clear();
+        }
+        seen.runs.len()
+    }
+
     fn take<H: Height>(&self, seen: &mut Seen, band: &Band<'_, H>) {
         seen.figures.add(&Figures::of(band, self.mask, self.nominal));
-        let begun = seen.runs.len();
+        let begun = self.next_runs(seen);
         patch::find(band, self.mask, self.nominal, &mut seen.runs);
         if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
             canvas.paint(strip, band, &seen.runs[begun..]);

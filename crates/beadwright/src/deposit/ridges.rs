@@ -13,7 +13,7 @@ use std::ops::Range;
 /// More beads than these beside each other are not taken together.
 pub(super) const MOST: usize = 12;
 /// Places across a square for its means: nearer to each other than its points.
-const SAMPLES: usize = 64;
+const SAMPLES: usize = 96;
 const LANES: usize = 8;
 
 /// A square crossed by parallel beads. Their voids and humps are stripes along them.
@@ -93,7 +93,7 @@ impl Lines {
     }
 
     /// The rows, one bit each, that a stripe may have a point in. Most stripes are so narrow that most rows have none.
-    fn rows_met(&self, stripe: &Stripe) -> u32 {
+    fn rows_met(&self, stripe: &Stripe) -> u64 {
         // In points: where the middle of the stripe crosses the first row, how far the next rows move it, half its width.
         let at = (0.5 * (stripe.low + stripe.high) - self.start) / self.step;
         let by = self.row_step / self.step;
@@ -102,9 +102,9 @@ impl Lines {
         let meets = |row: usize| from_whole(at - row as f64 * by) <= half;
         // Along the grid and at 45° to it all rows are alike.
         if SIDE as f64 * from_whole(by) < ALONG {
-            return if meets(0) { u32::MAX } else { 0 };
+            return if meets(0) { u64::MAX } else { 0 };
         }
-        (0..SIDE).fold(0, |rows, row| rows | u32::from(meets(row)) << row)
+        (0..SIDE).fold(0, |rows, row| rows | u64::from(meets(row)) << row)
     }
 }
 

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Grid points along a side of a square.
-pub(super) const SIDE: usize = 32;
+pub(super) const SIDE: usize = 64;
 /// Beads whose directions differ by less than this sine are parallel: over a square, a thousandth of a thousandth of its side.
 const PARALLEL: f64 = 1e-6;
 
