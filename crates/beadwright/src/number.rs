@@ -6,10 +6,10 @@ pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
     const POWERS: [f64; 10] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
     debug_assert!(value.is_finite());
     let decimals = decimals.min(9);
-    let scaled = (value * POWERS[decimals]).abs();
+    let scaled = if value.is_finite() { (value * POWERS[decimals]).abs() } else { 0.0 };
     // Halves are rounded away from zero; a call of `round` costs more than all else here.
     let whole = scaled as u64;
-    let digits = whole + u64::from(scaled - whole as f64 >= 0.5);
+    let digits = whole.saturating_add(u64::from(scaled - whole as f64 >= 0.5));
     let mut number = Number { bytes: [b'0'; 24], start: 24, left: digits };
     number.take(decimals);
     if decimals > 0 {

@@ -60,7 +60,7 @@ pub fn tail() -> &'static str {
 
 fn pass(text: &mut String, pass: &Pass) {
     text.push_str(&format!("{{\"kind\":\"{}\",\"closed\":{},\"points\":", pass.kind.name(), pass.closed));
-    // Nearly all points of a pass lie at one height, which is written once.
+    // Nearly all points of a pass lie at one height: it is turned into text once.
     let (mut height, mut z) = (f64::NAN, String::new());
     list(text, &pass.points, |text, p| {
         if p.z != height {

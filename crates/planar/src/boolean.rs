@@ -70,7 +70,7 @@ pub(crate) fn unite_rings(rings: &[Ring], rule: FillRule) -> Region {
     let by_winding = match rule {
         // Where everything is wound around once or not at all, all rules say the same.
         FillRule::EvenOdd => region_within(in_mm(&distinct(&rings)), 1, 0..=1),
-        // Where nothing is wound around clockwise, both other rules do.
+        // Where nothing is wound around clockwise, the other two rules agree.
         FillRule::NonZero => region_within(in_mm(&distinct(&rings)), 1, 0..),
         FillRule::Positive => region_within(in_mm(&distinct(&rings)), 1, ..),
     };

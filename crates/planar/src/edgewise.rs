@@ -2,10 +2,10 @@
 //!
 //! Every edge moves sideways. Where two edges move apart an arc or a tip joins them, where they move into each other they
 //! are cut off at their intersection; an edge between two such places that is used up is left out, which is exact since
-//! there the offset is what the half-planes of the edges have in common. Where an edge beside a gap is used up, the way leads
-//! over the corner on its other side itself, and winds clockwise around what must not count. The offset is what the rings
-//! that result wind around ([`winding`](crate::winding)); what touches itself is left to the boolean
-//! ([`offset`](mod@crate::offset)).
+//! there the offset is what the half-planes of the edges have in common. Where an edge is used up by one cut alone, or edges
+//! turn back sharply, the way leads through the corner of the outline instead, and winds clockwise around what must not count.
+//! The offset is what the rings that result wind around ([`winding`](crate::winding)); what touches itself is left to the
+//! boolean ([`offset`](mod@crate::offset)).
 
 use crate::winding::region_within;
 use crate::{Join, Region, Ring};
@@ -36,14 +36,12 @@ const TIP: f64 = 0.2;
 
 impl Gaps {
     fn at(distance: f64, join: Join) -> Self {
-        match join {
-            // The tip reaches farther by a quarter of the distance times the versed sine of the turn.
-            Join::Round(tolerance) => {
-                Self { tip: 1.0 - 4.0 * TIP * tolerance / distance.abs(), step: Some(Join::step(tolerance, distance)) }
-            }
-            // It lies 1 / cos(half the turn) distances from the corner.
-            Join::Miter(limit) => Self { tip: 2.0 / (limit * limit) - 1.0, step: None },
-        }
+        let (limit, step) = match join {
+            Join::Round(tolerance) => (1.0 + TIP * tolerance / distance.abs(), Some(Join::step(tolerance, distance))),
+            Join::Miter(limit) => (limit, None),
+        };
+        // A tip lies 1 / cos(half the turn) distances from the corner.
+        Self { tip: 2.0 / (limit * limit) - 1.0, step }
     }
 }
 
@@ -178,6 +176,7 @@ impl Left {
                     break;
                 }
                 _ => {
+                    self.give_way(edges, Corner::Over);
                     self.lead_over(last, i);
                     break;
                 }

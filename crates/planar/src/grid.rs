@@ -16,7 +16,7 @@ pub(crate) type GridShapes = Vec<Vec<Vec<GridPoint>>>;
 pub(crate) fn to_grid(p: DVec2) -> GridPoint {
     let scale = |v: f64| {
         let steps = v.clamp(-MAX_COORDINATE_MM, MAX_COORDINATE_MM) / GRID_MM;
-        // A cast takes the rest away.
+        // A cast drops the fraction.
         (steps + 0.5_f64.copysign(steps)) as i32
     };
     IntPoint::new(scale(p.x), scale(p.y))

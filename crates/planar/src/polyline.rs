@@ -57,8 +57,8 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
 }
 
 /// Whether a point between two others is kept in any case: it lies more than three times the tolerance from the line
-/// between them, and no line that keeps within the tolerance of all three bends less. So only the short stretches between
-/// corners are left to be simplified.
+/// between them, so no straight line passes within the tolerance of all three. Only the short stretches between such corners
+/// are left to be simplified.
 fn is_corner(before: DVec2, point: DVec2, after: DVec2, tolerance: f64) -> bool {
     let turns_back = (point - before).dot(after - point) <= 0.0;
     !turns_back && distance_squared_to_segment(point, before, after) > 9.0 * tolerance * tolerance

@@ -99,7 +99,7 @@ pub(crate) fn crossings<'a>(
 fn cross(ring: &Ring, first: f64, step: f64, count: usize, found: &mut Vec<(usize, f64)>) {
     for (a, b) in ring.edges() {
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
-        // A cast takes what lies below the first row for that row.
+        // A cast turns what lies below the first row into 0, its number.
         for row in ((low.y - first) / step) as usize..count {
             let y = first + row as f64 * step;
             if y >= high.y {

@@ -4,13 +4,13 @@ mod shapes;
 
 use clipper2_rust::{EndType, JoinType, inflate_paths_64};
 use planar::offset::{ARC_TOLERANCE_MM, SIMPLIFY_MM};
-use planar::{DVec2, Join, Region};
+use planar::{DVec2, FillRule, Join, Region, Ring};
 use proptest::prelude::*;
 use shapes::{
-    clipper_area, config, convex, distance_to_boundary, dumbbell, plate, same_shapes, star, symmetric_difference,
-    three_holes, to_clipper, v,
+    clipper_area, config, convex, distance_to_boundary, dumbbell, map_points, plate, same_shapes, star,
+    symmetric_difference, three_holes, to_clipper, v,
 };
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 const MITER: Join = Join::Miter(10.0);
 
@@ -232,4 +232,38 @@ fn a_part_is_roomy_unless_it_has_a_fin() {
     };
     assert!(roomy(4.5, 0.0) && roomy(4.5, 6.0), "nothing is thin");
     assert!(!roomy(1.5, 6.0) && !roomy(1.9, 4.0) && !roomy(0.3, 3.0), "a fin is thin");
+}
+
+fn ring(points: impl IntoIterator<Item = (f64, f64)>) -> Ring {
+    Ring::new(points.into_iter().map(DVec2::from).collect())
+}
+
+/// An edge used up by one cut alone, beside edges that turn back sharply, stayed and kept what lies too near the outline.
+#[test]
+fn case_1901_a_barb_in_a_corner_leaves_no_spike() {
+    let barb = [(0.0, 0.0), (0.0, 0.1), (-0.02, 0.05), (-0.02, 0.15)];
+    let around = [(10.0, 0.15), (10.0, 10.0), (-10.0, 10.0), (-10.0, 0.0)];
+    let outline = Region::from_rings(&[ring(barb.into_iter().chain(around))], FillRule::NonZero);
+    for (quarter, distance) in [(0, 1.0), (1, 0.7), (2, 1.3), (3, 2.0)] {
+        let turned = map_points(&outline, |p| DVec2::from_angle(f64::from(quarter) * FRAC_PI_2 + 0.1).rotate(p));
+        for join in [Join::ROUND, MITER] {
+            let inner = turned.offset(-distance, join);
+            assert!(inner.area() > 90.0);
+            for &p in inner.rings().flat_map(|ring| ring.points()) {
+                assert!(distance_to_boundary(&turned, p) > distance - BOUNDARY_MM, "{p} at {distance}");
+            }
+        }
+    }
+}
+
+/// Round joins of less than their tolerance became tips of any length.
+#[test]
+fn case_1902_tiny_round_offsets_reach_no_farther_than_their_tolerance() {
+    let needle = Region::from_rings(&[ring([(0.0, 0.0), (10.0, 0.0), (0.0, 0.1)])], FillRule::NonZero);
+    for distance in [0.0005, 0.001, 0.002, 0.005, 0.02] {
+        let grown = needle.offset(distance, Join::ROUND);
+        for &p in grown.rings().flat_map(|ring| ring.points()) {
+            assert!(distance_to_boundary(&needle, p) < distance + BOUNDARY_MM, "{p} at {distance}");
+        }
+    }
 }

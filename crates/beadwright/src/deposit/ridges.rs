@@ -178,7 +178,7 @@ impl Ridges {
         let per_mm = 1.0 / self.half_width;
         let half = (0.5 * length * per_mm) as f32;
         let scale = self.height as f32 / (2.0 * half);
-        // Some crests side by side; those that there are not lie too far off to count.
+        // Some crests side by side; unused places hold infinity, too far off to count.
         let mut crests = [[f32::INFINITY; 4]; MOST / 4];
         crests
             .as_flattened_mut()

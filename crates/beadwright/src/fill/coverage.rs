@@ -188,7 +188,7 @@ impl Rows {
 
     /// The rows from one height to another.
     fn within(&self, (low, high): (f64, f64)) -> Range<usize> {
-        // The first row at or above a height; casts round what is not negative down.
+        // The first row above a height; casts round what is not negative down.
         let from = |y: f64| ((y - self.first) * self.per_mm + 1.0).max(0.0) as usize;
         let to = from(high).min(self.last.len());
         from(low).min(to)..to
@@ -225,10 +225,9 @@ impl Rows {
     /// Adds a span to those of a row. Neighbouring passes are laid one after another, so most spans continue the last one.
     fn add(&mut self, row: usize, (low, high): Span) {
         let last = &mut self.last[row];
-        if low > high {
-        } else if low <= last.1 && high >= last.0 {
+        if low <= last.1 && high >= last.0 {
             *last = (last.0.min(low), last.1.max(high));
-        } else {
+        } else if low <= high {
             if *last != NOWHERE {
                 self.before.push((row as u32, *last));
             }

@@ -3,7 +3,8 @@
 //! From the nearest-next tour, three moves are tried between stops that lie near each other, until none shortens the
 //! travel: reverse a stretch of the tour (2-opt), move one to three stops elsewhere, reversed if that is better
 //! (Or-opt; a single stop takes its best gate there), and enter a stop by another gate. Then stretches of the tour are
-//! exchanged at random and the tour is repaired; exchanges that do not shorten it are undone. Finally the starts of
+//! exchanged, all of them where there are few stops, else at random, and the tour is repaired; exchanges that do not shorten
+//! it are undone. Finally the starts of
 //! closed passes slide along their edges.
 
 use super::nearest;
@@ -16,7 +17,7 @@ use rstar::primitives::GeomWithData;
 /// Moves are tried with this many of the nearest stops.
 const NEAR: usize = 8;
 
-/// With so few stops every exchange is tried; with more so many random ones per stop, up to a limit.
+/// With this few stops every exchange is tried; with more, this many random ones per stop, up to a limit.
 const FEW_STOPS: usize = 9;
 const KICKS_PER_STOP: usize = 3;
 const MOST_KICKS: usize = 800;
@@ -51,7 +52,7 @@ struct Search<'a> {
     tour: Vec<Visit>,
     /// Place of each stop on the tour.
     place: Vec<usize>,
-    /// The stops that lie nearest to each, with the distances of their gates.
+    /// The stops that lie nearest to each, all of them where there are few, with a distance that their gates have at least.
     near: Vec<Vec<(f64, usize)>>,
     all_reversible: bool,
 }

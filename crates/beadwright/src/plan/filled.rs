@@ -247,7 +247,8 @@ const CLEAR: f64 = 0.01;
 ///
 /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
 /// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes are
-/// computed only at necks, and where this figure shows that something is lost.
+/// computed only at necks, and where this figure shows that something is lost; the area is then too large by a hair, [`CLEAR`]
+/// along what is lost.
 fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
     let r = width / 2.0;
     let area = island.area();

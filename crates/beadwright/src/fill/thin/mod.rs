@@ -203,8 +203,8 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
 /// An island without points that hardly matter: scanned outlines have many.
 fn with_fewer_points(island: &Polygon, tolerance: f64) -> Region {
     let rings: Vec<Ring> = island.rings().filter_map(|ring| simplify_ring(ring.clone(), tolerance)).collect();
-    let count = |rings: &mut dyn Iterator<Item = &Ring>| rings.map(|ring| ring.points().len()).sum::<usize>();
-    if count(&mut rings.iter()) == count(&mut island.rings()) {
+    let points = |ring: &Ring| ring.points().len();
+    if rings.iter().map(points).sum::<usize>() == island.rings().map(points).sum::<usize>() {
         return island.clone().into();
     }
     Region::from_rings(&rings, FillRule::NonZero)
