@@ -3,9 +3,8 @@
 //! From the nearest-next tour, three moves are tried between stops that lie near each other, until none shortens the
 //! travel: reverse a stretch of the tour (2-opt), move one to three stops elsewhere, reversed if that is better
 //! (Or-opt; a single stop takes its best gate there), and enter a stop by another gate. Then stretches of the tour are
-//! exchanged, all of them where there are few stops, else at random, and the tour is repaired; exchanges that do not shorten
-//! it are undone. Finally the starts of
-//! closed passes slide along their edges.
+//! exchanged, all of them where there are few stops, else at random, and the tour is repaired; exchanges that do not
+//! shorten it are undone. Finally the starts of closed passes slide along their edges.
 
 use super::nearest;
 use super::tour::{self, Circle, Ends, Gate, Stop, Visit, gap, neighbours};
