@@ -5,7 +5,7 @@ Solid prints, same layers and line widths for all: perimeters as the case says, 
 system time together, so other jobs on the machine hardly matter; each figure is the median of RUNS by CPU.
 
 Debian: apt-get install prusa-slicer cura-engine cura   (cura holds the definitions, else $CURA_DEFINITIONS)
-Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--judged] [--json FILE] [--binary target/release/beadwright]
+Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--turn 0] [--judged] [--json FILE] [--binary target/release/beadwright]
 """
 import argparse, concurrent.futures, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
 
@@ -29,14 +29,16 @@ CASES = [
 ]
 
 
-def model(name, scale, work):
-    """The model as a plain STL file of the wanted size."""
+def model(name, scale, turn, work):
+    """The model as a plain STL file of the wanted size, turned about z by so many degrees."""
     data = (MODELS / name).read_bytes()
     data = bytearray(gzip.decompress(data) if name.endswith(".gz") else data)
-    if scale != 1:
+    if scale != 1 or turn:
+        c, s = scale * math.cos(math.radians(turn)), scale * math.sin(math.radians(turn))
         for at in range(84, len(data) - 49, 50):
-            corners = struct.unpack_from("<9f", data, at + 12)
-            struct.pack_into("<9f", data, at + 12, *[scale * c for c in corners])
+            corners = struct.iter_unpack("<3f", data[at + 12:at + 48])
+            turned = [v for x, y, z in corners for v in (c * x - s * y, s * x + c * y, scale * z)]
+            struct.pack_into("<9f", data, at + 12, *turned)
     path = work / "model.stl"
     path.write_bytes(data)
     return path
@@ -105,6 +107,7 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--runs", type=int, default=3)
     arguments.add_argument("--cases", default="")
+    arguments.add_argument("--turn", type=float, default=0, help="turns the parts about z, degrees")
     arguments.add_argument("--json", type=pathlib.Path)
     arguments.add_argument("--binary", type=pathlib.Path)
     arguments.add_argument("--judged", action="store_true", help="our plans with the deposit model on, as by default")
@@ -124,7 +127,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(1) as other:
             work = pathlib.Path(folder)
             # In another process: the memory of this one counts as that of what it starts.
-            part = other.submit(model, file, scale, work).result()
+            part = other.submit(model, file, scale, given.turn, work).result()
             row = {"case": name} | {peer: measured(of(part, bead, perimeters, work), given.runs) for peer, of in peers.items()}
             row["beadwright"] = measured(ours(binary, part, bead, perimeters, work, given.judged), given.runs)
         rows.append(row)

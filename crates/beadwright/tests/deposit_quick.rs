@@ -151,3 +151,17 @@ fn a_layer_that_repeats_an_earlier_one_is_known() {
     first.passes[0].points[0].x += 0.01 * settings.nominal.bead.width;
     assert!(judge.layer(&first).work > 0);
 }
+
+/// A judge without patches finds the same figures and draws the same picture.
+#[test]
+fn patches_are_left_out_without_changing_the_rest() {
+    let settings = DepositSettings { step: STEP, ..plan::deposit_settings(&profile()) };
+    for (part, strategy) in [("cross", "zigzag"), ("gear", "compound")] {
+        let layer = plan(part, 20.0, strategy).layers.swap_remove(1);
+        let judges = [Judge::new(settings), Judge::new(settings).without_patches()];
+        let [all, bare] = judges.map(|judge| judge.with_pictures(100).layer(&layer));
+        assert!(!all.voids.is_empty() && !all.peaks.is_empty());
+        assert!(bare.voids.is_empty() && bare.peaks.is_empty());
+        assert_eq!((bare.figures, bare.picture, bare.work), (all.figures, all.picture, all.work));
+    }
+}

@@ -177,7 +177,7 @@ impl Left {
                 }
                 _ => {
                     self.give_way(edges, Corner::Over);
-                    self.lead_over(last, i);
+                    self.lead_over(i);
                     break;
                 }
             }
@@ -193,19 +193,20 @@ impl Left {
     /// Where the last edge is used up by the cut before it alone, the way leads over that corner instead.
     fn give_way(&mut self, edges: &[Edge], after: Corner) {
         let before = self.before();
-        if let [.., one, last] = self.edges[..]
+        if let [.., _, last] = self.edges[..]
             && before.is_cut()
             && is_used_up(before, &edges[last], after)
         {
             self.edges.pop();
             self.corners.pop();
-            self.lead_over(one, last);
+            self.lead_over(last);
         }
     }
 
     /// Goes on from the last edge over all corners to another, along what was left out between them.
-    fn lead_over(&mut self, last: usize, to: usize) {
-        self.edges.extend(last + 1..=to);
+    fn lead_over(&mut self, to: usize) {
+        let next = self.edges.last().map_or(to, |last| last + 1);
+        self.edges.extend(next..=to);
         self.corners.resize(self.edges.len() - 1, Corner::Over);
     }
 
