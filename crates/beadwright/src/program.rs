@@ -16,6 +16,7 @@ mod weave;
 pub use attitude::Attitude;
 pub use safety::Safety;
 pub use settings::ProgramSettings;
+use weave::Swing;
 pub use weave::Weave;
 
 use crate::layer::Layer;
@@ -63,6 +64,9 @@ pub enum Instruction {
         /// How torch and table stand on the way to the start and there.
         attitude: Attitude,
     },
+    /// The torch is above the start of the pass. What came since `PassStart` led there from the pass before; a program
+    /// that begins at this pass does without it.
+    Above,
     /// The pass is done; the torch is above the part.
     PassEnd,
     /// Strikes the arc at the start of a pass.
@@ -180,6 +184,8 @@ pub struct Programmer {
     spread: Option<Spread>,
     tilt: Option<Tilt>,
     table: Option<Follower>,
+    /// How the torch swings, where that is written as moves.
+    weave: Option<Weave>,
 }
 
 impl Programmer {
@@ -197,6 +203,7 @@ impl Programmer {
             spread: None,
             tilt: None,
             table: None,
+            weave: None,
         }
     }
 
@@ -208,6 +215,11 @@ impl Programmer {
         let (tilt, table) = (Tilt::new(program), Follower::new(program));
         let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
+    }
+
+    /// The same programmer, but the torch swings by moves of its own.
+    pub fn woven(self, weave: Option<&Weave>) -> Self {
+        Self { weave: weave.cloned(), ..self }
     }
 
     /// The same programmer, but it keeps every point of the passes.
@@ -245,7 +257,8 @@ impl Programmer {
         }
         if self.dry {
             let kept = |i: &Instruction| {
-                i.target().is_some() || matches!(i, Instruction::PassStart { .. } | Instruction::PassEnd)
+                let places = matches!(i, Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd);
+                places || i.target().is_some()
             };
             instructions.retain(kept);
         }
@@ -281,31 +294,29 @@ impl Programmer {
         let table = self.table.as_mut().map(|table| table.begin(start));
         let begins = self.torch.at().is_none();
         let pauses = [pause.take(), self.torch.wait(pass.wait)];
-        let legs = self.torch.approach(start).legs;
+        let mut legs = self.torch.approach(start).legs;
         let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
+        let down = legs.pop();
         let mut legs = legs.into_iter();
         out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
         pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
+        out.extend(legs.by_ref().take(usize::from(begins)).map(|to| Instruction::Approach { to }));
+        out.extend(legs.map(|to| Instruction::Travel { to }));
+        out.push(Instruction::Above);
         if self.restarts {
             self.feed = None;
         }
         self.set_feed(self.torch.feed_at(first), out);
-        out.extend(legs.by_ref().take(usize::from(begins)).map(|to| Instruction::Approach { to }));
-        out.extend(legs.map(|to| Instruction::Travel { to }));
+        out.extend(down.map(|to| Instruction::Travel { to }));
         out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
-        let pieces = match &self.fit {
-            Some(fit) => fitted(&moves, &leans, fit),
-            None => (1..moves.len()).map(|end| Stretch { end, circle: None }).collect(),
-        };
         let mut from = start;
-        for Stretch { end, circle } in pieces {
-            let (to, pace) = moves[end];
-            let (speed, feed) = (self.torch.speed_at(pace), self.torch.feed_at(pace));
-            self.set_feed(feed, out);
+        let pieces = self.pieces(&moves, &leans);
+        for (i, &Stretch { end, to, circle, speed }) in pieces.iter().enumerate() {
+            self.set_feed(self.torch.feed_at(moves[end].1), out);
             let length = circle.map_or(from.distance(to), |circle| circle.length());
             let table = self.table.as_mut().map(|table| table.follow(to, length));
             let attitude = Attitude { lean: lean(end), table };
-            out.push(Instruction::Weld { to, circle, speed, last: end + 1 == moves.len(), attitude });
+            out.push(Instruction::Weld { to, circle, speed, last: i + 1 == pieces.len(), attitude });
             from = to;
         }
         let seconds = self.torch.weld(&moves).crater;
@@ -317,6 +328,22 @@ impl Programmer {
         out.push(Instruction::ArcOff { pass: number });
         out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
         out.push(Instruction::PassEnd);
+    }
+
+    /// What is run of a path: swings, pieces that fit it, or all its moves.
+    fn pieces(&self, moves: &[(DVec3, f64)], leans: &[DVec2]) -> Vec<Stretch> {
+        let speed = |end: usize| self.torch.speed_at(moves[end].1);
+        if let Some(weave) = &self.weave {
+            let path: Vec<DVec3> = moves.iter().map(|(to, _)| *to).collect();
+            let speeds: Vec<f64> = (0..moves.len()).map(speed).collect();
+            let swings = weave::swings(&path, &speeds, weave).into_iter();
+            return swings.map(|Swing { to, of, speed }| Stretch { end: of, to, circle: None, speed }).collect();
+        }
+        let whole = |end, circle| Stretch { end, to: moves[end].0, circle, speed: speed(end) };
+        match &self.fit {
+            Some(fit) => fitted(moves, leans, fit).into_iter().map(|(end, circle)| whole(end, circle)).collect(),
+            None => (1..moves.len()).map(|end| whole(end, None)).collect(),
+        }
     }
 
     /// Sets the wire feed, as a multiple of the nominal one, where it changes.
@@ -351,14 +378,19 @@ fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     }
 }
 
-/// A piece of a path: the index of the move that ends it, and its circle if it has one.
+/// A piece that is run.
 struct Stretch {
+    /// Index of the move of the path in which it ends.
     end: usize,
+    to: DVec3,
     circle: Option<Circle>,
+    /// mm/s
+    speed: f64,
 }
 
-/// The moves from the first point on, fitted. Pieces end where the pace, the height or the torch's lean changes.
-fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<Stretch> {
+/// The moves from the first point on, fitted: the index of the move that ends each piece, and its circle if it has one.
+/// Pieces end where the pace, the height or the torch's lean changes.
+fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<(usize, Option<Circle>)> {
     let (mut out, mut start) = (Vec::new(), 0);
     let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
     while let Some(&(first, pace)) = moves.get(start + 1) {
@@ -374,7 +406,7 @@ fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<Stretch> {
                 radius: arc.radius,
                 sweep: arc.sweep,
             };
-            Stretch { end: start + p.end, circle: p.arc.map(lift) }
+            (start + p.end, p.arc.map(lift))
         };
         out.extend(fit.pieces(&points).into_iter().map(piece));
         start = end;
@@ -382,13 +414,17 @@ fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<Stretch> {
     out
 }
 
+/// A point as programs have it.
+fn rounded(p: DVec3) -> DVec3 {
+    DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM))
+}
+
 /// The points of a path, rounded, without those too close to the last one; the end point is always kept.
 fn distinct(path: Vec<(DVec3, f64)>) -> Vec<(DVec3, f64)> {
-    let round = |p: DVec3| DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM));
-    let end = path.last().map(|(to, _)| round(*to));
+    let end = path.last().map(|(to, _)| rounded(*to));
     let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(path.len());
     for (to, pace) in path {
-        let to = round(to);
+        let to = rounded(to);
         if moves.last().is_none_or(|(last, _)| last.distance(to) >= MIN_MOVE_MM) {
             moves.push((to, pace));
         }

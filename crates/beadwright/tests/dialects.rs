@@ -107,7 +107,7 @@ fn all_of(job: &[Layer]) -> Vec<(&'static str, Files, Motion)> {
     let (krl, rapid, fanuc, inform) = (write("krl"), write("rapid"), write("fanuc"), write("inform"));
     let (urscript, marlin) = (write("urscript"), write("marlin"));
     let print = readers::marlin::run(&marlin["demo.gcode"]);
-    let welds = print.paths.into_iter().map(|points| Weld { points, speeds: Vec::new() }).collect();
+    let welds = print.paths.into_iter().map(|points| Weld { points, ..Weld::default() }).collect();
     let printed = Motion { welds, travel: print.travel, ..Motion::default() };
     let mut all = vec![
         ("krl", krl.clone(), readers::krl::run(&krl, "DEMO", "$OUT[2]")),
@@ -354,12 +354,13 @@ fn the_test_readers_know_arcs() {
 fn large_programs_come_in_volumes() {
     let mut profile = profile();
     let whole = [written("krl", "demo", &job(), &profile), written("urscript", "demo", &job(), &profile)];
-    profile.dialects.krl.as_mut().unwrap().max_megabytes = 0.002;
-    profile.dialects.urscript.as_mut().unwrap().max_megabytes = 0.002;
+    // Room for a main program and one of two layers.
+    profile.dialects.krl.as_mut().unwrap().max_megabytes = 0.004;
+    profile.dialects.urscript.as_mut().unwrap().max_megabytes = 0.0055;
     let write = |name: &str| {
         let job_settings = profile.job("demo");
         let mut writer = dialect::writer(name, &job_settings).unwrap();
-        let mut programmer = job_settings.programmer();
+        let mut programmer = job_settings.programmer(false);
         let mut files = Files::new();
         let mut chunks = writer.begin(2);
         job().iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
@@ -379,6 +380,41 @@ fn large_programs_come_in_volumes() {
     for (notes, last) in [(krl_notes, "DEMO_2.src"), (ur_notes, "demo_2.script")] {
         assert!(matches!(&notes[..], [note] if note.contains("2 volumes") && note.contains(last)), "{notes:?}");
     }
+}
+
+/// No volume is larger than the controller's memory, its main program, data and all modules taken together: layers are
+/// divided between passes.
+#[test]
+fn no_volume_is_larger_than_it_may_be() {
+    let mut profile = profile();
+    profile.fill.strategy = "contour".to_owned();
+    (profile.program.chord_tolerance, profile.program.arcs, profile.program.restart) = (0.0, false, true);
+    profile.dialects.krl.as_mut().unwrap().max_points = 200;
+    profile.dialects.urscript.as_mut().unwrap().max_megabytes = 0.2;
+    let mut plan = plan::plan("demo", &example::find("gear").unwrap().mesh(), &profile, &Task::new()).unwrap();
+    plan.layers.truncate(4);
+    let whole = readers::krl::run(&written("krl", "demo", &plan.layers, &profile), "DEMO", "$OUT[2]");
+    for megabytes in [0.05, 0.12] {
+        profile.dialects.krl.as_mut().unwrap().max_megabytes = megabytes;
+        let files = written("krl", "demo", &plan.layers, &profile);
+        let mains: Vec<&str> = files.keys().filter_map(|file| file.strip_suffix(".dat")).collect();
+        assert!(mains.len() > 4, "{mains:?}");
+        let mut welds = Vec::new();
+        let ordered = (1..=mains.len()).map(|n| if n == 1 { "DEMO".to_owned() } else { format!("DEMO_{n}") });
+        for main in ordered {
+            let text = &files[&format!("{main}.src")];
+            let calls = text.lines().filter_map(|line| line.strip_suffix("( )"));
+            let calls = calls.filter(|name| !name.contains(' ') && !name.ends_with("_ARC"));
+            let called = calls.map(|name| files[&format!("{name}.src")].len()).sum::<usize>();
+            let size = called + text.len() + files[&format!("{main}.dat")].len();
+            assert!(size as f64 <= megabytes * 1e6, "{main} has {size} bytes");
+            welds.extend(readers::krl::run(&files, &main, "$OUT[2]").welds);
+        }
+        assert_eq!(welds, whole.welds);
+    }
+    let scripts = written("urscript", "demo", &plan.layers, &profile);
+    assert!(scripts.len() > 2);
+    scripts.iter().for_each(|(file, text)| assert!(text.len() <= 200_000, "{file}: {}", text.len()));
 }
 
 /// A CNC torch rises to the safe height first, then goes across, then down.
@@ -442,7 +478,7 @@ fn a_stopped_build_goes_on_at_its_pass() {
     let resumed = |post: &str| -> Files {
         let job = profile.job("demo");
         let (mut writer, mut programmer, mut files) =
-            (dialect::writer(post, &job).unwrap(), job.programmer(), Files::new());
+            (dialect::writer(post, &job).unwrap(), job.programmer(false), Files::new());
         let mut chunks = writer.begin(plan.layers.len());
         for at in &plan.layers[layer..] {
             chunks.extend(writer.layer(&programmer.layer_from(at, if at.index == layer { pass } else { 0 })));

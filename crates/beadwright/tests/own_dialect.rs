@@ -216,7 +216,7 @@ fn layers_are_written_as_they_come() {
     let (plan, profile) = (cross(), welder());
     let own = Own::new("g", gantry()).unwrap();
     let job = profile.job("cross");
-    let (mut writer, mut programmer) = (own.writer(&job).unwrap(), job.programmer());
+    let (mut writer, mut programmer) = (own.writer(&job).unwrap(), job.programmer(false));
     writer.begin(plan.layers.len());
     for layer in &plan.layers {
         let chunks = writer.layer(&programmer.layer(layer));

@@ -11,19 +11,23 @@ use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{dialect, example};
 use readers::Motion;
+use readers::cnc::Control;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 type Files = BTreeMap<String, String>;
 
 /// Post, profile, main file.
-const POSTS: [(&str, &str, &str); 6] = [
+const POSTS: [(&str, &str, &str); 9] = [
     ("krl", "cmt-al2319-kuka", "DEMO.src"),
     ("rapid", "cmt-steel-abb", "demo.mod"),
     ("fanuc", "cmt-steel-robots", "DEMO.ls"),
     ("inform", "cmt-steel-robots", "DEMO.jbi"),
     ("urscript", "cmt-steel-robots", "demo.script"),
     ("gcode", "plasma-304-cnc", "demo.nc"),
+    ("gcode", "plasma-304-fanuc", "demo.nc"),
+    ("gcode", "plasma-304-siemens", "DEMO.MPF"),
+    ("gcode", "plasma-304-twincat", "demo.nc"),
 ];
 
 /// Eight layers of a gear, planned once for each profile.
@@ -47,6 +51,10 @@ fn profile(post: &str, name: &str) -> Profile {
         // One file.
         urscript.max_megabytes = 1000.0;
     }
+    if let Some(gcode) = profile.dialects.gcode.as_mut() {
+        // An axis of the wire would feed at once what was left out.
+        gcode.wire_axis = None;
+    }
     if post == "rapid" {
         profile.dialects.rapid.as_mut().unwrap().arc = beadwright::dialect::rapid::RapidArc::Plain;
     }
@@ -60,7 +68,7 @@ fn written(post: &str, plan: &Plan, profile: &Profile) -> Files {
 /// The program from one pass on, as `--from-layer` and `--from-pass` write it.
 fn resumed(post: &str, plan: &Plan, profile: &Profile, (layer, pass): (usize, usize)) -> Files {
     let job = profile.job("demo");
-    let (mut writer, mut programmer) = (dialect::writer(post, &job).unwrap(), job.programmer());
+    let (mut writer, mut programmer) = (dialect::writer(post, &job).unwrap(), job.programmer(false));
     let mut chunks = writer.begin(plan.layers.len());
     for at in &plan.layers[layer..] {
         chunks.extend(writer.layer(&programmer.layer_from(at, if at.index == layer { pass } else { 0 })));
@@ -80,6 +88,8 @@ fn begin_at(files: &mut Files, number: usize) {
         ("SET D090 0", format!("SET D090 {number}")),
         ("global start_at = 0", format!("global start_at = {number}")),
         ("#<_start> = 0", format!("#<_start> = {number}")),
+        ("#100=0", format!("#100={number}")),
+        ("R90=0", format!("R90={number}")),
     ];
     // The modules of layers only set it back.
     let main = files.iter_mut().filter(|(file, _)| !file.contains("L0")).map(|(_, text)| text);
@@ -97,14 +107,21 @@ fn totals(files: &Files, main: &str) -> ReadTotals {
 }
 
 /// What readers find that know nothing of ours.
-fn motion(post: &str, files: &Files) -> Option<Motion> {
-    Some(match post {
+fn motion(post: &str, name: &str, files: &Files) -> Motion {
+    let cnc = |control, arc| readers::cnc::run(control, files.values().next().unwrap(), arc).motion;
+    match post {
         "krl" => readers::krl::run(files, "DEMO", "$OUT[2]"),
         "rapid" => readers::rapid::run(files, "demo", "doArc"),
         "urscript" => readers::urscript::run(&files["demo.script"], 1),
-        "gcode" => readers::gcode::run(&files["demo.nc"], 3, 5),
-        _ => return None,
-    })
+        "fanuc" => readers::fanuc::run(files, "DEMO"),
+        "inform" => readers::inform::run(files, "DEMO"),
+        _ => match name {
+            "plasma-304-fanuc" => cnc(Control::Fanuc, [3, 5]),
+            "plasma-304-siemens" => cnc(Control::Siemens, [3, 5]),
+            "plasma-304-twincat" => cnc(Control::TwinCat, [62, 63]),
+            _ => readers::gcode::run(&files["demo.nc"], 3, 5),
+        },
+    }
 }
 
 fn same(a: &ReadTotals, b: &ReadTotals, case: &str) {
@@ -126,24 +143,29 @@ fn programs_begin_at_any_pass_by_their_variable() {
         let whole = written(post, &plan, &plain);
         same(&totals(&files, main), &totals(&whole, main), post);
         let before = plan.layers[..layer].iter().map(|l| l.passes.len()).sum::<usize>() + pass;
-        let all = motion(post, &whole);
-        if let (Some(run), Some(all)) = (motion(post, &files), &all) {
-            assert_eq!(&run, all, "{post}: from the beginning");
-        }
+        let all = motion(post, name, &whole);
+        assert_eq!(motion(post, name, &files), all, "{name} {post}: from the beginning");
         begin_at(&mut files, 70_003);
-        same(&totals(&files, main), &totals(&resumed(post, &plan, &plain, (layer, pass)), main), post);
-        if let (Some(run), Some(all)) = (motion(post, &files), &all) {
-            assert_eq!(run.welds, all.welds[before..], "{post}: the rest");
-        }
+        let resumed = resumed(post, &plan, &plain, (layer, pass));
+        same(&totals(&files, main), &totals(&resumed, main), post);
+        let (run, wanted) = (motion(post, name, &files), motion(post, name, &resumed));
+        assert_eq!(run.welds, all.welds[before..], "{name} {post}: the rest");
+        // No way to where the pass before ended, and no wait there.
+        assert!((run.travel - wanted.travel).abs() < 0.01, "{name} {post}: {} mm for {}", run.travel, wanted.travel);
+        assert!((run.waits - wanted.waits).abs() < 0.01, "{name} {post}: {} s for {}", run.waits, wanted.waits);
     }
 }
 
 /// Controls without such branches say so.
 #[test]
 fn posts_that_cannot_restart_refuse() {
-    for (post, name) in [("gcode", "plasma-304-siemens"), ("gcode", "plasma-304-twincat"), ("marlin", "fdm-abs-0.4")] {
+    for (post, name) in [("gcode", "plasma-304-cnc"), ("gcode", "plasma-304-twincat"), ("marlin", "fdm-abs-0.4")] {
         let mut profile = Profile::built_in(name).unwrap();
         profile.program.restart = true;
+        // TwinCAT's wire is an axis, which would feed at once what was left out.
+        if name == "plasma-304-cnc" {
+            profile.dialects.gcode.as_mut().unwrap().control = None;
+        }
         let error = dialect::write(post, &planned(&profile).layers, &profile.job("demo")).unwrap_err().to_string();
         assert!(error.contains("program.restart") && error.contains("--from-pass"), "{error}");
     }

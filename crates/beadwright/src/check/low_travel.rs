@@ -45,6 +45,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
                 // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.
                 Instruction::ArcOff { pass: number } => pass = number,
                 Instruction::PassStart { .. }
+                | Instruction::Above
                 | Instruction::PassEnd
                 | Instruction::ArcOn { .. }
                 | Instruction::WireFeed { .. }

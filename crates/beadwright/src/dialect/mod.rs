@@ -75,7 +75,12 @@ pub trait Section {
 
     /// The most instructions that a pass may have where no program may be longer; `None` where a pass that is too long
     /// for the limit makes a longer program.
-    fn longest_pass(&self) -> Option<usize> {
+    fn longest_pass(&self, _program: &ProgramSettings) -> Option<usize> {
+        None
+    }
+
+    /// How the section names the turn table under the part; `None` where the dialect writes no external axes.
+    fn table(&self) -> Option<Table> {
         None
     }
 
@@ -87,6 +92,17 @@ pub trait Section {
     /// # Errors
     /// [`DialectError`] for a job that asks for more than the dialect can write or the section provides.
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError>;
+}
+
+/// How a section names the turn table under the part, so that the part's frame turns with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Table {
+    /// Full key.
+    pub key: &'static str,
+    /// Whether the profile has it.
+    pub known: bool,
+    /// What it is: a sentence.
+    pub what: &'static str,
 }
 
 /// The table: for each dialect its folder, its section, and what the section is for.

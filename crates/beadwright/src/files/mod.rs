@@ -63,7 +63,8 @@ impl Post {
 /// Programs that are written together, layer by layer.
 pub struct Programs {
     writers: Vec<Box<dyn Writer>>,
-    programmer: Programmer,
+    /// For controllers that weave by themselves, and for others.
+    programmers: [Programmer; 2],
 }
 
 impl Programs {
@@ -92,7 +93,7 @@ impl Programs {
             }
             writers.push(post.writer(job)?);
         }
-        Ok(Self { writers, programmer: job.programmer() })
+        Ok(Self { writers, programmers: [true, false].map(|weaves| job.programmer(weaves)) })
     }
 
     /// Why a program is not complete; nothing may then be kept.
@@ -109,8 +110,21 @@ impl Programs {
     }
 
     fn layer(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
-        let program = self.programmer.layer_from(layer, first);
-        self.each(|writer| writer.layer(&program))
+        let mut chunks = Vec::new();
+        for (weaves, programmer) in [true, false].into_iter().zip(&mut self.programmers) {
+            if !self.writers.iter().any(|writer| writer.weaves() == weaves) {
+                continue;
+            }
+            let program = programmer.layer_from(layer, first);
+            let writers = self.writers.iter_mut().filter(|writer| writer.weaves() == weaves);
+            chunks.extend(writers.flat_map(|writer| writer.layer(&program)));
+        }
+        chunks
+    }
+
+    /// Takes note of a layer that no program has.
+    fn pass_over(&mut self, layer: &Layer) {
+        self.programmers.iter_mut().for_each(|programmer| programmer.pass_over(layer));
     }
 
     fn end(&mut self) -> Vec<Chunk> {
@@ -162,7 +176,7 @@ impl PlanFiles {
             let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
             chunks.extend(self.programs.layer(layer, first));
         } else {
-            self.programs.programmer.pass_over(layer);
+            self.programs.pass_over(layer);
         }
         self.note(&chunks);
         chunks

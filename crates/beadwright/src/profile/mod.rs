@@ -341,7 +341,7 @@ impl Profile {
 
     /// The most instructions that a pass may have, so that all posts can write it; `None` where it may have any number.
     pub(crate) fn longest_pass(&self) -> Option<usize> {
-        self.posts.iter().filter_map(|post| self.dialects.get(post)?.longest_pass()).min()
+        self.posts.iter().filter_map(|post| self.dialects.get(post)?.longest_pass(&self.program)).min()
     }
 
     /// How the passes of a layer are put in order.

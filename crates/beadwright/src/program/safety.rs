@@ -10,13 +10,18 @@ use serde::{Deserialize, Serialize};
 pub struct Safety {
     /// What the cell must supply, as sentences: inputs, interlocks, extraction. They stand at the head of every program.
     pub supplies: Vec<String>,
-    /// How long programs wait for the arc to burn before they stop, s: `{{arc_timeout}}` in templates. Default 3.
+    /// How long programs wait for the arc to burn at each try, s: `{{arc_timeout}}` in templates. Default 3.
     pub arc_timeout: f64,
+    /// How often programs strike the arc before they halt with wire and gas off: `{{arc_tries}}` in templates. Default 3.
+    pub arc_tries: u32,
+    /// How long the gas flows on in a halt before it is switched off, s: `{{gas_halt}}` in templates. Default:
+    /// `process.gas_postflow`.
+    pub gas_halt: Option<f64>,
 }
 
 impl Default for Safety {
     fn default() -> Self {
-        Self { supplies: Vec::new(), arc_timeout: 3.0 }
+        Self { supplies: Vec::new(), arc_timeout: 3.0, arc_tries: 3, gas_halt: None }
     }
 }
 
@@ -24,6 +29,8 @@ impl Safety {
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
             "safety.arc_timeout": self.arc_timeout, 0.1, 60.0, "s", "values outside this range make no sense";
+            "safety.arc_tries": self.arc_tries.into(), 1.0, 20.0, "tries", "a wire that is fed on without an arc bends and sticks";
+            "safety.gas_halt": self.gas_halt.unwrap_or(0.0), 0.0, 600.0, "s", "values outside this range make no sense";
         }
     }
 

@@ -25,17 +25,17 @@ pub struct ProgramSettings {
     /// 0.
     pub torch_angle: f64,
     /// Where the robot stands on its linear axis (track), the same for the whole program, mm; `beadwright reach` finds the best
-    /// place. The controller must count the axis into its kinematics. KRL writes it as E1, RAPID as the first external axis,
-    /// and a turn table then as the second; other posts refuse it. Leave it out if there is no such axis.
+    /// place. The controller must count the axis into its kinematics, so that the part's frame stays where it is. KRL writes it
+    /// as E1, RAPID as the first external axis, and a turn table then as the second; other posts refuse it. Leave it out if there
+    /// is no such axis.
     pub linear_axis: Option<f64>,
     /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` finds the best
-    /// angle. The part's frame must turn with the table. KRL writes it as E1, RAPID as the first external axis; other
+    /// angle. The part's frame turns with the table (`krl.table_machine`, `rapid.table_unit`). KRL and RAPID write it; other
     /// posts refuse it. Leave it out if there is no turn table.
     pub table_angle: Option<f64>,
     /// Direction from the turn table's axis in which the arc stays, °: the table, whose axis stands at x = 0, y = 0 of the
     /// part and whose angle grows counter-clockwise as seen from above, turns with the torch, and the controller moves both
-    /// together. The part's frame must turn with the table. KRL and RAPID write it, as `table_angle`, in whose place it
-    /// stands. Leave it out if the table stands still.
+    /// together. KRL and RAPID write it, as `table_angle`, in whose place it stands. Leave it out if the table stands still.
     pub table_side: Option<f64>,
     /// Which part of a wall's lean the torch takes on (work angle), 0 to 1; 0, the default, leaves it as in the robot's
     /// section. Robots only.
@@ -81,7 +81,12 @@ impl Default for ProgramSettings {
 impl ProgramSettings {
     /// Whether there are axes beside the robot's.
     pub(crate) fn external_axes(&self) -> bool {
-        self.linear_axis.is_some() || self.table_angle.is_some() || self.table_side.is_some()
+        self.linear_axis.is_some() || self.has_table()
+    }
+
+    /// Whether there is a turn table under the part.
+    pub(crate) fn has_table(&self) -> bool {
+        self.table_angle.is_some() || self.table_side.is_some()
     }
 
     /// Whether the torch leans other than the robot's section says.

@@ -124,6 +124,7 @@ impl Track {
                     self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, attitude, leg: Leg::Part });
                 }
                 Instruction::PassStart { .. }
+                | Instruction::Above
                 | Instruction::PassEnd
                 | Instruction::WireFeed { .. }
                 | Instruction::Crater { .. }

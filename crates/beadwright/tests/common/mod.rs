@@ -31,6 +31,8 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
     // The way in is as long as that of the robots.
     all.dialects.gcode.as_mut().expect("just set").safe_z = 0.0;
     all.dialects.marlin = profile("fdm-abs-0.4").dialects.marlin;
+    all.dialects.krl.as_mut().expect("just set").table_machine = Some(2);
+    all.dialects.rapid.as_mut().expect("of the ABB cell").table_unit = Some("STN1".to_owned());
     (all.dialects.fanuc, all.dialects.inform, all.dialects.urscript) = (robots.fanuc, robots.inform, robots.urscript);
     all
 }
@@ -42,9 +44,9 @@ pub(crate) fn planned(part: &str, profile: &Profile) -> Plan {
 
 /// Reads a program of the built-in profiles back, whose files are known by their names.
 pub(crate) fn read_back(files: &BTreeMap<String, String>, main: &str) -> Result<ReadProgram, ReadError> {
-    let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
-    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
-    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
+    let words = |words: [&str; 4]| words.map(str::to_owned).to_vec();
+    let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)", "M62"]);
+    let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)", "M63"]);
     let mut find = |name: &str| {
         let names = ["", ".src", ".dat", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
         names.iter().find_map(|name| files.get(name)).cloned()

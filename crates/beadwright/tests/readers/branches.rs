@@ -25,11 +25,23 @@ pub fn resolve(text: &str, start: &mut f64) -> String {
     for line in text.lines() {
         let bare = line.trim();
         let (begins, ends) = (begins(bare), ends(bare));
+        let otherwise = ["ELSE", "else", "else:"].contains(&keyword(bare));
         if let Some(depth) = &mut skipped {
+            if otherwise && *depth == 0 {
+                // The other branch is run.
+                skipped = None;
+                open.push(true);
+                continue;
+            }
             *depth = (*depth + usize::from(begins)).checked_sub(usize::from(ends)).unwrap_or(usize::MAX);
             if *depth == usize::MAX {
                 skipped = None;
             }
+            continue;
+        }
+        if otherwise {
+            assert_eq!(open.pop(), Some(true), "{bare} without a branch");
+            skipped = Some(0);
             continue;
         }
         if begins {
@@ -40,7 +52,10 @@ pub fn resolve(text: &str, start: &mut f64) -> String {
         } else if ends && open.pop() == Some(true) {
         } else if is_reset(bare) && open.last() == Some(&true) {
             *start = 0.0;
-        } else if !SILENT.iter().any(|word| bare.starts_with(word)) {
+        } else if !SILENT.iter().any(|word| bare.starts_with(word))
+            && !bare.ends_with("_ARC( )")
+            && !bare.contains("#<tried> = ")
+        {
             if bare.starts_with("def ") {
                 open.push(false);
             }
@@ -56,8 +71,9 @@ pub fn resolve(text: &str, start: &mut f64) -> String {
 }
 
 /// Statements that deal with inputs only.
-const SILENT: [&str; 10] = [
-    "$TIMER",
+const SILENT: [&str; 11] = [
+    "$FLAG[1] = FALSE",
+    "set_runstate_",
     "INTERRUPT DECL 1",
     "INTERRUPT ON 1",
     "INTERRUPT OFF 1",
@@ -90,7 +106,11 @@ fn is_reset(line: &str) -> bool {
 }
 
 fn holds(line: &str, start: f64) -> bool {
-    if line.starts_with("thread ") || ["NOT $IN[", "not get_", "[#5399 LT 0]"].iter().any(|asks| line.contains(asks)) {
+    if line.starts_with("thread ")
+        || ["NOT $IN[", "NOT $FLAG[", "WHILE late", "not get_", "[#5399 LT 0]", "MACH_DEF_INDEX <> "]
+            .iter()
+            .any(|asks| line.contains(asks))
+    {
         return false;
     }
     let digits = |text: &str| -> f64 {

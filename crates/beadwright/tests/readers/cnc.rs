@@ -47,9 +47,25 @@ pub fn run(control: Control, text: &str, arc: [u32; 2]) -> Run {
         feed: None,
         out: Run::default(),
         ended: false,
+        start: 0.0,
     };
-    body.lines().for_each(|line| reader.line(line));
+    let lines: Vec<&str> = body.lines().collect();
+    let mut at = 0;
+    while at < lines.len() {
+        at = match reader.jump(lines[at]) {
+            Jump::No => {
+                reader.line(lines[at]);
+                at + 1
+            }
+            Jump::On => at + 1,
+            Jump::To(label) => {
+                let found = |line: &&str| line.split(' ').next() == Some(&label);
+                at + 1 + lines[at + 1..].iter().position(|line| found(line)).expect("the label comes behind")
+            }
+        };
+    }
     assert!(reader.ended, "no M30");
+    assert_eq!(reader.machine.lift, 0.0, "the program ends with a shift");
     Run { motion: reader.machine.finish(), ..reader.out }
 }
 
@@ -63,12 +79,79 @@ struct Reader {
     feed: Option<f64>,
     out: Run,
     ended: bool,
+    /// Where the program begins.
+    start: f64,
+}
+
+/// What comes after a line.
+enum Jump {
+    /// It is a block.
+    No,
+    /// It was a jump that is not taken, a label or an assignment.
+    On,
+    /// The line that begins with this.
+    To(String),
 }
 
 /// A word: its address, with its number if it has one, and its value.
 type Word<'a> = (&'a str, f64);
 
 impl Reader {
+    /// Branches in the control's own language: custom macro B, Sinumerik, and NC I's classic interpreter.
+    fn jump(&mut self, line: &str) -> Jump {
+        let (variable, label): (&str, fn(&str) -> String) = match self.control {
+            Control::Fanuc => ("#100", |n| format!("N{n}")),
+            Control::Siemens => ("R90", |n| format!("{n}:")),
+            Control::TwinCat => ("R90", |n| format!("N{}", n.trim_start_matches('K'))),
+        };
+        if let Some(start) = line.strip_prefix(&format!("{variable}=")) {
+            self.start = start.parse().unwrap();
+            return Jump::On;
+        }
+        let conditions: [(&str, &str, fn(f64, f64) -> bool); 2] = match self.control {
+            Control::Fanuc => [("IF[#100GT", "]GOTO", |a, b| a > b), ("IF[#100EQ", "]GOTO", |a, b| a == b)],
+            Control::Siemens => [("IF R90>", " GOTOF ", |a, b| a > b), ("IF R90==", " GOTOF ", |a, b| a == b)],
+            Control::TwinCat => [("@126 R90 K", " ", |a, b| a > b), ("@122 R90 K", " ", |a, b| a == b)],
+        };
+        for (head, between, holds) in conditions {
+            if let Some((bound, to)) = line.strip_prefix(head).and_then(|rest| rest.split_once(between)) {
+                let taken = holds(self.start, bound.parse().unwrap());
+                return if taken { Jump::To(label(to)) } else { Jump::On };
+            }
+        }
+        let always = match self.control {
+            Control::Fanuc => "GOTO",
+            Control::Siemens => "GOTOF ",
+            Control::TwinCat => "@100 ",
+        };
+        if let Some(to) = line.strip_prefix(always) {
+            return Jump::To(label(to));
+        }
+        let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        let is_label = match self.control {
+            Control::Fanuc => line.strip_prefix('N').is_some_and(digits),
+            Control::Siemens => line.strip_prefix("LB").and_then(|l| l.strip_suffix(':')).is_some_and(digits),
+            Control::TwinCat => line.strip_suffix(" G90").and_then(|l| l.strip_prefix('N')).is_some_and(digits),
+        };
+        if is_label { Jump::On } else { Jump::No }
+    }
+
+    /// Heights that are added to what follows, in a block of its own.
+    fn lift(&mut self, line: &str) -> bool {
+        let block = match line.split_once(' ') {
+            Some((number, block)) if number.starts_with('N') => block,
+            _ => line,
+        };
+        let head = match self.control {
+            Control::Fanuc => "G52 X0.0 Y0.0 Z",
+            Control::Siemens => "TRANS Z",
+            Control::TwinCat => "G58 X0.0 Y0.0 Z",
+        };
+        let height = block.strip_prefix(head).map(|height| height.parse().unwrap());
+        height.into_iter().for_each(|height| self.machine.lift = height);
+        height.is_some()
+    }
+
     fn line(&mut self, line: &str) {
         assert!(!line.is_empty() && !self.ended, "after M30 or empty: {line:?}");
         let comment = match self.control {
@@ -85,6 +168,9 @@ impl Reader {
             return;
         }
         if comment {
+            return;
+        }
+        if self.lift(line) {
             return;
         }
         assert!(!line.contains(['(', ';', '%', '#']), "{line}");

@@ -1,11 +1,11 @@
 //! A reader of FANUC TP programs (ASCII): runs `main` and what it calls, and checks heads, numbers and positions.
 
-use super::{Machine, Motion, Point};
+use super::{Machine, Motion, Stand, euler};
 use std::collections::BTreeMap;
 
 /// Runs the program of that name (file names as keys).
 pub fn run(files: &BTreeMap<String, String>, main: &str) -> Motion {
-    let mut reader = Reader { files, machine: Machine::default(), exact: true, homes: 0 };
+    let mut reader = Reader { files, machine: Machine::default(), exact: true, homes: 0, weaves: false, start: 0.0 };
     reader.program(main);
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
@@ -16,10 +16,13 @@ struct Reader<'a> {
     machine: Machine,
     exact: bool,
     homes: usize,
+    weaves: bool,
+    /// Where the program begins.
+    start: f64,
 }
 
 enum Position {
-    Pose(Point),
+    Pose(Stand),
     Joints,
 }
 
@@ -38,23 +41,44 @@ impl Reader<'_> {
         let positions = read_positions(positions.strip_suffix("/END\r\n").unwrap());
         // An arc's second position goes on on the next line.
         let lines = lines.replace("\r\n    :", "");
-        let (mut used, mut count) = (0, 0);
+        let (mut used, mut statements) = (0, Vec::new());
         for (i, line) in lines.lines().enumerate() {
             let (number, statement) = line.split_once(':').unwrap();
             assert_eq!(number.trim().parse::<usize>().unwrap(), i + 1, "{line}");
-            let statement = statement.strip_suffix(" ;").unwrap_or_else(|| panic!("no ; after {line}"));
-            count += 1;
-            self.statement(statement, &positions, &mut used);
+            statements.push(statement.strip_suffix(" ;").unwrap_or_else(|| panic!("no ; after {line}")).trim());
+        }
+        let (mut at, count) = (0, statements.len());
+        while at < count {
+            at = match self.jump(statements[at]) {
+                Some(label) => at + statements[at..].iter().position(|s| *s == label).expect("the label comes behind"),
+                None => {
+                    self.statement(statements[at], &positions, &mut used);
+                    at + 1
+                }
+            };
         }
         assert!(count <= 9999 && head.contains(&format!("LINE_COUNT = {count};")), "{name}");
-        assert_eq!(used, positions.len(), "{name}: positions that nothing uses");
+        assert!(used == positions.len() || lines.contains("JMP "), "{name}: positions that nothing uses");
+    }
+
+    /// The label to which a statement jumps: conditions on the register that says where to begin.
+    fn jump(&self, statement: &str) -> Option<&str> {
+        let label = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
+        if let Some(to) = statement.strip_prefix("JMP ") {
+            return Some(label(to));
+        }
+        let (condition, to) = statement.strip_prefix("IF R[90]")?.split_once(",JMP ")?;
+        let (sign, bound) = condition.split_at(1);
+        let bound: f64 = bound.parse().unwrap();
+        let taken = if sign == ">" { self.start > bound } else { self.start == bound };
+        taken.then(|| label(to))
     }
 
     fn statement(&mut self, statement: &str, positions: &[Position], used: &mut usize) {
         let words: Vec<&str> = statement.split_whitespace().collect();
         match words[..] {
             ["CALL", name] => self.program(name),
-            ["J", position, speed, "FINE"] => {
+            ["J", position, speed, "FINE"] | ["J", position, speed, "FINE", "Offset"] => {
                 assert!(speed.ends_with('%') && !self.machine.burns());
                 self.exact = true;
                 match next(position, positions, used) {
@@ -62,18 +86,30 @@ impl Reader<'_> {
                     Position::Pose(to) => self.machine.approach(*to),
                 }
             }
-            ["L", position, speed, end] => {
+            ["L", position, speed, end] | ["L", position, speed, end, "Offset"] => {
                 let Position::Pose(to) = next(position, positions, used) else { panic!("{statement}") };
                 self.machine.move_to(*to, mm_per_second(speed));
                 self.end(end);
             }
-            ["C", via, position, speed, end] => {
+            ["C", via, position, speed, end] | ["C", via, position, speed, end, "Offset"] => {
                 let Position::Pose(via) = next(via, positions, used) else { panic!("{statement}") };
                 let Position::Pose(to) = next(position, positions, used) else { panic!("{statement}") };
                 self.machine.arc_to(*via, *to, mm_per_second(speed));
                 self.end(end);
             }
+            ["Weave", "End"] => assert!(std::mem::take(&mut self.weaves), "no weave to end"),
+            ["Weave", sine] => {
+                assert!(sine.starts_with("Sine[") && self.machine.burns() && !self.weaves, "{statement}");
+                self.weaves = true;
+            }
+            ["OFFSET", "CONDITION", "PR[90]"] | ["PR[90]=LPOS-LPOS"] => {}
+            [height] if height.starts_with("PR[90,3]=") => self.machine.lift = height[9..].parse().unwrap(),
+            [start] if start.starts_with("R[90]=") => self.start = start[6..].parse().unwrap(),
+            [label] if label.starts_with("LBL[") => {}
+            // A jump that is not taken.
+            ["IF", ..] => {}
             ["Weld", word] => {
+                assert!(!self.weaves, "the arc is switched while the torch weaves");
                 assert!(self.exact, "the arc is switched at a blended point");
                 if word.starts_with("Start[") { self.machine.arc_on() } else { self.machine.arc_off() }
             }
@@ -97,11 +133,12 @@ impl Reader<'_> {
     }
 }
 
-/// Positions are used once each and in order.
+/// Positions are used in order; those of branches that are not taken are passed over.
 fn next<'a>(name: &str, positions: &'a [Position], used: &mut usize) -> &'a Position {
-    *used += 1;
-    assert_eq!(name, format!("P[{used}]"));
-    &positions[*used - 1]
+    let number: usize = name.strip_prefix("P[").and_then(|n| n.strip_suffix(']')).unwrap().parse().unwrap();
+    assert!(number > *used, "{name} behind P[{used}]");
+    *used = number;
+    &positions[number - 1]
 }
 
 fn mm_per_second(text: &str) -> f64 {
@@ -126,8 +163,9 @@ fn read_positions(text: &str) -> Vec<Position> {
             return Position::Joints;
         }
         assert!(block.contains("CONFIG : 'N U T, 0, 0, 0',"));
-        assert!(["W", "P", "R"].iter().all(|axis| value(axis, "deg").is_some()), "{block}");
-        Position::Pose(["X", "Y", "Z"].map(|axis| value(axis, "mm").unwrap()))
+        let [w, p, r] = ["W", "P", "R"].map(|axis| value(axis, "deg").unwrap());
+        let at = ["X", "Y", "Z"].map(|axis| value(axis, "mm").unwrap());
+        Position::Pose(Stand { at, tool: euler(r, p, w), axes: [None; 2] })
     };
     blocks.iter().enumerate().map(read).collect()
 }

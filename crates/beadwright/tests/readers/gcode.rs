@@ -34,6 +34,8 @@ pub fn run_flavour(text: &str, arc_on: u32, arc_off: u32) -> Motion {
             assert!(words.iter().all(|w| !"XYZ".contains(w.0)), "M code in a motion block: {line}");
             match m {
                 m if m == arc_on => reader.machine.arc_on(),
+                // At its end the program makes sure once more.
+                m if m == arc_off && !reader.machine.burns() => {}
                 m if m == arc_off => reader.machine.arc_off(),
                 m => ended |= m == 30,
             }
@@ -55,6 +57,10 @@ struct Reader {
 
 impl Reader {
     fn block(&mut self, words: &[(char, f64)], line: &str) {
+        if words.contains(&('G', 52.0)) {
+            self.machine.lift = words.iter().find(|w| w.0 == 'Z').unwrap().1;
+            return;
+        }
         if words.contains(&('G', 4.0)) {
             let time: Vec<f64> = words.iter().filter(|w| "PXF".contains(w.0)).map(|w| w.1).collect();
             assert_eq!(time.len(), 1, "{line}");

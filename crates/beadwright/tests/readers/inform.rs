@@ -1,11 +1,12 @@
 //! A reader of INFORM jobs: runs `main` and what it calls, and checks heads, counts and positions.
 
-use super::{Machine, Motion, Point, distance};
+use super::{Machine, Motion, Stand, distance, euler};
 use std::collections::BTreeMap;
 
 /// Runs the job of that name (file names as keys).
 pub fn run(files: &BTreeMap<String, String>, main: &str) -> Motion {
-    let mut reader = Reader { files, machine: Machine::default(), exact: true, arc_ended: false, homes: 0 };
+    let machine = Machine::default();
+    let mut reader = Reader { files, machine, exact: true, arc_ended: false, homes: 0, start: 0.0, shift: 0.0 };
     reader.job(main);
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
@@ -18,6 +19,10 @@ struct Reader<'a> {
     /// Whether the last move was along an arc.
     arc_ended: bool,
     homes: usize,
+    /// Where the program begins.
+    start: f64,
+    /// Height in the position variable of the shift, mm.
+    shift: f64,
 }
 
 impl Reader<'_> {
@@ -41,28 +46,49 @@ impl Reader<'_> {
         let begin = lines.iter().position(|l| *l == "NOP").unwrap();
         assert_eq!(lines.last(), Some(&"END"));
         assert!(lines.len() - begin < 9999);
-        let (mut used, mut circle) = (0, Vec::new());
-        for line in &lines[begin + 1..lines.len() - 1] {
-            self.instruction(line, &positions, &mut used, &mut circle);
+        let (mut used, mut circle, mut at) = (0, Vec::new(), begin + 1);
+        while at < lines.len() - 1 {
+            at = match self.jump(lines[at]) {
+                Some(label) => at + lines[at..].iter().position(|line| *line == label).expect("the label comes behind"),
+                None => {
+                    self.instruction(lines[at], &positions, &mut used, &mut circle);
+                    at + 1
+                }
+            };
         }
+        assert_eq!(self.machine.lift, 0.0, "{name} ends with a shift");
         assert!(circle.is_empty(), "{name} ends within an arc");
-        assert_eq!(used, positions.len(), "{name}: positions that nothing uses");
+        assert!(used == positions.len() || text.contains("JUMP "), "{name}: positions that nothing uses");
     }
 
-    fn instruction(&mut self, line: &str, positions: &[&str], used: &mut usize, circle: &mut Vec<Point>) {
+    /// The label to which a line jumps: conditions on the variable that says where to begin.
+    fn jump(&self, line: &str) -> Option<String> {
+        let jump = line.strip_prefix("JUMP ")?;
+        let Some((label, condition)) = jump.split_once(" IF D090") else { return Some(jump.to_owned()) };
+        let (sign, bound) = condition.split_at(1);
+        let bound: f64 = bound.parse().unwrap();
+        let taken = if sign == ">" { self.start > bound } else { self.start == bound };
+        taken.then(|| label.to_owned())
+    }
+
+    fn instruction(&mut self, line: &str, positions: &[&str], used: &mut usize, circle: &mut Vec<Stand>) {
         let words: Vec<&str> = line.split_whitespace().collect();
         if words[0].starts_with("MOV") {
-            assert_eq!(words[1], format!("C{used:05}"));
-            let numbers = positions[*used].strip_prefix(&format!("C{used:05}=")).unwrap();
-            *used += 1;
+            // Those of branches that are not taken are passed over.
+            let number: usize = words[1].strip_prefix('C').unwrap().parse().unwrap();
+            assert!(number >= *used, "{line}");
+            let numbers = positions[number].strip_prefix(&format!("C{number:05}=")).unwrap();
+            *used = number + 1;
             let numbers: Vec<f64> = numbers.split(',').map(|v| v.parse().unwrap()).collect();
             assert_eq!(numbers.len(), 6);
+            let tool = euler(numbers[5], numbers[4], numbers[3]);
+            let to = Stand { at: [numbers[0], numbers[1], numbers[2]], tool, axes: [None; 2] };
             if words[0] == "MOVJ" {
                 assert!(words[2].starts_with("VJ=") && !self.machine.burns());
                 match words.get(3) {
                     Some(level) => {
                         assert_eq!(*level, "PL=0");
-                        self.machine.approach([numbers[0], numbers[1], numbers[2]]);
+                        self.machine.approach(to);
                     }
                     None => self.homes += 1,
                 }
@@ -71,7 +97,7 @@ impl Reader<'_> {
             let speed: f64 = words[2].strip_prefix("V=").unwrap().parse().unwrap();
             let level: u32 = words[3].strip_prefix("PL=").unwrap().parse().unwrap();
             assert!((0.1..=1500.0).contains(&speed) && level <= 8, "{line}");
-            self.motion(words[0], [numbers[0], numbers[1], numbers[2]], speed, circle);
+            self.motion(words[0], to, speed, circle);
             self.exact = level == 0;
             return;
         }
@@ -91,23 +117,33 @@ impl Reader<'_> {
                 assert!(self.exact && seconds <= 655.35, "{line}");
                 self.machine.wait(seconds);
             }
+            ["WVON", file] => assert!(file.starts_with("WEV#(") && self.machine.burns(), "{line}"),
+            ["WVOF"] => assert!(self.machine.burns(), "{line}"),
+            ["SET", "D090", start] => self.start = start.parse().unwrap(),
+            ["SUB", "P090", "P090"] => self.shift = 0.0,
+            ["SETE", "P090", "(3)", micrometres] => self.shift = micrometres.parse::<f64>().unwrap() / 1000.0,
+            ["SFTON", "P090", "UF#(1)"] => self.machine.lift = self.shift,
+            ["SFTOF"] => self.machine.lift = 0.0,
+            [label] if label.starts_with("*L") => {}
+            // A jump that is not taken.
+            ["JUMP", _, "IF", _] => {}
             ["AOUT", "AO#(1)", feed] => self.machine.motion.feeds.push(feed.parse().unwrap()),
             _ => assert!(line.starts_with('\'') || words[0] == "DOUT", "{line}"),
         }
     }
 
     /// Three MOVC make an arc; the robot goes straight to the first.
-    fn motion(&mut self, word: &str, to: Point, speed: f64, circle: &mut Vec<Point>) {
+    fn motion(&mut self, word: &str, to: Stand, speed: f64, circle: &mut Vec<Stand>) {
         match (word, circle.len()) {
             // What separates two arcs.
-            ("MOVL", 0) if self.arc_ended && self.machine.at == Some(to) => self.arc_ended = false,
+            ("MOVL", 0) if self.arc_ended && self.machine.at == Some(to.at) => self.arc_ended = false,
             ("MOVL", 0) => {
                 self.machine.move_to(to, speed);
                 self.arc_ended = false;
             }
             ("MOVC", 0) => {
                 assert!(!self.arc_ended, "arcs in a row are one chain to the controller");
-                if self.machine.at.is_none_or(|at| distance(at, to) > 0.0) {
+                if self.machine.at.is_none_or(|at| distance(at, to.at) > 0.0) {
                     self.machine.move_to(to, speed);
                 }
                 circle.push(to);

@@ -1,12 +1,17 @@
 //! A reader of KRL modules: follows the calls of the main program and checks the grammar that matters. The arc is switched
 //! by an output, or by the forms of ArcTech, whose data must be declared and used.
 
-use super::{Machine, Motion, Point};
+use super::{Carried, Machine, Motion, Stand, euler};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Runs the program `main` (file names with extension as keys). `arc` is the line that switches the arc, without its
 /// value: `$OUT[2]`.
 pub fn run(files: &BTreeMap<String, String>, main: &str, arc: &str) -> Motion {
+    run_in(files, main, arc, None)
+}
+
+/// The same in a cell where the external axis with an index turns the table under the part.
+pub fn run_in(files: &BTreeMap<String, String>, main: &str, arc: &str, table: Option<usize>) -> Motion {
     for (name, text) in files.iter().filter(|(name, _)| name.ends_with(".src") || name.ends_with(".dat")) {
         check_module(name, text);
     }
@@ -16,15 +21,21 @@ pub fn run(files: &BTreeMap<String, String>, main: &str, arc: &str) -> Motion {
     let mut machine = Reader {
         files,
         arc,
-        machine: Machine::default(),
+        machine: Machine { table, ..Machine::default() },
         speed: None,
         blended: false,
         homes: 0,
         seam: None,
         triggers: Vec::new(),
         used: BTreeSet::new(),
+        shift: 0.0,
     };
     machine.module(main);
+    let stated = machine.machine.stand.expect("a move").axes;
+    for (name, axis) in ["E1 ", "E2 "].into_iter().zip(stated) {
+        let home = data.lines().find(|line| line.contains("XHOME=")).unwrap();
+        assert_eq!(home.contains(name), axis.is_some(), "home has no {name}: {home}");
+    }
     assert_eq!(machine.homes, 2, "a program begins and ends at home");
     machine.machine.finish()
 }
@@ -55,7 +66,7 @@ fn check_module(file: &str, text: &str) {
 
 /// Statements that neither move nor switch the arc.
 const KNOWN: [&str; 7] =
-    ["$OUT[", "$TOOL = ", "$BASE = ", "$APO.CDIS = ", "BAS(#", "GLOBAL INTERRUPT DECL ", "INTERRUPT ON "];
+    ["$OUT[", "$TOOL = ", "$ORI_TYPE = #VAR", "$APO.CDIS = ", "BAS(#", "GLOBAL INTERRUPT DECL ", "INTERRUPT ON "];
 
 struct Reader<'a> {
     files: &'a BTreeMap<String, String>,
@@ -72,6 +83,8 @@ struct Reader<'a> {
     triggers: Vec<&'a str>,
     /// Data of the module that were used.
     used: BTreeSet<String>,
+    /// Height in the shift of the base, mm.
+    shift: f64,
 }
 
 impl<'a> Reader<'a> {
@@ -98,6 +111,27 @@ impl<'a> Reader<'a> {
             } else if let Some(seconds) = line.strip_prefix("WAIT SEC ") {
                 assert!(!self.blended, "a wait at a blended point");
                 self.machine.wait(seconds.parse().unwrap());
+            } else if let Some(frame) = line.strip_prefix("$BASE = ") {
+                // A frame on an external kinematic turns with it.
+                let coupled = frame.strip_prefix("EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,");
+                let data = coupled.map_or(frame, |frame| frame.strip_suffix(')').unwrap());
+                let (base, shift) = data.split_once(':').unwrap_or((data, ""));
+                assert!(base.starts_with("BASE_DATA[") && (shift.is_empty() || shift.ends_with("_SHIFT")), "{line}");
+                self.machine.frame_turns = coupled.is_some();
+                self.machine.lift = if shift.is_empty() { 0.0 } else { self.shift };
+            } else if let Some((_, element)) = line.split_once("_SHIFT.Z = ") {
+                // The array is declared in the data of the main module.
+                let value = files
+                    .values()
+                    .flat_map(|text| text.lines())
+                    .find_map(|l| l.strip_prefix(element)?.strip_prefix('='));
+                self.shift = value.unwrap_or_else(|| panic!("{element} is not set")).parse().unwrap();
+            } else if let Some(kind) = line.strip_prefix("$CIRC_TYPE = ") {
+                self.machine.carried = match kind {
+                    "#BASE" => Carried::InTheFrame,
+                    "#PATH" => Carried::OnThePath,
+                    _ => panic!("{line}"),
+                };
             } else if let Some(feed) = line.strip_prefix("$ANOUT[1] = ") {
                 self.machine.motion.feeds.push(feed.parse().unwrap());
             } else if let Some(pose) = line.strip_prefix("PTP {") {
@@ -126,7 +160,7 @@ impl<'a> Reader<'a> {
     fn motion(&mut self, line: &str, data: &BTreeMap<String, String>) {
         let (word, rest) = line.split_once(' ').unwrap();
         let (rest, blended) = rest.strip_suffix(" C_DIS").map_or((rest, false), |rest| (rest, true));
-        let poses: Vec<Point> = if rest.starts_with('{') {
+        let poses: Vec<Stand> = if rest.starts_with('{') {
             rest.split("},").map(|pose| coordinates(pose.trim_end_matches('}'))).collect()
         } else {
             rest.split(", ").map(|name| coordinates(self.data(name, data).trim_end_matches('}'))).collect()
@@ -208,11 +242,11 @@ impl<'a> Reader<'a> {
 fn declared(text: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for line in text.split("\r\n").filter(|l| l.starts_with("DECL ")) {
-        let (left, value) = line.split_once('=').unwrap();
-        // Where a program begins.
-        if left.starts_with("DECL GLOBAL INT ") {
+        // Where a program begins, and heights of layers.
+        if line.starts_with("DECL GLOBAL ") {
             continue;
         }
+        let (left, value) = line.split_once('=').unwrap();
         let [_, kind, name] = left.split(' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
         assert!(["E6AXIS", "E6POS", "FDAT", "LDAT", "stArcDat_T"].contains(&kind) && name.len() <= 24, "{line}");
         assert!(kind != "stArcDat_T" || value.starts_with(&format!("{{WdatId[] \"{name}\",")), "{line}");
@@ -221,8 +255,8 @@ fn declared(text: &str) -> BTreeMap<String, String> {
     found
 }
 
-/// `{X 1.0,Y 2.0,Z 3.0,A …` to a point; every component has its decimals.
-fn coordinates(frame: &str) -> Point {
+/// `{X 1.0,Y 2.0,Z 3.0,A …`, perhaps with E1 and E2; every component has its decimals.
+fn coordinates(frame: &str) -> Stand {
     let fields: Vec<(&str, f64)> = frame
         .trim_start_matches('{')
         .split(',')
@@ -232,7 +266,12 @@ fn coordinates(frame: &str) -> Point {
             (axis, value.parse().unwrap())
         })
         .collect();
-    let axes: Vec<&str> = fields.iter().map(|f| f.0).collect();
-    assert_eq!(axes, ["X", "Y", "Z", "A", "B", "C"]);
-    [fields[0].1, fields[1].1, fields[2].1]
+    let names: Vec<&str> = fields.iter().map(|f| f.0).collect();
+    assert!(names.len() >= 6 && ["X", "Y", "Z", "A", "B", "C", "E1", "E2"].starts_with(&names), "{frame}");
+    let value = |i: usize| fields[i].1;
+    Stand {
+        at: [0, 1, 2].map(value),
+        tool: euler(value(3), value(4), value(5)),
+        axes: [6, 7].map(|i| fields.get(i).map(|field| field.1)),
+    }
 }

@@ -12,11 +12,58 @@ pub mod marlin;
 pub mod rapid;
 pub mod urscript;
 
+use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A point, mm.
 pub type Point = [f64; 3];
+
+/// How a program states that the torch stands: its point, its tool (z along the wire, out of the torch) in the program's
+/// frame, and the axes beside the robot's, as far as they are stated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stand {
+    pub at: Point,
+    pub tool: DQuat,
+    pub axes: [Option<f64>; 2],
+}
+
+impl From<Point> for Stand {
+    /// A torch that points straight down.
+    fn from(at: Point) -> Self {
+        Self { at, tool: DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0), axes: [None; 2] }
+    }
+}
+
+/// A, B, C of KRL; W, P, R of FANUC and Rx, Ry, Rz of Yaskawa are the same turns in the other order, °.
+pub fn euler(about_z: f64, about_y: f64, about_x: f64) -> DQuat {
+    let [z, y, x] = [about_z, about_y, about_x].map(f64::to_radians);
+    DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x)
+}
+
+/// How a controller carries the tool along an arc from the stand at its start to that at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Carried {
+    /// Turned evenly in the program's frame.
+    #[default]
+    InTheFrame,
+    /// Turned evenly as seen from the tangent.
+    OnThePath,
+    /// Held to the tangent as at the start, whatever the end says.
+    ByTheTangent,
+}
+
+impl Carried {
+    /// The tool at the fraction `part` of an arc that turns by `sweep` (radians) about the vertical.
+    fn along(self, from: DQuat, to: DQuat, sweep: f64, part: f64) -> DQuat {
+        let tangent = |part: f64| DQuat::from_rotation_z(sweep * part);
+        match self {
+            Self::InTheFrame => from.slerp(to, part),
+            Self::OnThePath => tangent(part) * from.slerp(tangent(-1.0) * to, part),
+            Self::ByTheTangent => tangent(part) * from,
+        }
+    }
+}
 
 /// What a program does, as a machine would see it.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -36,7 +83,12 @@ pub struct Motion {
 /// One path with the arc on.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Weld {
+    /// On the part, mm.
     pub points: Vec<Point>,
+    /// The tool at each point, in the part's frame.
+    pub tools: Vec<DQuat>,
+    /// How far the table has turned at each point, °.
+    pub turns: Vec<f64>,
     /// Speeds of the moves, mm/s.
     pub speeds: Vec<f64>,
 }
@@ -72,7 +124,16 @@ pub fn angle_between(a: f64, b: f64) -> f64 {
 #[derive(Default)]
 pub struct Machine {
     pub motion: Motion,
+    /// Which of the axes beside the robot's turns the table under the part, about the origin of the program's frame.
+    pub table: Option<usize>,
+    /// Whether the program's frame turns with the table.
+    pub frame_turns: bool,
+    /// How the tool is carried along arcs.
+    pub carried: Carried,
+    /// Height that the program adds to its points, mm.
+    pub lift: f64,
     pub at: Option<Point>,
+    pub stand: Option<Stand>,
     weld: Option<Weld>,
     /// Whether the torch stands over a bead that it has just laid, or comes from anywhere: the next way must be upright.
     over: bool,
@@ -81,8 +142,35 @@ pub struct Machine {
 impl Machine {
     pub fn arc_on(&mut self) {
         assert!(self.weld.is_none(), "arc on while it burns");
-        let start = self.at.expect("arc on before the first move");
-        self.weld = Some(Weld { points: vec![start], speeds: Vec::new() });
+        let start = self.stand.expect("arc on before the first move");
+        self.weld = Some(Weld::default());
+        self.lay(start, None);
+    }
+
+    /// The angle of the table where a stand says one, °.
+    fn turn(&self, stand: &Stand) -> f64 {
+        self.table.and_then(|axis| stand.axes[axis]).unwrap_or(0.0)
+    }
+
+    /// A point of the bead, on the part: a frame that does not turn with the table leaves the path standing in the cell
+    /// while the part turns away below it.
+    fn lay(&mut self, stand: Stand, speed: Option<f64>) {
+        let turn = self.turn(&stand);
+        let back = DQuat::from_rotation_z(if self.frame_turns { 0.0 } else { -turn.to_radians() });
+        let Some(weld) = &mut self.weld else { return };
+        let at = DVec3::from_array(stand.at) + DVec3::Z * self.lift;
+        weld.points.push((back * at).to_array());
+        weld.tools.push(back * stand.tool);
+        weld.turns.push(turn);
+        weld.speeds.extend(speed);
+    }
+
+    /// All stands of a program state the same axes.
+    fn arrive(&mut self, stand: Stand) {
+        let stated = |stand: &Stand| stand.axes.map(|axis| axis.is_some());
+        let same = self.stand.is_none_or(|before| stated(&before) == stated(&stand));
+        assert!(same, "an axis is stated here and not there: {stand:?}");
+        (self.at, self.stand) = (Some(stand.at), Some(stand));
     }
 
     pub fn arc_off(&mut self) {
@@ -102,59 +190,68 @@ impl Machine {
     }
 
     /// A move of the joints to a place above the part.
-    pub fn approach(&mut self, to: Point) {
+    pub fn approach(&mut self, to: impl Into<Stand>) {
         assert!(self.at.is_none() && self.weld.is_none(), "the joints move in the part");
-        (self.at, self.over) = (Some(to), true);
+        self.arrive(to.into());
+        self.over = true;
     }
 
-    pub fn move_to(&mut self, to: Point, speed: f64) {
+    pub fn move_to(&mut self, to: impl Into<Stand>, speed: f64) {
+        let stand = to.into();
+        let to = stand.at;
         if let Some(at) = self.at.filter(|_| self.over && self.weld.is_none()) {
             assert!(at[..2] == to[..2], "the torch goes across to {to:?} where it should go up or down");
             self.over = false;
         }
-        match (&mut self.weld, self.at) {
-            (Some(weld), Some(at)) => {
+        match (self.burns(), self.at) {
+            (true, Some(at)) => {
                 assert!(distance(at, to) >= 0.0099, "a weld move of no length at {to:?}");
-                weld.points.push(to);
-                weld.speeds.push(speed);
+                self.lay(stand, Some(speed));
             }
-            (None, Some(at)) => self.motion.travel += distance(at, to),
+            (false, Some(at)) => self.motion.travel += distance(at, to),
             (_, None) => {}
         }
-        self.at = Some(to);
+        self.arrive(stand);
     }
 
     /// A circular move over `via`, in chords so fine that its length is kept within 1e-5.
-    pub fn arc_to(&mut self, via: Point, to: Point, speed: f64) {
+    pub fn arc_to(&mut self, via: impl Into<Stand>, to: impl Into<Stand>, speed: f64) {
+        let (via, stand) = (via.into().at, to.into());
+        let to = stand.at;
         let from = self.at.expect("an arc from nowhere");
         let (centre, radius) = circle(from, via, to);
         let angle = |p: Point| (p[1] - centre[1]).atan2(p[0] - centre[0]);
         let sweep = angle_between(angle(from), angle(via)) + angle_between(angle(via), angle(to));
         assert!(sweep.abs() < std::f64::consts::PI, "an arc of half a turn or more to {to:?}");
         assert!(sweep.abs() > 0.017 && distance(from, via) >= 0.1 && distance(via, to) >= 0.1, "a tiny arc to {to:?}");
-        self.turn_to(centre, radius, sweep, to, speed);
+        self.turn_to(centre, radius, sweep, stand, speed);
     }
 
     /// A circular move about `centre`; `sweep` in radians, counter-clockwise above 0.
-    pub fn turn_to(&mut self, centre: Point, radius: f64, sweep: f64, to: Point, speed: f64) {
-        let from = self.at.expect("an arc from nowhere");
+    pub fn turn_to(&mut self, centre: Point, radius: f64, sweep: f64, to: impl Into<Stand>, speed: f64) {
+        let end: Stand = to.into();
+        let (begin, to) = (self.stand.expect("an arc from nowhere"), end.at);
+        let from = begin.at;
         assert!((distance(to, centre) - radius).abs() < 0.01, "the end {to:?} does not lie on the circle");
         assert!(distance(from, to) >= 0.0099, "a weld move of no length at {to:?}");
         let start = (from[1] - centre[1]).atan2(from[0] - centre[0]);
         let chords = (sweep.abs() / 0.01).ceil().max(1.0);
-        self.at = Some(to);
         self.motion.circles += 1;
-        let Some(weld) = self.weld.as_mut() else {
-            self.motion.travel += radius * sweep.abs();
-            return;
+        let carried = self.carried;
+        let along = |part: f64| {
+            let angle = start + sweep * part;
+            let at = [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin(), to[2]];
+            let axis = |i: usize| Some(begin.axes[i]? + (end.axes[i]? - begin.axes[i]?) * part);
+            Stand { at, tool: carried.along(begin.tool, end.tool, sweep, part), axes: [0, 1].map(axis) }
         };
-        for i in 1..chords as usize {
-            let angle = start + sweep * i as f64 / chords;
-            weld.points.push([centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin(), to[2]]);
-            weld.speeds.push(speed);
+        if self.burns() {
+            (1..chords as usize).for_each(|i| self.lay(along(i as f64 / chords), Some(speed)));
+            self.lay(Stand { at: to, ..along(1.0) }, Some(speed));
+        } else {
+            self.motion.travel += radius * sweep.abs();
         }
-        weld.points.push(to);
-        weld.speeds.push(speed);
+        // A tool that keeps to the tangent arrives as the arc leaves it.
+        self.arrive(Stand { tool: along(1.0).tool, ..end });
     }
 
     /// G2 and G3: the centre as seen from the start.

@@ -1,10 +1,12 @@
 //! A reader of RAPID modules: runs `main`, loads and unloads what it says, and checks the grammar that matters.
 
-use super::{Machine, Motion, Point};
+use super::{Carried, Machine, Motion, Stand};
+use glam::DQuat;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Shapes of the data: n number, b truth, s text, brackets lists; A is arcdata.
-const SHAPES: [(&str, &str); 8] = [
+const SHAPES: [(&str, &str); 9] = [
+    ("weavedata", "(nnnnnnnnnnnnnnn)"),
     ("tooldata", "(b((nnn)(nnnn))(n(nnn)(nnnn)nnn))"),
     ("wobjdata", "(bbs((nnn)(nnnn))((nnn)(nnnn)))"),
     ("jointtarget", "((nnnnnn)(nnnnnn))"),
@@ -17,6 +19,11 @@ const SHAPES: [(&str, &str); 8] = [
 
 /// Runs the program of that name (file names as keys). `output` switches the arc where there is no RobotWare Arc.
 pub fn run(files: &BTreeMap<String, String>, main: &str, output: &str) -> Motion {
+    run_in(files, main, output, None)
+}
+
+/// The same in a cell where the external axis with an index turns the table under the part.
+pub fn run_in(files: &BTreeMap<String, String>, main: &str, output: &str, table: Option<usize>) -> Motion {
     let restarts = files.values().any(|text| text.contains("nStart"));
     let files = &if restarts { super::branches::resolved(files) } else { files.clone() };
     let modules: BTreeMap<String, Module> = files
@@ -35,11 +42,22 @@ pub fn run(files: &BTreeMap<String, String>, main: &str, output: &str) -> Motion
         machine: Machine::default(),
         exact: true,
         homes: 0,
+        home: None,
+        active: BTreeSet::new(),
     };
+    // An arc is welded with the tool turned as seen from the path unless the program says otherwise.
+    reader.machine.carried = Carried::OnThePath;
+    reader.machine.table = table;
     reader.check_names();
     let body = &modules[main].routines["main"];
-    assert_eq!((&*body[0], &*body[1]), ("ConfL \\Off", "SingArea \\Wrist"));
-    assert!(body[2].starts_with("MoveAbsJ ") && body.last().unwrap().starts_with("MoveAbsJ "), "home first and last");
+    // Configurations are unknown, before anything moves.
+    let first = body.iter().position(|line| line.starts_with("Move")).unwrap();
+    let set = |line: &str| body[..first].iter().any(|l| l == line);
+    assert!(["ConfL \\Off", "ConfJ \\Off", "SingArea \\Wrist"].into_iter().all(set), "{body:?}");
+    assert!(
+        body[first].starts_with("MoveAbsJ ") && body.last().unwrap().starts_with("MoveAbsJ "),
+        "home first and last"
+    );
     reader.routine(main, "main");
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
@@ -52,6 +70,12 @@ fn pgf(text: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
+/// Routines of the watch over the arc.
+const WATCH: [&str; 2] = ["ArcBurns", "tArcLost"];
+
+/// Statements of that watch.
+const WATCHING: [&str; 6] = ["IDelete", "CONNECT", "ISignalDI", "ISleep", "IWatch", "TriggStopProc"];
+
 struct Datum {
     kind: String,
     local: bool,
@@ -61,6 +85,8 @@ struct Datum {
 struct Module {
     data: BTreeMap<String, Datum>,
     routines: BTreeMap<String, Vec<String>>,
+    /// Heights added to layers, mm.
+    heights: Vec<f64>,
 }
 
 impl Module {
@@ -78,12 +104,18 @@ impl Module {
             "a module is called as its file"
         );
         assert_eq!(lines.last(), Some(&"ENDMODULE"));
-        let mut module = Self { data: BTreeMap::new(), routines: BTreeMap::new() };
+        let mut module = Self { data: BTreeMap::new(), routines: BTreeMap::new(), heights: Vec::new() };
         let mut open: Option<(String, Vec<String>)> = None;
         for line in &lines[1..lines.len() - 1] {
-            if let Some(name) = line.strip_prefix("PROC ").and_then(|l| l.strip_suffix("()")) {
+            let routine = line.strip_prefix("PROC ").and_then(|l| l.strip_suffix("()"));
+            if let Some(name) = routine.or_else(|| line.strip_prefix("TRAP ")) {
                 assert!(open.replace((name.to_owned(), Vec::new())).is_none(), "{file}: a PROC in a PROC");
-            } else if *line == "ENDPROC" {
+            } else if open.as_ref().is_some_and(|(name, _)| WATCH.contains(&&**name))
+                && !["ENDPROC", "ENDTRAP"].contains(line)
+            {
+                // What runs where the arc is out, and nothing else.
+                assert!(!line.starts_with("Move"), "{line}");
+            } else if *line == "ENDPROC" || *line == "ENDTRAP" {
                 let (name, body) = open.take().expect("ENDPROC without PROC");
                 assert!(module.routines.insert(name, body).is_none(), "{file}: two routines of one name");
             } else {
@@ -100,11 +132,18 @@ impl Module {
 
     fn declare(&mut self, statement: &str) {
         assert!(self.routines.is_empty(), "declared behind a routine: {statement}");
+        if statement == "VAR intnum iArc" {
+            return;
+        }
         let (head, value) = statement.split_once(":=").unwrap_or_else(|| panic!("no value: {statement}"));
         let words: Vec<&str> = head.split(' ').collect();
         let (local, kind, name) = match words[..] {
             ["LOCAL", "PERS" | "CONST", kind, name] => (true, kind, name),
-            ["PERS", "num", "nStart"] => return,
+            ["PERS", "num", "nStart"] | ["PERS", "restartdata", "rdArc"] => return,
+            ["PERS", "num", array] if array.starts_with("nDz{") => {
+                self.heights = value.trim_matches(['[', ']']).split(',').map(|v| v.parse().unwrap()).collect();
+                return;
+            }
             ["TASK", "PERS", kind, name] | ["CONST", kind, name] => (false, kind, name),
             _ => panic!("no declaration: {statement}"),
         };
@@ -118,8 +157,8 @@ impl Module {
 /// A value as written.
 enum Literal {
     Number(f64),
-    Truth,
-    Text,
+    Truth(bool),
+    Text(String),
     List(Vec<Literal>),
 }
 
@@ -127,8 +166,8 @@ impl Literal {
     fn shape(&self) -> String {
         match self {
             Self::Number(_) => "n".to_owned(),
-            Self::Truth => "b".to_owned(),
-            Self::Text => "s".to_owned(),
+            Self::Truth(_) => "b".to_owned(),
+            Self::Text(_) => "s".to_owned(),
             Self::List(parts) => format!("({})", parts.iter().map(Self::shape).collect::<String>()),
         }
     }
@@ -136,6 +175,16 @@ impl Literal {
     fn part(&self, index: usize) -> &Self {
         let Self::List(parts) = self else { panic!("no list") };
         &parts[index]
+    }
+
+    fn truth(&self) -> bool {
+        let Self::Truth(value) = self else { panic!("no truth") };
+        *value
+    }
+
+    fn text(&self) -> &str {
+        let Self::Text(value) = self else { panic!("no text") };
+        value
     }
 
     fn number(&self) -> f64 {
@@ -150,8 +199,8 @@ fn literal(text: &str) -> Literal {
         return Literal::List(parts(inside).into_iter().map(literal).collect());
     }
     match text {
-        "TRUE" | "FALSE" => Literal::Truth,
-        _ if text.starts_with('"') && text.ends_with('"') => Literal::Text,
+        "TRUE" | "FALSE" => Literal::Truth(text == "TRUE"),
+        _ if text.starts_with('"') && text.ends_with('"') => Literal::Text(text.trim_matches('"').to_owned()),
         _ => {
             assert!(!text.starts_with("-0.") || text.bytes().any(|b| (b'1'..=b'9').contains(&b)), "{text}");
             Literal::Number(text.parse().unwrap_or_else(|_| panic!("{text} is no number")))
@@ -206,6 +255,10 @@ struct Reader<'a> {
     /// Whether the robot stands still: the motion before was exact and was waited for.
     exact: bool,
     homes: usize,
+    /// Which external axes home states.
+    home: Option<[bool; 2]>,
+    /// Mechanical units beside the robot that are active.
+    active: BTreeSet<String>,
 }
 
 impl Reader<'_> {
@@ -235,11 +288,33 @@ impl Reader<'_> {
     fn statement(&mut self, module: &str, statement: &str) {
         let (word, rest) = statement.split_once(' ').unwrap_or((statement, ""));
         match word {
-            "ConfL" | "SingArea" => {}
+            "ConfL" | "ConfJ" | "SingArea" => {}
+            "CirPathMode" => {
+                self.machine.carried = match rest {
+                    "\\ObjectFrame" => Carried::InTheFrame,
+                    "\\PathFrame" => Carried::OnThePath,
+                    _ => panic!("{statement}"),
+                };
+            }
+            "PDispSet" => {
+                let layer = rest.strip_prefix("[[0,0,nDz{").and_then(|r| r.strip_suffix("}],[1,0,0,0]]")).unwrap();
+                self.machine.lift = self.modules[self.main].heights[layer.parse::<usize>().unwrap() - 1];
+            }
+            "PDispOff" => self.machine.lift = 0.0,
+            "ActUnit" => assert!(self.active.insert(rest.to_owned()), "{rest} is active already"),
+            "ArcBurns" => assert!(self.machine.burns(), "the arc is looked at before it is lit"),
+            _ if WATCHING.contains(&word) => {}
             "MoveAbsJ" => {
                 assert!(!self.machine.burns());
                 let [target, speed, zone, tool] = parts(rest)[..] else { panic!("{statement}") };
-                self.datum(module, target, "jointtarget");
+                let home = &self.datum(module, target, "jointtarget").value;
+                let stated = [0, 1].map(|i| home.part(1).part(i).number() < 9e9);
+                let stand = self.machine.stand;
+                assert!(
+                    stand.is_none_or(|stand| stand.axes.map(|axis| axis.is_some()) == stated),
+                    "an axis is missing at home"
+                );
+                self.home = Some(stated);
                 self.common(module, speed, zone, tool);
                 self.homes += 1;
             }
@@ -289,15 +364,23 @@ impl Reader<'_> {
             return;
         }
         assert!(self.exact, "the arc is switched while the robot moves");
-        if value == "1" { self.machine.arc_on() } else { self.machine.arc_off() }
+        match value {
+            "1" => self.machine.arc_on(),
+            // At its end the program makes sure once more.
+            _ if self.machine.burns() => self.machine.arc_off(),
+            _ => {}
+        }
     }
 
     fn motion(&mut self, module: &str, word: &str, rest: &str) {
         let mut pieces = parts(rest);
-        let place = |text: &str| -> Point {
+        let place = |text: &str| -> Stand {
             let target = literal(text);
             check("robtarget", &target);
-            [0, 1, 2].map(|i| target.part(0).part(i).number())
+            let [w, x, y, z] = [0, 1, 2, 3].map(|i| target.part(1).part(i).number());
+            let axis = |i: usize| Some(target.part(3).part(i).number()).filter(|value| *value < 9e9);
+            let at = [0, 1, 2].map(|i| target.part(0).part(i).number());
+            Stand { at, tool: DQuat::from_xyzw(x, y, z, w), axes: [0, 1].map(axis) }
         };
         let circular = matches!(word, "MoveC" | "ArcC" | "ArcCEnd");
         let via = circular.then(|| place(pieces.remove(0)));
@@ -319,6 +402,8 @@ impl Reader<'_> {
             return;
         }
         let [_, speed, seam, weld, zone, tool] = pieces[..] else { panic!("{rest}") };
+        let (weld, weave) = weld.split_once("\\Weave:=").map_or((weld, None), |(weld, weave)| (weld, Some(weave)));
+        weave.into_iter().for_each(|weave| assert!(self.datum(module, weave, "weavedata").local));
         let approach = self.common(module, speed, zone, tool);
         self.datum(module, seam, "seamdata");
         let speed = self.datum(module, weld, "welddata").value.part(0).number();
@@ -347,7 +432,11 @@ impl Reader<'_> {
         }
         let (tool, wobj) = tool.split_once("\\WObj:=").expect("a work object");
         self.datum(module, tool, "tooldata");
-        self.datum(module, wobj, "wobjdata");
+        let wobj = &self.datum(module, wobj, "wobjdata").value;
+        let (fixed, unit) = (wobj.part(1).truth(), wobj.part(2).text());
+        assert_eq!(fixed, unit.is_empty(), "a frame is fixed, or moves with a unit");
+        assert!(fixed || self.active.contains(unit), "{unit} is not active");
+        self.machine.frame_turns = !fixed;
         self.datum(module, speed, "speeddata").value.part(0).number()
     }
 

@@ -1,6 +1,7 @@
 //! A reader of URScript: the functions of one program, run as it calls them; poses in the part's frame.
 
-use super::{Machine, Motion, Point, distance};
+use super::{Carried, Machine, Motion, Stand, distance};
+use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 
 /// Runs a program; `arc` is the number of the output that switches the arc.
@@ -21,12 +22,15 @@ pub fn run(text: &str, arc: u32) -> Motion {
                 assert!(functions.insert(function, body).is_none());
             }
             (None, Some((_, body))) => body.push(line),
+            // A function of one line that lifts the frame.
+            (None, None) if line.starts_with("def lifted(height):") => open = Some(("lifted".to_owned(), Vec::new())),
             (None, None) => body.push(line),
             (Some(_), Some(_)) => panic!("{line} in another function"),
         }
     }
     assert!(open.is_none());
-    let mut reader = Reader { functions, arc, machine: Machine::default(), blend: 0.0, homes: 0, before: 0.0 };
+    let mut reader =
+        Reader { functions, arc, machine: Machine::default(), blend: 0.0, homes: 0, before: 0.0, heights: Vec::new() };
     body.iter().for_each(|line| reader.statement(line));
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
@@ -40,6 +44,8 @@ struct Reader<'a> {
     blend: f64,
     before: f64,
     homes: usize,
+    /// Heights added to layers, mm.
+    heights: Vec<f64>,
 }
 
 impl Reader<'_> {
@@ -55,24 +61,34 @@ impl Reader<'_> {
             let (output, value) = rest.strip_suffix(')').unwrap().split_once(", ").unwrap();
             if output.parse::<u32>().unwrap() == self.arc {
                 assert_eq!(self.blend, 0.0, "the arc is switched at a blended point");
-                if value == "True" { self.machine.arc_on() } else { self.machine.arc_off() }
+                match value {
+                    "True" => self.machine.arc_on(),
+                    // At its end the program makes sure once more.
+                    _ if self.machine.burns() => self.machine.arc_off(),
+                    _ => {}
+                }
             }
         } else if let Some(seconds) = line.strip_prefix("sleep(") {
             assert_eq!(self.blend, 0.0, "a wait at a blended point");
             self.machine.wait(seconds.strip_suffix(')').unwrap().parse().unwrap());
         } else if let Some(feed) = line.strip_prefix("set_standard_analog_out(0, ") {
             self.machine.motion.feeds.push(feed.strip_suffix(')').unwrap().parse().unwrap());
+        } else if let Some(heights) = line.strip_prefix("global layer_dz = [") {
+            self.heights = heights.trim_end_matches(']').split(", ").map(|v| v.parse().unwrap()).collect();
+        } else if let Some(layer) = line.strip_prefix("global part_frame = lifted(layer_dz[") {
+            assert!(self.functions["lifted"][0].contains("p[0.0,0.0,height/1000.0,0.0,0.0,0.0]"));
+            self.machine.lift = self.heights[layer.trim_end_matches("])").parse::<usize>().unwrap()];
         } else if let Some(function) = line.strip_suffix("()") {
             let body = self.functions.get(function).unwrap_or_else(|| panic!("{function} is not there yet")).clone();
             body.iter().for_each(|line| self.statement(line));
         } else {
-            let known = ["set_tcp(p[", "global part_frame = p[", "waited = "];
+            let known = ["set_tcp(p[", "global part_frame = p[", "global place = p[", "waited = ", "tried = "];
             assert!(known.iter().any(|k| line.starts_with(k)), "{line}");
         }
     }
 
     fn motion(&mut self, line: &str) {
-        let poses: Vec<Point> = line.split("pose_trans(part_frame, p[").skip(1).map(pose).collect();
+        let poses: Vec<Stand> = line.split("pose_trans(part_frame, p[").skip(1).map(pose).collect();
         let value = |key: &str| -> Option<f64> {
             let rest = line.split(&format!(", {key}=")).nth(1)?;
             Some(rest.split([',', ')']).next()?.parse().unwrap())
@@ -80,7 +96,15 @@ impl Reader<'_> {
         let (speed, blend) = (value("v").unwrap() * 1000.0, value("r").unwrap_or(0.0) * 1000.0);
         assert!(speed > 0.0 && value("a").unwrap() > 0.0);
         let to = *poses.last().unwrap();
-        let length = self.machine.at.map_or(f64::INFINITY, |at| distance(at, to));
+        let length = self.machine.at.map_or(f64::INFINITY, |at| distance(at, to.at));
+        // The orientation goes to that of the end, or keeps to the tangent.
+        self.machine.carried = match value("mode") {
+            Some(1.0) => Carried::ByTheTangent,
+            mode => {
+                assert_eq!(mode.unwrap_or(0.0), 0.0, "{line}");
+                Carried::InTheFrame
+            }
+        };
         assert!(self.blend < 0.5 * length.min(self.before) || self.blend == 0.0, "blends overlap: {line}");
         match poses[..] {
             [to] if line.starts_with("movel") => self.machine.move_to(to, speed),
@@ -93,8 +117,9 @@ impl Reader<'_> {
 }
 
 /// Metres to mm.
-fn pose(text: &str) -> Point {
+fn pose(text: &str) -> Stand {
     let numbers: Vec<f64> = text.split(']').next().unwrap().split(',').map(|v| v.parse().unwrap()).collect();
     assert_eq!(numbers.len(), 6);
-    [0, 1, 2].map(|i| numbers[i] * 1000.0)
+    let tool = DQuat::from_scaled_axis(DVec3::new(numbers[3], numbers[4], numbers[5]));
+    Stand { at: [0, 1, 2].map(|i| numbers[i] * 1000.0), tool, axes: [None; 2] }
 }

@@ -147,8 +147,13 @@ impl Reader<'_> {
     /// which nothing is known, and labels that do not come behind.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
         let flat = compact(text);
-        let (condition, label) = flat.strip_prefix("IF")?.split_once(",JMP")?;
-        let taken = holds(condition, |register| self.registers.get(register).copied())?;
+        let (taken, label) = match flat.strip_prefix("JMP") {
+            Some(label) => (true, label),
+            None => {
+                let (condition, label) = flat.strip_prefix("IF")?.split_once(",JMP")?;
+                (holds(condition, |register| self.registers.get(register).copied())?, label)
+            }
+        };
         let to = behind.iter().position(|(_, text)| compact(text) == label)?;
         Some(if taken { to + 2 } else { 0 })
     }

@@ -126,14 +126,14 @@ impl Section for Fanuc {
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
         // The weld schedule gives no speed while nothing is welded.
         if self.speed == FanucSpeed::WeldSpeed {
             self.speed = FanucSpeed::MillimetresPerSecond;
         }
     }
 
-    fn longest_pass(&self) -> Option<usize> {
+    fn longest_pass(&self, _program: &ProgramSettings) -> Option<usize> {
         Some(self.max_points)
     }
 

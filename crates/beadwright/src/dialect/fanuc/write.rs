@@ -46,6 +46,10 @@ pub(super) struct FanucTp {
     main: Program,
     /// Label behind the present pass.
     skip: Option<usize>,
+    /// Label behind the way from the pass before.
+    way: Option<usize>,
+    /// How the torch swings at present, as it is written.
+    weaving: Option<String>,
 }
 
 /// Lines and positions of one program.
@@ -101,8 +105,8 @@ impl FanucTp {
         let (travel_speed, orientation) = (job.weld.travel.speed, fanuc.orientation);
         let comment = ascii(&job.part).replace('"', "_");
         let main = Program::default();
-        let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, fanuc, program, weave, values, orientation, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None }
+        let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave());
+        Self { name, comment, supplies, fanuc, program, weave, values, orientation, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None, way: None, weaving: None }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
@@ -126,18 +130,44 @@ impl FanucTp {
         label.into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, program: &mut Program, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(program, number);
         if self.program.restart {
-            let (register, label) = (self.fanuc.restart_register, program.label());
+            let (register, label, behind) = (self.fanuc.restart_register, program.label(), program.label());
             program.line(&format!("  IF R[{register}]=0,JMP LBL[{label}]"));
             self.instruction(program, Instruction::Approach { to: above });
             program.line(&format!("  R[{register}]=0"));
+            program.line(&format!("  JMP LBL[{behind}]"));
             program.line(&format!("  LBL[{label}]"));
+            self.way = Some(behind);
         }
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&mut self, program: &mut Program) {
+        self.way.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
         self.lines(program, &self.fanuc.hooks.pass_start);
+    }
+
+    /// Swings the torch so that a period is as long at any speed (mm/s).
+    fn weave_at(&mut self, program: &mut Program, speed: f64) {
+        let Some(weave) = &self.weave else { return };
+        let [hertz, amplitude] = [speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
+        let dwell = fixed(weave.dwell, 3);
+        let wanted = format!("[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]");
+        if self.weaving.as_ref() != Some(&wanted) {
+            self.weave_end(program);
+            program.line(&format!("  Weave Sine{wanted}"));
+            self.weaving = Some(wanted);
+        }
+    }
+
+    fn weave_end(&mut self, program: &mut Program) {
+        if self.weaving.take().is_some() {
+            program.line("  Weave End");
+        }
     }
 
     /// The height to be added to a layer, which is set in its program.
@@ -204,13 +234,9 @@ impl FanucTp {
                 program.line(&format!("  !pass {pass} {}", kind.name()));
                 self.lines(program, &self.fanuc.arc_on);
                 self.lines(program, &self.fanuc.hooks.arc_established);
-                if let Some(weave) = &self.weave {
-                    let [hertz, amplitude] = [self.nominal_speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
-                    let dwell = fixed(weave.dwell, 3);
-                    program.line(&format!("  Weave Sine[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]"));
-                }
             }
             Instruction::Weld { to, circle, speed, last, .. } => {
+                self.weave_at(program, speed);
                 let via = circle.map(|circle| self.pose(program, circle.via));
                 let number = self.pose(program, to);
                 let end = if last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
@@ -233,13 +259,12 @@ impl FanucTp {
             }
             Instruction::Dwell { seconds } => wait(program, seconds),
             Instruction::ArcOff { .. } => {
-                if self.weave.is_some() {
-                    program.line("  Weave End");
-                }
+                self.weave_end(program);
                 self.lines(program, &self.fanuc.hooks.before_arc_off);
                 self.lines(program, &self.fanuc.arc_off);
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(program, pass, above),
+            Instruction::Above => self.above(program),
             Instruction::PassEnd => {
                 self.lines(program, &self.fanuc.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
@@ -253,6 +278,10 @@ fn wait(program: &mut Program, seconds: f64) {
 }
 
 impl Writer for FanucTp {
+    fn weaves(&self) -> bool {
+        self.weave.is_some()
+    }
+
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.name.truncate(MAX_NAME - SUFFIX - self.digits);
@@ -266,6 +295,7 @@ impl Writer for FanucTp {
         self.frames(&mut main);
         self.home(&mut main);
         self.lines(&mut main, &self.fanuc.start);
+        self.lines(&mut main, &self.fanuc.hooks.watch);
         self.main = main;
         Vec::new()
     }
@@ -304,6 +334,7 @@ impl Writer for FanucTp {
 
     fn end(&mut self) -> Vec<Chunk> {
         let mut main = std::mem::take(&mut self.main);
+        self.lines(&mut main, &self.fanuc.hooks.all_off);
         self.lines(&mut main, &self.fanuc.end);
         self.home(&mut main);
         vec![Chunk { file: format!("{}.ls", self.name), text: main.text(&self.name, &self.comment) }]

@@ -1,12 +1,14 @@
 //! CNC G-code.
 
 mod block;
+mod branches;
+mod control;
 mod hints;
-mod o_words;
 mod read;
 mod section;
 pub(super) mod write;
 
+pub use control::GcodeControl;
 pub use section::{Gcode, GcodeComments};
 
 use super::Dialect;

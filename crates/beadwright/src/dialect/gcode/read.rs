@@ -7,7 +7,7 @@
 use super::block::{Block, Code, Line, begins_block};
 use crate::dialect::reading::trace::{Curve, Step, Trace};
 use super::hints;
-use super::o_words::{OWords, Seen};
+use super::branches::{Branches, Seen, without_number};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram, words};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -15,13 +15,16 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// Inch in mm.
 const INCH: f64 = 25.4;
 
+/// What becomes of offsets that a program sets.
+const SHIFTS: &str = "shifts what follows, which is not applied";
+
 /// Codes in tenths that affect neither position nor metal.
 const HARMLESS_G: [i32; 21] =
     [40, 90, 100, 110, 170, 210, 290, 400, 490, 540, 610, 640, 690, 800, 940, 971, 980, 990, 430, 434, 51];
 
 /// Codes in tenths whose axis words do not end a motion: offsets, levelling, probing, cycles, turned coordinates.
-const AXES_OF_THEIR_OWN: [i32; 26] = [
-    100, 110, 290, 300, 310, 382, 383, 384, 385, 500, 510, 520, 680, 730, 740, 760, 810, 820, 830, 840, 850, 860, 870,
+const AXES_OF_THEIR_OWN: [i32; 28] = [
+    100, 110, 290, 300, 310, 382, 383, 384, 385, 500, 510, 520, 580, 590, 680, 730, 740, 760, 810, 820, 830, 840, 850, 860, 870,
     880, 890, 921,
 ];
 
@@ -41,13 +44,14 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     let hints = hints::of(text);
     let mut reader = Reader::new(&hints, options);
     let mut block = Block::new();
-    let mut o_words = OWords::default();
+    let mut branches = Branches::default();
     for (i, line) in text.as_bytes().split(|&b| b == b'\n').enumerate() {
-        match o_words.see(line) {
+        let line = without_number(line);
+        match branches.see(line) {
             Seen::Block => {}
             Seen::Done => continue,
             Seen::Unknown => {
-                reader.trace.note("an O word", "is not followed: its lines were read once", i + 1);
+                reader.trace.note("a branch", "is not followed: its lines were read once", i + 1);
                 continue;
             }
         }
@@ -161,6 +165,12 @@ impl Reader {
             self.trace.set_arc(true, number);
         } else if self.off.iter().any(|c| c.is_macro(&compact)) {
             self.trace.set_arc(false, number);
+        } else if let Some(rest) = words::strip_word(text.trim(), "TRANS") {
+            // Siemens: a shift of what follows.
+            let zero = rest.split_whitespace().all(|word| words::number(&word[1..]) == Some(0.0));
+            if !zero {
+                self.trace.note("TRANS", SHIFTS, number);
+            }
         } else {
             let name = text.trim().split([' ', '=', '\t']).next().unwrap_or_default();
             self.trace.note(name, "is not understood and was left out", number);
@@ -209,6 +219,13 @@ impl Reader {
                 921..=923 => self.offset = DVec3::ZERO,
                 930 | 940 => self.inverse_time = code == 930,
                 40 | 280 | 530 | 920 => {}
+                // Heights added to layers are 0 until somebody sets them.
+                520 | 580 | 590 => {
+                    let zero = [b'X', b'Y', b'Z'].iter().all(|&axis| block.get(axis).is_none_or(|value| value == 0.0));
+                    if !zero {
+                        self.trace.note(&name('G', code), SHIFTS, line);
+                    }
+                }
                 _ if HARMLESS_G.contains(&code) => {}
                 _ => self.trace.note(&name('G', code), "is not understood and was left out", line),
             }

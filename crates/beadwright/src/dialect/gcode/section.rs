@@ -1,5 +1,6 @@
 //! CNC G-code in profiles: the keys, and the limits of their values.
 
+use super::control::GcodeControl;
 use super::write::CncGcode;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::{needs, is_extension};
@@ -58,9 +59,9 @@ pub struct Gcode {
     pub wire_axis: Option<String>,
     /// Blocks at the end of the program.
     pub footer: Vec<String>,
-    /// Whether the control knows the O words of LinuxCNC, which `program.restart` needs; default false.
-    #[serde(default)]
-    pub o_words: bool,
+    /// The control, in whose own language branches, heights of layers and file names are written: `linuxcnc`, `fanuc`, `siemens`
+    /// or `twincat` (NC I, classic interpreter). Needed for `program.restart` and `program.layer_offsets`; default none.
+    pub control: Option<GcodeControl>,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
@@ -133,8 +134,13 @@ impl Section for Gcode {
     }
 
     fn supports(&self, extra: Extra) -> bool {
-        // An axis of the wire would feed at once what was left out.
-        extra == Extra::Restart && self.o_words && self.wire_axis.is_none()
+        match extra {
+            // An axis of the wire would feed at once what was left out.
+            Extra::Restart => self.control.is_some() && self.wire_axis.is_none(),
+            Extra::LayerOffsets => self.control.is_some(),
+            Extra::Weave => true,
+            Extra::Tilt => false,
+        }
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -142,7 +148,7 @@ impl Section for Gcode {
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
         self.wire_axis = None;
     }
 

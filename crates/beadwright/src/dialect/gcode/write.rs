@@ -3,6 +3,7 @@
 
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart};
 use crate::number::push_fixed;
+use super::control::GcodeControl;
 use super::section::{Gcode, GcodeComments};
 use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
@@ -12,9 +13,6 @@ const MAX_BLOCK: usize = 99_990;
 
 /// A comment may have this many characters: blocks stay under 80.
 const MAX_COMMENT: usize = 60;
-
-/// Where to begin, as LinuxCNC names it.
-const START: &str = "#<_start>";
 
 /// Writes G-code.
 pub(super) struct CncGcode {
@@ -33,23 +31,30 @@ pub(super) struct CncGcode {
     /// Wire fed so far, mm.
     wire: f64,
     at: Option<DVec3>,
-    /// The O word behind the present pass.
-    skip: usize,
+    /// Whether blocks have numbers.
+    numbered: bool,
+    /// Labels so far.
+    labels: usize,
+    /// What ends the branches that are open.
+    open: Vec<String>,
 }
 
 impl CncGcode {
     /// Begins the program of a part.
     pub(super) fn new(job: &Job<'_>, gcode: Gcode) -> Self {
-        let file = format!("{}.{}", job.part, gcode.extension);
+        let name = gcode.control.map_or_else(|| job.part.clone(), |control| control.file_name(&job.part));
+        let file = format!("{name}.{}", gcode.extension);
+        let jumps = gcode.control.is_some_and(GcodeControl::jumps_to_numbers) && job.program.restart;
+        let numbered = gcode.block_numbers && !jumps;
         let values = Values::new(&ascii(&job.part), job);
         let comment = job.comment();
         let wire_feed_speed = job.weld.process.wire_feed_speed;
         let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { file, comment, supplies, gcode, program, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None, skip: 0 }
+        Self { file, comment, supplies, gcode, program, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None, numbered, labels: 0, open: Vec::new() }
     }
 
     fn begin_block(&mut self, text: &mut String) {
-        if self.gcode.block_numbers {
+        if self.numbered {
             self.block = if self.block >= MAX_BLOCK { 10 } else { self.block + 10 };
             text.push_str(&format!("N{} ", self.block));
         }
@@ -67,13 +72,29 @@ impl CncGcode {
     fn blocks(&mut self, text: &mut String, template: &[String]) {
         let lines: Vec<String> = self.values.expand(template).collect();
         for line in lines {
-            // LinuxCNC takes no number before an O word.
-            if !line.starts_with('O') {
+            // LinuxCNC takes no number before an O word; parameters are set alike.
+            if !line.starts_with(['O', '#']) {
                 self.begin_block(text);
             }
             text.push_str(&line);
             text.push('\n');
         }
+    }
+
+    /// A line that is no block: an O word, or a jump.
+    fn line(&self, text: &mut String, line: &str) {
+        text.push_str(line);
+        text.push('\n');
+    }
+
+    /// The control, where the program can begin at any pass.
+    fn restarts(&self) -> Option<GcodeControl> {
+        self.gcode.control.filter(|_| self.program.restart)
+    }
+
+    fn new_label(&mut self) -> usize {
+        self.labels += 1;
+        self.labels
     }
 
     /// Lines that a program begun later than `number` leaves out.
@@ -83,38 +104,77 @@ impl CncGcode {
         }
         self.begin_skippable(text, number, word);
         self.blocks(text, lines);
-        self.end_skippable(text);
+        self.end_branch(text);
     }
 
     /// Every O word has a number of its own: that of the pass or layer, and a digit, which is 1 or 2 here; the others are for
     /// the lines of the profile.
     fn begin_skippable(&mut self, text: &mut String, number: usize, word: usize) {
-        if self.program.restart {
-            self.skip = number * 10 + word;
-            text.push_str(&format!("O{} if [{START} LE {number}]\n", self.skip));
+        let Some(control) = self.restarts() else { return };
+        let label = self.new_label();
+        match (control.jump_if_above(number, label), control.label(label)) {
+            (Some(jump), Some(label)) => {
+                self.line(text, &jump);
+                self.open.push(label);
+            }
+            _ => {
+                let word = number * 10 + word;
+                self.line(text, &format!("O{word} if [{} LE {number}]", control.variable()));
+                self.open.push(format!("O{word} endif"));
+            }
         }
     }
 
-    fn end_skippable(&self, text: &mut String) {
-        if self.program.restart {
-            text.push_str(&format!("O{} endif\n", self.skip));
+    /// Ends the branch that began last; nothing is known of what it did.
+    fn end_branch(&mut self, text: &mut String) {
+        if let Some(end) = self.open.pop() {
+            self.line(text, &end);
+            (self.at, self.feed) = (None, 0.0);
         }
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number, 1);
+        let Some(control) = self.restarts() else { return };
+        let (way, behind) = (self.new_label(), self.new_label());
+        let word = number * 10 + 2;
+        // What stands between the two ways, and behind both.
+        let jumps = (control.jump_if_zero(way), control.jump(behind), control.label(way), control.label(behind));
+        let (begin, between, end) = match jumps {
+            (Some(unless), Some(jump), Some(way), Some(behind)) => (unless, vec![jump, way], behind),
+            _ => {
+                let begin = format!("O{word} if [{} GT 0]", control.variable());
+                (begin, vec![format!("O{word} else")], format!("O{word} endif"))
+            }
+        };
+        let standing = (self.at, self.feed);
+        self.line(text, &begin);
+        self.approach(text, above);
+        self.line(text, &control.reset());
+        between.iter().for_each(|line| self.line(text, line));
+        (self.at, self.feed) = standing;
+        self.open.push(end);
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&mut self, text: &mut String) {
         if self.program.restart {
-            let word = number * 10 + 2;
-            text.push_str(&format!("O{word} if [{START} GT 0]\n"));
-            self.approach(text, above);
-            text.push_str(&format!("{START} = 0\nO{word} endif\n"));
-            // Whether the torch came that way is not known here.
-            (self.at, self.feed) = (None, 0.0);
+            self.end_branch(text);
         }
         let lines = self.gcode.hooks.pass_start.clone();
         self.blocks(text, &lines);
+    }
+
+    /// A height, mm, that is added to all that follows.
+    fn raise(&mut self, text: &mut String, height: &str) {
+        if let Some(control) = self.gcode.control.filter(|_| self.program.layer_offsets) {
+            self.begin_block(text);
+            self.line(text, &control.raise(height));
+            // Whether it moves the torch's coordinates is not known here.
+            self.at = None;
+        }
     }
 
     fn wait(&mut self, text: &mut String, seconds: f64) {
@@ -230,10 +290,11 @@ impl CncGcode {
                 self.blocks(text, &lines);
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
+            Instruction::Above => self.above(text),
             Instruction::PassEnd => {
                 let lines = self.gcode.hooks.pass_end.clone();
                 self.blocks(text, &lines);
-                self.end_skippable(text);
+                self.end_branch(text);
             }
         }
     }
@@ -265,10 +326,11 @@ impl Writer for CncGcode {
         self.values.set("layers", layers);
         self.comment(&mut text, &self.comment);
         self.supplies.iter().for_each(|line| self.comment(&mut text, line));
-        if self.program.restart {
-            text.push_str(&format!("({})\n{START} = 0\n", restart::comment(START)));
+        if let Some(control) = self.restarts() {
+            self.comment(&mut text, &restart::comment(control.variable()));
+            self.line(&mut text, &control.reset());
         }
-        let header = self.gcode.header.clone();
+        let header = [&self.gcode.header[..], &self.gcode.hooks.watch].concat();
         self.blocks(&mut text, &header);
         self.chunk(text)
     }
@@ -280,6 +342,10 @@ impl Writer for CncGcode {
         let mut text = String::with_capacity(program.instructions.len() * 32);
         self.values.set_layer(program);
         self.comment(&mut text, &format!("LAYER {} Z {:.3}", program.index + 1, program.z));
+        if self.program.layer_offsets {
+            self.comment(&mut text, "MM ADDED TO THIS LAYER");
+            self.raise(&mut text, "0.000");
+        }
         let lines = self.gcode.hooks.before_layer(&self.gcode.layer_start, program.index, &self.program);
         self.skippable(&mut text, self.values.last_number(), 1, &lines);
         for &instruction in &program.instructions {
@@ -292,7 +358,8 @@ impl Writer for CncGcode {
 
     fn end(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
-        let footer = self.gcode.footer.clone();
+        self.raise(&mut text, "0.000");
+        let footer = [&self.gcode.hooks.all_off[..], &self.gcode.footer].concat();
         self.blocks(&mut text, &footer);
         if self.gcode.percent_signs {
             text.push_str("%\n");

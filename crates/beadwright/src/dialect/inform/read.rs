@@ -15,8 +15,8 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal, by their first words.
-const HARMLESS: [&str; 22] = [
-    "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
+const HARMLESS: [&str; 23] = [
+    "SFTOF", "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
     "SUB", "WVON", "WVOF", "ARCSET", "MSG", "PAUSE", "SPEED",
 ];
 
@@ -51,6 +51,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         unit: if options.inform_cm_per_min { 10.0 / 60.0 } else { 1.0 },
         circle: Circle::None,
         variables: HashMap::new(),
+        unshifted: false,
     };
     let main = reader.job(None, text)?;
     if main.instructions.is_empty() {
@@ -85,6 +86,8 @@ struct Reader<'a> {
     circle: Circle,
     /// Variables with a plain number, such as `D090`.
     variables: HashMap<String, f64>,
+    /// Whether the shift that may be switched on is known to be 0.
+    unshifted: bool,
 }
 
 impl Reader<'_> {
@@ -132,7 +135,8 @@ impl Reader<'_> {
     /// By how many instructions `JUMP *L1 IF D090>5` goes on, 0 where it does not jump; `None` for all else, conditions of
     /// which nothing is known, and labels that do not come behind.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
-        let (label, condition) = text.strip_prefix("JUMP ")?.split_once(" IF ")?;
+        let jump = text.strip_prefix("JUMP ")?;
+        let (label, condition) = jump.split_once(" IF ").unwrap_or((jump, "0=0"));
         let taken = holds(condition, |variable| self.variables.get(variable).copied())?;
         let to = behind.iter().position(|(_, text)| text == label.trim())?;
         Some(if taken { to + 2 } else { 0 })
@@ -164,6 +168,13 @@ impl Reader<'_> {
                 Some(value) => self.variables.insert(variable.to_owned(), value),
                 None => self.variables.remove(variable),
             };
+        } else if word == "SETE" {
+            // An element of a position variable, such as the height that shifts a layer.
+            self.unshifted = words.nth(2).and_then(number) == Some(0.0);
+        } else if word == "SFTON" {
+            if !self.unshifted {
+                self.trace.note("SFTON", "shifts the moves behind it, which is not applied", line);
+            }
         } else if CONTROL.contains(&word) {
             self.trace.note(word, "is not followed: its lines were read once", line);
         } else if word == "DOUT" && flat.ends_with("ON") {

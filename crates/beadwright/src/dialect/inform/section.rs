@@ -72,6 +72,9 @@ pub struct Inform {
     /// Number of the D variable that holds where to begin, for `program.restart`; default 90.
     #[serde(default = "ninety")]
     pub restart_variable: u32,
+    /// Number of the P variable that holds the shift of a layer, for `program.layer_offsets`; default 90.
+    #[serde(default = "ninety")]
+    pub offset_variable: u32,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
@@ -90,6 +93,7 @@ impl Section for Inform {
             "inform.position_level": self.position_level.into(), 0.0, 8.0, "(PL)", CONTROLLER;
             "inform.max_name": self.max_name as f64, 8.0, 32.0, "characters", CONTROLLER;
             "inform.restart_variable": self.restart_variable.into(), 0.0, 99.0, "(D variable)", CONTROLLER;
+            "inform.offset_variable": self.offset_variable.into(), 0.0, 127.0, "(P variable)", CONTROLLER;
             "inform.max_points": self.max_points as f64, 10.0, 2000.0, "moves per job",
                 "larger programs do not load into the controller";
         };
@@ -125,20 +129,20 @@ impl Section for Inform {
         ]
     }
 
-    fn supports(&self, extra: Extra) -> bool {
-        extra != Extra::LayerOffsets
+    fn supports(&self, _extra: Extra) -> bool {
+        true
     }
 
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
     }
 
-    fn longest_pass(&self) -> Option<usize> {
+    fn longest_pass(&self, _program: &ProgramSettings) -> Option<usize> {
         Some(self.max_points)
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {

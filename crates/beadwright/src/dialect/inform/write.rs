@@ -43,6 +43,8 @@ pub(super) struct YaskawaInform {
     in_arc: bool,
     /// Label behind the present pass.
     skip: Option<usize>,
+    /// Label behind the way from the pass before.
+    way: Option<usize>,
 }
 
 /// Positions and instructions of one job.
@@ -80,7 +82,7 @@ impl YaskawaInform {
             orientation: inform.orientation,
             inform,
             program: job.program.clone(),
-            weave: job.weave.cloned(),
+            weave: job.weave(),
             values,
             travel_speed,
             wire_feed_speed: job.weld.process.wire_feed_speed,
@@ -89,6 +91,7 @@ impl YaskawaInform {
             at: DVec3::ZERO,
             in_arc: false,
             skip: None,
+            way: None,
         }
     }
 
@@ -116,18 +119,42 @@ impl YaskawaInform {
         label.into_iter().for_each(|label| job.line(&format!("*L{label}")));
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, job: &mut JobText, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(job, number);
         if self.program.restart {
-            let (variable, label) = (self.inform.restart_variable, job.label());
+            let (variable, label, behind) = (self.inform.restart_variable, job.label(), job.label());
             job.line(&format!("JUMP *L{label} IF D{variable:03}=0"));
             self.instruction(job, Instruction::Approach { to: above });
             job.line(&format!("SET D{variable:03} 0"));
+            job.line(&format!("JUMP *L{behind}"));
             job.line(&format!("*L{label}"));
+            self.way = Some(behind);
         }
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&mut self, job: &mut JobText) {
+        self.way.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
         self.lines(&mut job.instructions, &self.inform.hooks.pass_start);
+    }
+
+    /// The height to be added to a layer, which is set in its job, µm; all moves up to SFTOF are shifted by it.
+    fn offset(&self, job: &mut JobText) {
+        if self.program.layer_offsets {
+            let (variable, frame) = (self.inform.offset_variable, self.inform.user_frame);
+            job.line("'UM ADDED TO THIS LAYER");
+            job.line(&format!("SUB P{variable:03} P{variable:03}"));
+            job.line(&format!("SETE P{variable:03} (3) 0"));
+            job.line(&format!("SFTON P{variable:03} UF#({frame})"));
+        }
+    }
+
+    fn offset_end(&self, job: &mut JobText) {
+        if self.program.layer_offsets {
+            job.line("SFTOF");
+        }
     }
 
     /// Adds a position in the user frame and returns its name.
@@ -203,6 +230,7 @@ impl YaskawaInform {
                 self.lines(&mut job.instructions, &self.inform.arc_off);
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(job, pass, above),
+            Instruction::Above => self.above(job),
             Instruction::PassEnd => {
                 self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
@@ -236,6 +264,10 @@ fn wait(job: &mut JobText, seconds: f64) {
 }
 
 impl Writer for YaskawaInform {
+    fn weaves(&self) -> bool {
+        self.weave.is_some()
+    }
+
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         // Where names may be longer, those of split layers fit too: "-L001-2".
@@ -249,6 +281,7 @@ impl Writer for YaskawaInform {
             main.push_str(&format!("'0, OR LAYER*10000+PASS\r\nSET D{variable:03} 0\r\n"));
         }
         self.lines(&mut main, &self.inform.start);
+        self.lines(&mut main, &self.inform.hooks.watch);
         self.main = main;
         Vec::new()
     }
@@ -265,6 +298,7 @@ impl Writer for YaskawaInform {
             let more = if i == 0 { String::new() } else { format!("-{}", i + 1) };
             let name = format!("{}-L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
             let mut job = JobText::default();
+            self.offset(&mut job);
             if i == 0 {
                 let lines = self.inform.hooks.before_layer(&self.inform.layer_start, layer.index, &self.program);
                 self.skippable(&mut job, self.values.last_number(), &lines);
@@ -273,6 +307,7 @@ impl Writer for YaskawaInform {
             if i + 1 == count {
                 self.skippable(&mut job, self.values.last_number(), &self.inform.hooks.layer_end);
             }
+            self.offset_end(&mut job);
             self.main.push_str(&format!("CALL JOB:{name}\r\n"));
             chunks.push(self.relative(&name, &format!("LAYER {} Z {}", layer.index + 1, fixed(layer.z, 3)), &job));
         }
@@ -283,6 +318,7 @@ impl Writer for YaskawaInform {
         let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
         let go = |number: usize| format!("MOVJ C{number:05} VJ={}\r\n", fixed(self.inform.home_speed, 2));
         let mut instructions = go(0) + &self.main;
+        self.lines(&mut instructions, &self.inform.hooks.all_off);
         self.lines(&mut instructions, &self.inform.end);
         instructions.push_str(&go(1));
         let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");

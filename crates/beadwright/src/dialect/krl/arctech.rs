@@ -1,10 +1,10 @@
 //! Inline forms of KUKA ArcTech Basic 3.x: ARCON and ARCOFF as the pendant folds them, and their data.
 //!
 //! A form moves to its point and switches there: ARCON moves to the start and ignites, ARCOFF moves to the end and fills the
-//! crater. What lies between are plain motions with their own `$VEL.CP`: an ARCSWI is for other channels of the power
-//! source, takes about 1.5 kB, and cannot be run every few tenths of a millimetre. ARCOFF moves at the speed of the seam
-//! that ARCON has set: that of the last piece. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form,
-//! and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, weaving, and the
+//! crater. What lies between are plain motions with their own `$VEL.CP`; where the wire feed changes, and a channel holds it,
+//! the motion before is an ARCSWI, which takes about 1.5 kB. ARCOFF moves at the speed of the seam that the form before has
+//! set: that of the last piece. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for
+//! each form, and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, and the
 //! package ArcTech Advanced.
 
 use crate::number::{fixed, push_fixed};
@@ -19,6 +19,7 @@ use std::fmt::Write as _;
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     On,
+    Switch,
     Off,
 }
 
@@ -26,9 +27,39 @@ impl Form {
     fn word(self) -> &'static str {
         match self {
             Self::On => "ARCON",
+            Self::Switch => "ARCSWI",
             Self::Off => "ARCOFF",
         }
     }
+
+    /// How the package calls its steps.
+    fn name(self) -> &'static str {
+        match self {
+            Self::On => "ArcOn",
+            Self::Switch => "ArcSwi",
+            Self::Off => "ArcOff",
+        }
+    }
+}
+
+/// What is welded from a form on.
+#[derive(Clone, Copy)]
+pub(super) struct Seam {
+    /// mm/s
+    pub(super) speed: f64,
+    /// The wire feed as a multiple of the nominal one.
+    pub(super) feed: f64,
+    /// Job of the power source.
+    pub(super) job: u32,
+}
+
+/// How a crater is filled.
+#[derive(Clone, Copy)]
+pub(super) struct Filling {
+    /// s
+    pub(super) seconds: f64,
+    /// The wire feed as a multiple of the nominal one; `None` where it stays as in the section.
+    pub(super) feed: Option<f64>,
 }
 
 /// A motion of a form: poses as KRL aggregates.
@@ -64,6 +95,10 @@ pub(super) struct Forms {
     start_time: f64,
     preflow: f64,
     postflow: f64,
+    /// m/min
+    wire_feed: f64,
+    /// Job of the power source that the section's channels hold.
+    job: u32,
     /// Speed without arc, m/s.
     travel: String,
     /// Contents of the weave's data.
@@ -74,25 +109,40 @@ pub(super) struct Forms {
     data: String,
 }
 
-/// Refuses what the forms cannot do: the end of a pass has its own data in them, and the wire feed comes from the
-/// weld's parameter set.
-pub(super) fn check(krl: &Krl, job: &Job<'_>) -> Result<(), DialectError> {
+/// Refuses what the forms cannot do.
+pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), DialectError> {
     let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "krl", what, remedy });
-    if job.weld.process.follow == Follow::WireFeed {
-        return cannot("process.follow = \"wire-feed\" with arc = \"arctech\"", "Take process.follow = \"speed\".");
-    }
-    if !job.weld.process.layers.is_empty() {
-        return cannot("[[process.layers]] with arc = \"arctech\"", "Take arc = \"outputs\", or the same speed for all layers.");
-    }
     if krl.motion == KrlMotion::Slin {
         return cannot("krl.motion = \"slin\" with arc = \"arctech\"", "Take motion = \"lin\": the forms move by LIN and CIRC.");
-    }
-    if job.weld.ends.crater_fill_time > 0.0 {
-        return cannot("a start_stop.crater_fill_time with arc = \"arctech\"", "Take krl.arctech.crater.time instead.");
     }
     if job.weld.ends.wire_retract > 0.0 {
         let remedy = "Take krl.arctech.crater.burnback_time instead.";
         return cannot("a start_stop.wire_retract with arc = \"arctech\"", remedy);
+    }
+    if job.program.layer_offsets {
+        let remedy = "The forms set the base anew by its number: take layer_offsets out, or arc = \"outputs\".";
+        return cannot("program.layer_offsets with arc = \"arctech\"", remedy);
+    }
+    let lacks = |key: &str, why: &str, remedy: &str| {
+        let [key, why, remedy] = [key, why, remedy].map(str::to_owned);
+        Err(DialectError::NoKey { profile: job.profile.clone(), key, why, remedy })
+    };
+    let process = &job.weld.process;
+    // A job of the power source has a wire feed of its own.
+    let by_job = process.layers.iter().all(|row| row.job.is_some()) && arctech.job_channel.is_some();
+    let why = match process.follow {
+        Follow::WireFeed => Some("process.follow = \"wire-feed\" with arc = \"arctech\""),
+        Follow::Speed if !process.layers.is_empty() && !by_job => Some("[[process.layers]] with arc = \"arctech\""),
+        Follow::Speed => job.weld.ends.crater_is_weaker().then_some("a start_stop.crater_power below 1"),
+    };
+    if let Some(why) = why.filter(|_| arctech.wire_feed_channel.is_none()) {
+        let remedy = "It is the channel of the WorkVisual project that holds the wire feed in m/min.";
+        return lacks("krl.arctech.wire_feed_channel", why, remedy);
+    }
+    let jobs = process.layers.iter().any(|row| row.job.is_some_and(|own| own != process.job));
+    if jobs && arctech.job_channel.is_none() {
+        let remedy = "It is the channel of the WorkVisual project that holds the number of the job.";
+        return lacks("krl.arctech.job_channel", "a job in [[process.layers]]", remedy);
     }
     Ok(())
 }
@@ -109,6 +159,8 @@ impl Forms {
             start_time: process.arc_start_delay,
             preflow: process.gas_preflow,
             postflow: process.gas_postflow,
+            wire_feed: process.wire_feed_speed,
+            job: process.job,
             travel: fixed(travel_speed / 1000.0, 6),
             weave: pattern(weave),
             sets: Vec::new(),
@@ -117,8 +169,8 @@ impl Forms {
         }
     }
 
-    /// Moves to the start of a pass and lights the arc; the seam ends at `speed`, mm/s.
-    pub(super) fn on(&mut self, text: &mut String, to: &str, speed: f64) {
+    /// Moves to the start of a pass and lights the arc.
+    pub(super) fn on(&mut self, text: &mut String, to: &str, seam: Seam) {
         let ArcTech { strike, .. } = &self.arctech;
         let set = format!(
             "Strike {{JobModeId[] \"{}\",ParamSetId[] \"{}\",StartTime {},PreFlowTime {},{},PurgeTime {}}},{}",
@@ -126,38 +178,58 @@ impl Forms {
             strike.set,
             fixed(self.start_time, 5),
             fixed(self.preflow, 5),
-            channels(&strike.channels),
+            self.channels(&strike.channels, seam.job, None),
             fixed(strike.purge_time, 5),
-            self.weld_set(speed)
+            self.weld_set(seam)
         );
         self.form(text, Form::On, Target { via: None, to }, set);
     }
 
+    /// Moves on along the pass and switches at the end of the move to what comes behind it.
+    pub(super) fn switch(&mut self, text: &mut String, target: Target<'_>, seam: Seam) {
+        let set = self.weld_set(seam);
+        self.form(text, Form::Switch, target, set);
+    }
+
     /// Moves to the end of a pass and ends the arc.
-    pub(super) fn off(&mut self, text: &mut String, target: Target<'_>) {
+    pub(super) fn off(&mut self, text: &mut String, target: Target<'_>, filling: Option<Filling>, job: u32) {
         let ArcTech { crater, .. } = &self.arctech;
         let set = format!(
             "Crater {{JobModeId[] \"{}\",ParamSetId[] \"{}\",CraterTime {},PostflowTime {},{},BurnBackTime {}}}",
             crater.mode,
             crater.set,
-            fixed(crater.time, 5),
+            fixed(filling.map_or(crater.time, |filling| filling.seconds), 5),
             fixed(self.postflow, 5),
-            channels(&crater.channels),
+            self.channels(&crater.channels, job, filling.and_then(|filling| filling.feed)),
             fixed(crater.burnback_time, 5)
         );
         self.form(text, Form::Off, target, set);
     }
 
-    fn weld_set(&self, speed: f64) -> String {
+    fn weld_set(&self, seam: Seam) -> String {
         let ArcTech { weld, .. } = &self.arctech;
         format!(
             "Weld {{JobModeId[] \"{}\",ParamSetId[] \"{}\",Velocity {},{}}},Weave {{{}}}",
             weld.mode,
             weld.set,
-            fixed(speed / 1000.0, 6),
-            channels(&weld.channels),
+            fixed(seam.speed / 1000.0, 6),
+            self.channels(&weld.channels, seam.job, Some(seam.feed)),
             self.weave
         )
+    }
+
+    /// Channels of the section, with the wire feed and the job where the profile says which channels hold them.
+    fn channels(&self, values: &[f64; 8], job: u32, feed: Option<f64>) -> String {
+        let mut values = *values;
+        let mut put = |channel: Option<u32>, value: f64| {
+            let place = channel.and_then(|channel| values.get_mut(channel as usize - 1));
+            place.into_iter().for_each(|place| *place = value);
+        };
+        feed.into_iter().for_each(|feed| put(self.arctech.wire_feed_channel, feed * self.wire_feed));
+        if job != self.job {
+            put(self.arctech.job_channel, job.into());
+        }
+        channels(&values)
     }
 
     /// Number of the data set with these contents, which is declared if it is new.
@@ -205,14 +277,12 @@ impl Forms {
         );
         let of = format!("WDAT{set}, WP{point}{}", via.map_or(String::new(), |via| format!(", WP{via}")));
         triggers(text, form, set, &of);
-        let name = match form {
-            Form::On => "ArcOn",
-            Form::Off => "ArcOff",
-        };
+        let name = form.name();
         let (motion, to) = (placed.motion(), via.map_or(format!("XP{point}"), |via| format!("XP{via}, XP{point}")));
+        let blend = if form == Form::Switch { " C_DIS" } else { "" };
         let _ = write!(
             text,
-            "ArcMainNG(#{name}BeforeMoveStd, {of})\r\n{motion} {to}\r\nArcMainNG(#{name}AfterMoveStd, {of})\r\n;ENDFOLD\r\n"
+            "ArcMainNG(#{name}BeforeMoveStd, {of})\r\n{motion} {to}{blend}\r\nArcMainNG(#{name}AfterMoveStd, {of})\r\n;ENDFOLD\r\n"
         );
     }
 
@@ -224,11 +294,12 @@ impl Forms {
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
         // The way to the start has a speed of its own; the seam has that of its data.
         let speed = if form == Form::On { format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.')) } else { String::new() };
+        let (blend, blends) = if form == Form::Switch { ("CONT ", "True") } else { ("", "False") };
         let _ = write!(
             text,
-            ";FOLD {word} WDAT{set} {motion} {help}P{point} {speed}CPDAT1 Tool[{}] Base[{}] ;%{{PE}}\r\n;FOLD Parameters ;%{{h}}\r\n\
+            ";FOLD {word} WDAT{set} {motion} {help}P{point} {blend}{speed}CPDAT1 Tool[{}] Base[{}] ;%{{PE}}\r\n;FOLD Parameters ;%{{h}}\r\n\
              ;Params IlfProvider=kukaroboter.arctech.{provider}; Kuka.IsGlobalPoint=False; Kuka.PointName=P{point};{parameter} \
-             Kuka.BlendingEnabled=False; Kuka.MoveDataName=CPDAT1; Kuka.VelocityPath={}; Kuka.CurrentCDSetIndex=0; \
+             Kuka.BlendingEnabled={blends}; Kuka.MoveDataName=CPDAT1; Kuka.VelocityPath={}; Kuka.CurrentCDSetIndex=0; \
              Kuka.MovementParameterFieldEnabled=True; ArcTech.WdatVarName=WDAT{set}; ArcTech.Basic={}\r\n;ENDFOLD\r\n",
             self.tool, self.base, self.travel, self.arctech.version
         );
@@ -263,6 +334,7 @@ fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
             trigger(&path("OnTheFlyArcOn"), &delay("GasPreflow"), "GasPreflow");
             trigger(&path("OnTheFlyArcOn"), "0", "ArcOnMoveStd");
         }
+        Form::Switch => trigger("DISTANCE = 1", "0", "ArcSwiMoveStd"),
         Form::Off => {
             trigger(&path("ArcOffBefore"), "0", "ArcOffBeforeOffStd");
             trigger(&path("OnTheFlyArcOff"), "0", "ArcOffMoveStd");

@@ -3,7 +3,7 @@
 //! "(unconfirmed)" marks details that no source confirms for every version of the package: compare them with a form
 //! made on the pendant.
 
-use crate::limit::{Broken, Limit, limit, limits};
+use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
 
 /// What switches the arc in KRL.
@@ -23,8 +23,16 @@ pub enum KrlArc {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArcTech {
-    /// Version of the package on the controller, such as `3.3.3.366`; the controller refuses data of any other version.
+    /// Version of the package on the controller, such as `3.3.3.366`; the controller refuses data of any other version, and
+    /// only forms of 3.3 and 3.4 are written: 3.6 has others.
     pub version: String,
+    /// The channel of `weld` and `crater` that holds the wire feed in m/min, 1 to 8 (2 where the power source is a Fronius TPS/i in
+    /// its mode for command values). Needed for `process.follow = "wire-feed"`, a `start_stop.crater_power` below 1 and
+    /// other speeds by `[[process.layers]]`: ARCSWI then switches it along the pass. Leave it out where a job of the power source sets
+    /// the wire feed.
+    pub wire_feed_channel: Option<u32>,
+    /// The channel of `strike`, `weld` and `crater` that holds the job's number, 1 to 8. Needed where `[[process.layers]]` has jobs.
+    pub job_channel: Option<u32>,
     /// Ignition.
     pub strike: ArcTechStrike,
     /// Welding.
@@ -80,6 +88,9 @@ pub struct ArcTechCrater {
     pub burnback_time: f64,
 }
 
+/// Beginnings of the versions whose forms are known, from programs made on pendants.
+const WRITTEN: [&str; 2] = ["3.3.", "3.4."];
+
 impl ArcTech {
     /// The version as the data sets store it: 3.3.3.366 is 303030366; `None` if the text is not a version.
     pub(crate) fn number(&self) -> Option<u64> {
@@ -95,6 +106,8 @@ impl ArcTech {
             "krl.arctech.strike.purge_time": self.strike.purge_time, 0.0, 60.0, "s",
                 "values outside this range make no sense";
             "krl.arctech.crater.time": self.crater.time, 0.0, 60.0, "s", "values outside this range make no sense";
+            "krl.arctech.wire_feed_channel": self.wire_feed_channel.unwrap_or(1).into(), 1.0, 8.0, "(channel)", CONTROLLER;
+            "krl.arctech.job_channel": self.job_channel.unwrap_or(1).into(), 1.0, 8.0, "(channel)", CONTROLLER;
             "krl.arctech.crater.burnback_time": self.crater.burnback_time, 0.0, 10.0, "s",
                 "values outside this range make no sense";
         };
@@ -112,6 +125,10 @@ impl ArcTech {
     pub(super) fn broken(&self) -> Option<Broken> {
         if self.number().is_none() {
             return Some(Broken::text("krl.arctech.version", &self.version, "four numbers such as \"3.3.3.366\"."));
+        }
+        if !WRITTEN.iter().any(|version| self.version.starts_with(version)) {
+            let reason = "forms of 3.3 and 3.4 are written, and this version may run others (3.6 does). Take arc = \"outputs\".";
+            return Some(Broken::text("krl.arctech.version", &self.version, reason));
         }
         let texts = [
             ("krl.arctech.strike.mode", &self.strike.mode),

@@ -48,6 +48,9 @@ const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
 const CONTROL: [&str; 7] = ["LOOP", "REPEAT", "UNTIL", "SWITCH", "GOTO", "RETURN", "EXIT"];
 const CONTROL_REST: [&str; 5] = ["ENDLOOP", "CASE", "DEFAULT", "ENDSWITCH", "HALT"];
 
+/// First words of lines that only wait, up to the end of their block.
+const WAITING: [&str; 4] = ["HALT", "WAIT", "ENDIF", "ENDWHILE"];
+
 /// First words of blocks, and of their ends.
 const BLOCKS: [(&str, &str); 3] = [("FOR", "ENDFOR"), ("IF", "ENDIF"), ("WHILE", "ENDWHILE")];
 
@@ -264,7 +267,8 @@ impl Reader<'_> {
             let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
             let loops = word.eq_ignore_ascii_case("WHILE");
             let taken = holds(condition, |name| self.values.get(name).copied()).filter(|_| !loops);
-            taken.or_else(|| input(condition).filter(|_| !moves)).map(u64::from)
+            let waits = lines[i + 1..until].iter().all(|line| WAITING.iter().any(|word| strip_word(line, word).is_some()));
+            taken.or_else(|| input(condition).filter(|_| !moves)).or(waits.then_some(false)).map(u64::from)
         };
         known.map_or_else(
             || {
@@ -475,8 +479,11 @@ impl Reader<'_> {
     fn call(&mut self, called: &str, rest: &str, line: usize, source: usize, depth: usize) -> Result<(), ReadError> {
         self.trace.call(called, depth, line)?;
         let find = |s: &Source| s.programs.iter().find(|p| p.0.eq_ignore_ascii_case(called)).map(|p| (p.1, p.2));
-        if let Some(start) = find(&self.sources[source]) {
-            return self.run(source, start, depth + 1);
+        // Programs of the main module may be global.
+        for near in [source, 0] {
+            if let Some(start) = find(&self.sources[near]) {
+                return self.run(near, start, depth + 1);
+            }
         }
         let loaded = |s: &Source| s.module.as_deref().is_some_and(|m| m.eq_ignore_ascii_case(called));
         let target = match self.sources.iter().position(loaded) {
@@ -506,10 +513,11 @@ fn mark(line: &str) -> Option<Mark> {
     BLOCKS.iter().find_map(of).or_else(|| is("ELSE").then_some(Mark::Else))
 }
 
-/// What a condition on an input alone is while all is well: inputs such as that of a burning arc are on.
+/// What a condition on an input or a flag alone is while all is well: those of a burning arc or of a watch are on.
 fn input(condition: &str) -> Option<bool> {
     let (condition, wanted) = condition.strip_prefix("NOT").map_or((condition, true), |rest| (rest, false));
-    let inside = condition.trim_matches(['(', ')']).strip_prefix("$IN[")?;
+    let condition = condition.trim_matches(['(', ')']);
+    let inside = condition.strip_prefix("$IN[").or_else(|| condition.strip_prefix("$FLAG["))?;
     inside.strip_suffix(']').is_some_and(|number| number.bytes().all(|b| b.is_ascii_digit())).then_some(wanted)
 }
 

@@ -2,9 +2,10 @@
 
 use super::write::KukaKrl;
 use super::arctech;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
+use crate::dialect::writing::volumes::MEGABYTE;
 use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
@@ -24,6 +25,12 @@ pub struct Krl {
     pub home: String,
     /// Orientation of the tool: A, B and C, °.
     pub orientation: [f64; 3],
+    /// Index of the turn table in `MACHINE_DEF` of `$config.dat`, 2 to 16: 2 where it is the first machine beside the robot.
+    /// The base then turns with it: `$BASE = EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])`, so `BASE_DATA` is
+    /// the place of the part on the table. Needed for `program.table_angle` and `program.table_side`.
+    pub table_machine: Option<u32>,
+    /// Which external axis the turn table is, 1 to 6 for E1 to E6; by default the first that `program.linear_axis` leaves free.
+    pub table_axis: Option<u32>,
     /// Speed of point-to-point moves, %.
     pub ptp_speed: f64,
     /// Blending distance (`$APO.CDIS`) along a pass, mm; 0 for no blending.
@@ -31,8 +38,9 @@ pub struct Krl {
     /// Maximum number of moves in one module; longer layers are cut between passes; default 2000.
     #[serde(default = "two_thousand")]
     pub max_points: usize,
-    /// Most that one program with its layers may take of the controller's memory, MB; larger ones come in volumes, each
-    /// with a main program of its own, which are loaded and run one after another; default 4.
+    /// Most that one program with its modules may take of the controller's memory, MB; larger ones come in volumes, each
+    /// with a main program of its own, which are loaded and run one after another. A pass that alone is larger is cut and
+    /// lit again. Default 4.
     #[serde(default = "four")]
     pub max_megabytes: f64,
     /// How the pieces of a pass are run: `lin` (LIN and CIRC, blended by C_DIS) or `slin` (SLIN and SCIRC, blended by C_SPL,
@@ -89,6 +97,10 @@ fn four() -> f64 {
     4.0
 }
 
+/// How the controller knows the turn table.
+const TABLE: &str =
+    "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine beside the robot: the base must turn with it.";
+
 fn two_thousand() -> usize {
     2000
 }
@@ -98,6 +110,8 @@ impl Section for Krl {
         let mut limits = limits! {
             "krl.tool": self.tool.into(), 1.0, 16.0, "(index into TOOL_DATA)", CONTROLLER;
             "krl.base": self.base.into(), 1.0, 32.0, "(index into BASE_DATA)", CONTROLLER;
+            "krl.table_machine": self.table_machine.unwrap_or(2).into(), 2.0, 16.0, "(index into MACHINE_DEF)", CONTROLLER;
+            "krl.table_axis": self.table_axis.unwrap_or(1).into(), 1.0, 6.0, "(external axis)", CONTROLLER;
             "krl.ptp_speed": self.ptp_speed, 1.0, 100.0, "%", CONTROLLER;
             "krl.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
             "krl.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "a controller has some megabytes for programs";
@@ -109,7 +123,11 @@ impl Section for Krl {
         limits
     }
 
-    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
+        if let Some(axis) = self.table_axis.filter(|axis| *axis == 1 && program.linear_axis.is_some()) {
+            let reason = "the linear axis (program.linear_axis) is E1.".to_owned();
+            return Some(Broken { key: "krl.table_axis".to_owned(), value: axis.to_string(), reason });
+        }
         let home = &self.home;
         if !home.starts_with("A1 ") || !home.bytes().all(|b| b.is_ascii_graphic() || b == b' ') || home.contains('}') {
             return Some(Broken::text("krl.home", home, "an axis position such as \"A1 0.0,A2 -90.0,…\"."));
@@ -134,8 +152,15 @@ impl Section for Krl {
         ]
     }
 
-    fn supports(&self, extra: Extra) -> bool {
-        extra != Extra::Weave || self.arc == KrlArc::Arctech
+    fn supports(&self, _extra: Extra) -> bool {
+        true
+    }
+
+    fn longest_pass(&self, program: &ProgramSettings) -> Option<usize> {
+        // The longest lines that a move and its speed can have; arcs have two poses.
+        let axes = usize::from(program.linear_axis.is_some()) + usize::from(program.has_table());
+        let a_move = if program.arcs { 180 + 44 * axes } else { 102 + 22 * axes };
+        Some((self.max_megabytes * MEGABYTE) as usize / a_move)
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -144,22 +169,31 @@ impl Section for Krl {
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
         let crater = &self.arctech.as_ref().filter(|_| self.arc == KrlArc::Arctech)?.crater;
-        Some(crater.time + crater.burnback_time + weld.process.gas_postflow)
+        // The filling of `[start_stop]` is counted elsewhere, and takes the place of the section's.
+        let filling = if weld.ends.crater_fill_time > 0.0 { 0.0 } else { crater.time };
+        Some(filling + crater.burnback_time + weld.process.gas_postflow)
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
         self.arc = KrlArc::Outputs;
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "krl.table_machine", known: self.table_machine.is_some(), what: TABLE })
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         match self.arc {
-            KrlArc::Arctech => arctech::check(self, job)?,
+            KrlArc::Arctech => self.arctech.iter().try_for_each(|data| arctech::check(self, data, job))?,
             KrlArc::Outputs => {
                 needs::lines("krl", &self.templates(), "$ANOUT[1] = {{wire_feed_ratio}}", job)?;
             }
         }
         let mut section = self.clone();
+        if self.arc == KrlArc::Arctech {
+            section.hooks.without_arc();
+        }
         section.orientation = orientation::zyx(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(KukaKrl::new(job, section)))
     }

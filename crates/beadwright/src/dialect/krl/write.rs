@@ -4,7 +4,7 @@
 //! is switched at exact stops only; points inside a pass are blended with `C_DIS`. With `arc = "arctech"` the inline
 //! forms of ArcTech Basic switch the arc; their data are in a `.dat` beside each layer's module.
 
-use super::arctech::{Forms, Target};
+use super::arctech::{Filling, Forms, Seam, Target};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
@@ -12,7 +12,7 @@ use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
 use super::section::{Krl, KrlMotion};
 use crate::process::Process;
-use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
+use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
 
 /// Module names may have this many characters.
@@ -35,10 +35,14 @@ pub(super) struct KukaKrl {
     process: Process,
     values: Values,
     travel_speed: f64,
-    /// Angle of the turn table, °: E1, or E2 where the robot stands on a linear axis.
+    /// Angle of the turn table, °.
     table: Option<f64>,
     /// A, B, C of the torch, °.
     orientation: [f64; 3],
+    /// The wire feed as a multiple of the nominal one.
+    feed: f64,
+    /// Index of the layer.
+    layer: usize,
     digits: usize,
     layers: usize,
     /// Speed set last in the module, mm/s.
@@ -55,10 +59,11 @@ impl KukaKrl {
         let comment = job.comment();
         let values = Values::new(&name, job);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
-        let (table, orientation) = (job.program.table_angle, krl.orientation);
+        let table = job.program.table_angle.or(job.program.table_side.map(|_| 0.0));
+        let orientation = krl.orientation;
         let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, orientation, digits: 3, layers: 0, speed: 0.0, volumes, main }
+        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, orientation, feed: 1.0, layer: 0, digits: 3, layers: 0, speed: 0.0, volumes, main }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -74,9 +79,9 @@ impl KukaKrl {
         text.reserve(moves.len() * 70);
         text.push_str(&format!("; layer {}, z {} mm\r\n", program.index + 1, fixed(program.z, 3)));
         if self.program.layer_offsets {
-            let (main, base) = (&self.main, self.krl.base);
+            let main = &self.main;
             text.push_str(&format!("{main}_SHIFT.Z = {main}_DZ[{}]\r\n", program.index + 1));
-            text.push_str(&format!("$BASE = BASE_DATA[{base}]:{main}_SHIFT\r\n"));
+            text.push_str(&format!("$BASE = {}\r\n", self.base(&format!(":{main}_SHIFT"))));
         }
         if part == 0 {
             let lines = self.krl.hooks.before_layer(&self.krl.layer_start, program.index, &self.program);
@@ -138,7 +143,24 @@ impl KukaKrl {
         }
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// The part's frame, turned with the table where there is one, and moved by what is written behind it.
+    fn base(&self, moved: &str) -> String {
+        let data = format!("BASE_DATA[{}]{moved}", self.krl.base);
+        match self.krl.table_machine.filter(|_| self.table.is_some()) {
+            Some(n) => format!("EK(MACHINE_DEF[{n}].ROOT,MACHINE_DEF[{n}].MECH_TYPE,{data})"),
+            None => data,
+        }
+    }
+
+    /// The axes beside the robot's with their numbers: the linear axis (mm) and the turn table (°).
+    fn external(&self, table: Option<f64>) -> impl Iterator<Item = (u32, f64)> + use<> {
+        let linear = self.program.linear_axis.map(|place| (1, place));
+        let free = if linear.is_some() { 2 } else { 1 };
+        let table = table.map(|angle| (self.krl.table_axis.unwrap_or(free), angle));
+        linear.into_iter().chain(table)
+    }
+
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
@@ -146,7 +168,14 @@ impl KukaKrl {
             let variable = format!("{}_START", self.main);
             text.push_str(&format!("IF {variable} > 0 THEN\r\n"));
             self.instruction(text, Instruction::Approach { to: above });
-            text.push_str(&format!("{variable} = 0\r\nENDIF\r\n"));
+            text.push_str(&format!("{variable} = 0\r\nELSE\r\n"));
+        }
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&mut self, text: &mut String) {
+        if self.program.restart {
+            text.push_str("ENDIF\r\n");
             self.speed = 0.0;
         }
         self.lines(text, &self.krl.hooks.pass_start);
@@ -177,28 +206,56 @@ impl KukaKrl {
     /// Writes one instruction of a layer when ArcTech forms switch the arc; a form includes the move to its point.
     fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) {
         self.stand(&all[i]);
+        let target = |krl: &Self, circle: Option<Circle>, to| (circle.map(|c| krl.aggregate(c.via)), krl.aggregate(to));
         match all[i] {
             // ARCON itself moves there.
             Instruction::Travel { .. } if matches!(all.get(i + 1), Some(Instruction::ArcOn { .. })) => {}
             Instruction::ArcOn { pass, kind } => {
                 text.push_str(&format!("; pass {pass} {}\r\n", kind.name()));
                 if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
-                    let speed = all[i..].iter().find_map(|next| match next {
-                        Instruction::Weld { speed, last: true, .. } => Some(*speed),
-                        _ => None,
-                    });
-                    forms.on(text, &self.aggregate(to), speed.unwrap_or(self.process.deposition_speed));
+                    forms.on(text, &self.aggregate(to), self.seam(&all[i..]));
                 }
                 // A form leaves its own speed behind.
                 self.speed = 0.0;
             }
             Instruction::Weld { to, circle, last: true, .. } => {
-                let (via, to) = (circle.map(|c| self.aggregate(c.via)), self.aggregate(to));
-                forms.off(text, Target { via: via.as_deref(), to: &to });
+                let (via, to) = target(self, circle, to);
+                let filling = match all.get(i + 1) {
+                    Some(&Instruction::Crater { seconds, ratio }) => Some(Filling { seconds, feed: ratio }),
+                    _ => None,
+                };
+                forms.off(text, Target { via: via.as_deref(), to: &to }, filling, self.job());
             }
+            Instruction::Weld { to, circle, .. } if matches!(all.get(i + 1), Some(Instruction::WireFeed { .. })) => {
+                if let Some(&Instruction::WireFeed { ratio }) = all.get(i + 1) {
+                    self.feed = ratio;
+                }
+                let (via, to) = target(self, circle, to);
+                forms.switch(text, Target { via: via.as_deref(), to: &to }, self.seam(&all[i + 1..]));
+                self.speed = 0.0;
+            }
+            Instruction::WireFeed { ratio } => self.feed = ratio,
+            // ARCOFF fills it.
+            Instruction::Crater { .. } => {}
             Instruction::ArcOff { .. } => self.speed = 0.0,
             other => self.instruction(text, other),
         }
+    }
+
+    /// What is welded from the beginning of these instructions on; ARCOFF moves at the speed that the last form has set.
+    fn seam(&self, all: &[Instruction]) -> Seam {
+        let ends = |i: &Instruction| matches!(i, Instruction::Weld { last: true, .. } | Instruction::WireFeed { .. });
+        let until = all.iter().skip(1).position(ends).map_or(all.len(), |at| at + 2);
+        let speed = all[..until].iter().rev().find_map(|next| match next {
+            Instruction::Weld { speed, .. } => Some(*speed),
+            _ => None,
+        });
+        Seam { speed: speed.unwrap_or(self.process.deposition_speed), feed: self.feed, job: self.job() }
+    }
+
+    /// Job of the power source in the present layer.
+    fn job(&self) -> u32 {
+        self.process.at_layer(self.layer).job
     }
 
     fn aggregate(&self, to: DVec3) -> String {
@@ -244,9 +301,10 @@ impl KukaKrl {
             text.push_str(axis);
             push_fixed(text, angle, 4);
         }
-        let external = [self.program.linear_axis, self.table].into_iter().flatten();
-        for (axis, value) in [",E1 ", ",E2 "].into_iter().zip(external) {
-            text.push_str(axis);
+        for (number, value) in self.external(self.table) {
+            text.push_str(",E");
+            text.push_str(&number.to_string());
+            text.push(' ');
             push_fixed(text, value, 4);
         }
         text.push('}');
@@ -293,6 +351,7 @@ impl KukaKrl {
                 self.lines(text, &self.krl.arc_off);
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
+            Instruction::Above => self.above(text),
             Instruction::PassEnd => {
                 self.lines(text, &self.krl.hooks.pass_end);
                 self.end_skippable(text);
@@ -305,25 +364,53 @@ impl KukaKrl {
     /// The head of a volume's main program, and its data.
     fn begin_volume(&mut self) -> Vec<Chunk> {
         self.main = self.volumes.begin(&self.name);
+        self.values.set("program", &self.main);
         let (name, krl) = (&self.main, &self.krl);
         let data = format!(
             "&ACCESS RVP\r\n&REL 1\r\n&COMMENT {}\r\nDEFDAT {name}{}\r\nDECL E6AXIS XHOME={{{}}}\r\n{}ENDDAT\r\n",
             self.comment,
             if self.program.restart || self.program.layer_offsets { " PUBLIC" } else { "" },
-            krl.home,
+            self.home(),
             self.start_variable() + &if self.program.layer_offsets { self.offsets() } else { String::new() }
         );
         let mut text = self.head(name);
         self.supplies.iter().for_each(|line| text.push_str(&format!("; {line}\r\n")));
         text.push_str(";FOLD INI;%{PE}\r\n  GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )\r\n");
         text.push_str("  INTERRUPT ON 3\r\n  BAS(#INITMOV,0)\r\n;ENDFOLD (INI)\r\n");
-        text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = BASE_DATA[{}]\r\n", krl.tool, krl.base));
+        text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = {}\r\n", krl.tool, self.base("")));
+        // The torch is held in the part's frame, along arcs too.
+        text.push_str("$ORI_TYPE = #VAR\r\n$CIRC_TYPE = #BASE\r\n");
         text.push_str(&format!("BAS(#VEL_PTP,{})\r\n", fixed(krl.ptp_speed, 0)));
         text.push_str(&format!("$APO.CDIS = {}\r\n", fixed(krl.blend, 3)));
         text.push_str(&format!("$VEL.CP = {}\r\n", fixed(self.travel_speed / 1000.0, 6)));
+        self.coupled(&mut text);
         self.lines(&mut text, &self.krl.start);
+        self.lines(&mut text, &self.krl.hooks.watch);
         text.push_str("PTP XHOME\r\n");
-        vec![Chunk::new(format!("{name}.dat"), data), Chunk::new(format!("{name}.src"), text)]
+        let chunks = vec![Chunk::new(format!("{name}.dat"), data), Chunk::new(format!("{name}.src"), text)];
+        self.volumes.add_frame(size(&chunks) + size(&self.end_volume()));
+        chunks
+    }
+
+    /// The axes at home; those beside the robot's stand as in the program, a table that turns at 0, unless the profile says
+    /// otherwise.
+    fn home(&self) -> String {
+        let table = self.program.table_angle.or(self.program.table_side.map(|_| 0.0));
+        let missing = self.external(table).filter(|(number, _)| !self.krl.home.contains(&format!("E{number} ")));
+        let missing: String = missing.map(|(number, value)| format!(",E{number} {}", fixed(value, 4))).collect();
+        format!("{}{missing}", self.krl.home)
+    }
+
+    /// The forms of ArcTech set the base by its number alone, so the controller itself must couple it to the table.
+    fn coupled(&self, text: &mut String) {
+        let table = self.krl.table_machine.filter(|_| self.krl.arc == KrlArc::Arctech && self.table.is_some());
+        if let Some(machine) = table {
+            let base = self.krl.base;
+            text.push_str(&format!(
+                "; halts where $config.dat does not couple base {base} to machine {machine}\r\n\
+                 WHILE MACHINE_FRAME_DAT[{base}].MACH_DEF_INDEX <> {machine}\r\nHALT\r\nENDWHILE\r\n"
+            ));
+        }
     }
 
     /// The heights to be added to the layers.
@@ -343,22 +430,37 @@ impl KukaKrl {
 
     fn end_volume(&self) -> Vec<Chunk> {
         let mut text = String::new();
+        self.lines(&mut text, &self.krl.hooks.all_off);
         self.lines(&mut text, &self.krl.end);
         text.push_str("PTP XHOME\r\nEND\r\n");
+        self.lines(&mut text, &self.krl.hooks.watch_routines);
         self.lines(&mut text, &self.krl.routines);
         vec![Chunk::new(format!("{}.src", self.main), text)]
     }
 
-    /// The modules of a layer, and their calls.
+    /// The modules of a layer, and their calls; each that has no room in the volume begins another.
     fn modules(&mut self, program: &LayerProgram) -> Vec<Chunk> {
         let parts = split::passes(&program.instructions, self.krl.max_points);
-        let count = parts.len();
-        let module = |(part, moves)| self.module(program, part, part + 1 == count, moves);
-        parts.into_iter().enumerate().flat_map(module).collect()
+        let (count, mut all) = (parts.len(), Vec::new());
+        for (part, moves) in parts.into_iter().enumerate() {
+            let mut chunks = self.module(program, part, part + 1 == count, moves);
+            if !self.volumes.has_room(size(&chunks)) {
+                all.extend(self.end_volume());
+                all.extend(self.begin_volume());
+                chunks = self.module(program, part, part + 1 == count, &from_anywhere(moves));
+            }
+            self.volumes.add(size(&chunks));
+            all.extend(chunks);
+        }
+        all
     }
 }
 
 impl Writer for KukaKrl {
+    fn weaves(&self) -> bool {
+        self.weave.is_some() && self.krl.arc == KrlArc::Arctech
+    }
+
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.values.set("layers", layers);
@@ -373,18 +475,8 @@ impl Writer for KukaKrl {
             return Vec::new();
         }
         self.values.set_layer(program);
-        let mut chunks = self.modules(program);
-        if !self.volumes.has_room(size(&chunks)) {
-            let before = self.end_volume();
-            chunks = [before, self.begin_volume()].concat();
-            let instructions = from_anywhere(&program.instructions);
-            let first = self.modules(&LayerProgram { instructions, ..program.clone() });
-            self.volumes.add(size(&first));
-            chunks.extend(first);
-            return chunks;
-        }
-        self.volumes.add(size(&chunks));
-        chunks
+        self.layer = program.index;
+        self.modules(program)
     }
 
     fn end(&mut self) -> Vec<Chunk> {

@@ -181,7 +181,7 @@ impl MarlinGcode {
                 text.push_str(&format!("G4 P{}\n", fixed(seconds * 1000.0, 0)));
             }
             Instruction::ArcOff { .. } => self.lays = false,
-            Instruction::PassStart { .. } | Instruction::PassEnd => {}
+            Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd => {}
         }
     }
 

@@ -2,17 +2,21 @@
 
 use crate::number::{fixed, push_fixed};
 use super::section::{Rapid, WireFeedUnit};
-use crate::program::Weave;
+use crate::program::{ProgramSettings, Weave};
 use crate::process::Process;
 use glam::DVec3;
 
-/// Six external axes that are not there.
-const NO_AXES: &str = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]";
-
-/// The external axes of a target: a linear axis (mm), then a turn table (°), as far as they are there.
-pub(super) fn external_axes(linear: Option<f64>, table: Option<f64>) -> String {
-    let there = linear.into_iter().chain(table);
-    there.fold(NO_AXES.to_owned(), |axes, value| axes.replacen("9E+09", &fixed(value, 4), 1))
+/// The external axes of a target: a linear axis (mm), and a turn table (°) in its place, as far as they are there.
+pub(super) fn external_axes(program: &ProgramSettings, table: Option<f64>, rapid: &Rapid) -> String {
+    let mut axes = [const { None }; 6];
+    axes[0] = program.linear_axis;
+    let free = usize::from(program.linear_axis.is_some());
+    let place = rapid.table_axis.map_or(free, |axis| axis as usize - 1);
+    if let Some(axis) = axes.get_mut(place).filter(|_| table.is_some()) {
+        *axis = table;
+    }
+    let texts = axes.map(|value| value.map_or_else(|| "9E+09".to_owned(), |value| fixed(value, 4)));
+    format!("[{}]", texts.join(","))
 }
 
 /// Numbers in brackets, with `decimals` decimal places.
@@ -104,25 +108,38 @@ pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, 
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
 }
 
-/// Weavedata: a zigzag with all axes; RobotWare counts its width from side to side, and what it stays there as a way, mm.
+/// Weavedata for a speed, mm/s: a zigzag with all axes, whose length is a way along the seam at any speed. RobotWare counts
+/// its width from side to side, and what it stays there as a way too, mm.
 pub(super) fn weave(weave: &Weave, speed: f64) -> String {
     let [length, width, dwell] = [weave.length, 2.0 * weave.amplitude, weave.dwell * speed].map(|v| fixed(v, 3));
-    format!("TASK PERS weavedata wvBead:=[1,0,{length},{width},0,{dwell},0,{dwell},0,0,0,0,0,0,0];")
+    format!("[1,0,{length},{width},0,{dwell},0,{dwell},0,0,0,0,0,0,0]")
 }
 
-/// The data of the main module: tool, part, home, speeds, zone and seam, one declaration each.
-pub(super) fn declarations(process: &Process, travel_speed: f64, rapid: &Rapid, arc: bool) -> Vec<String> {
+/// The data of the main module: tool, part, home with its external `axes`, speeds, zone and seam, one declaration each. A
+/// part on a turn table has its frame on the unit, whose own frame the controller knows.
+pub(super) fn declarations(
+    process: &Process,
+    travel_speed: f64,
+    rapid: &Rapid,
+    arc: bool,
+    table: Option<&str>,
+    axes: &str,
+) -> Vec<String> {
     let load = format!("[{},{},[1,0,0,0],0,0,0]", fixed(rapid.tool_load[0], 3), list(&rapid.tool_load[1..], 3));
     let tool =
         rapid.tool_frame.as_ref().map(|f| format!("TASK PERS tooldata {}:=[TRUE,{},{load}];", rapid.tool, pose(f)));
-    let wobj = rapid
-        .part_frame
-        .as_ref()
-        .map(|f| format!("TASK PERS wobjdata {}:=[FALSE,TRUE,\"\",{},[[0,0,0],[1,0,0,0]]];", rapid.wobj, pose(f)));
+    let wobj = rapid.part_frame.as_ref().map(|frame| {
+        let none = "[[0,0,0],[1,0,0,0]]";
+        let frames = match table {
+            Some(unit) => format!("FALSE,\"{unit}\",{none},{}", pose(frame)),
+            None => format!("TRUE,\"\",{},{none}", pose(frame)),
+        };
+        format!("TASK PERS wobjdata {}:=[FALSE,{frames}];", rapid.wobj)
+    });
     let seam = arc.then(|| format!("TASK PERS seamdata smBead:=[{}];", seam(process, rapid)));
     let zone = (rapid.zone > 0.0).then(|| format!("CONST zonedata zBead:={};", zone(rapid.zone)));
     let always = [
-        format!("CONST jointtarget jHome:=[{},{NO_AXES}];", list(&rapid.home, 3)),
+        format!("CONST jointtarget jHome:=[{},{axes}];", list(&rapid.home, 3)),
         format!("CONST speeddata vHome:={};", speed(rapid.home_speed, rapid)),
         format!("CONST speeddata vTravel:={};", speed(travel_speed, rapid)),
     ];

@@ -7,9 +7,9 @@ pub(crate) const MAX_NAME: usize = 32;
 /// Longest folder: with a slash, a module's name and `.mod` it must fit into a string of 80 characters.
 pub(crate) const MAX_FOLDER: usize = 40;
 
-/// Data that the post declares; welddata are `wd1`, `wd2`, …, speeddata of the plain variant `vd1`, `vd2`, ….
-pub(crate) const OWN: [&str; 9] =
-    ["jHome", "vHome", "vTravel", "zBead", "smBead", "wvBead", "nStart", "nDz", "main"];
+/// Data that the post declares; welddata are `wd1`, `wd2`, …, weavedata `wv1`, …, speeddata of the plain variant `vd1`, ….
+pub(crate) const OWN: [&str; 8] =
+    ["jHome", "vHome", "vTravel", "zBead", "smBead", "nStart", "nDz", "main"];
 
 /// Words of the language, and system data and types that a part might happen to be named after.
 const RESERVED: &str = "\
@@ -17,11 +17,11 @@ const RESERVED: &str = "\
     ENDRECORD ENDTEST ENDTRAP ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE NOSTEPIN \
     NOT NOVIEW OR PERS PROC RAISE READONLY RECORD RETRY RETURN STEP SYSMODULE TASK TEST THEN TO TRAP TRUE \
     TRYNEXT UNDO VAR VIEWONLY WHILE WITH XOR BASE USER FINE STOP BREAK RESET SET POS NUM BOOL STRING POSE \
-    VMAX LOAD SAVE ARCL ARCC ARCLSTART ARCLEND ARCCEND MOVEL MOVEJ MOVEC MOVEABSJ SETDO SETAO WAITTIME CONFL SINGAREA \
+    VMAX LOAD SAVE ARCL ARCC ARCLSTART ARCLEND ARCCEND MOVEL MOVEJ MOVEC MOVEABSJ SETDO SETAO WAITTIME CONFL CONFJ SINGAREA CIRPATHMODE ACTUNIT \
     UNLOAD ERASEMODULE PTP LIN CIRC BAS IR_STOPM";
 
 /// Families of system names: the letters, then digits only.
-const NUMBERED: &str = "V Z TOOL WOBJ LOAD INPOS VROT VLIN LAYER WD VD PI";
+const NUMBERED: &str = "V Z TOOL WOBJ LOAD INPOS VROT VLIN LAYER WD WV VD PI";
 
 /// Whether a cell or a part may use the name.
 pub(crate) fn is_identifier(name: &str) -> bool {

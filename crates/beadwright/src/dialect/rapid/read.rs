@@ -4,17 +4,26 @@
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Value};
-use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
+use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
 use super::module;
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal.
-const HARMLESS: [&str; 49] = [
+const HARMLESS: [&str; 58] = [
+    "CirPathMode",
+    "MechUnitLoad",
+    "IDelete",
+    "CONNECT",
+    "ISignalDI",
+    "IWatch",
+    "TriggStopProc",
+    "StartMove",
+    "StopMove",
     "ConfL",
     "ConfJ",
     "SingArea",
@@ -69,6 +78,9 @@ const HARMLESS: [&str; 49] = [
 /// Branches and loops.
 const CONTROL: [&str; 6] = ["IF", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
 
+/// Statements that only wait or tell, up to the end of their block.
+const WAITING: [&str; 7] = ["TPWrite", "ErrWrite", "Stop", "EXIT", "WaitTime", "ENDIF", "ENDWHILE"];
+
 /// Where handlers begin: they run on errors only.
 const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
 
@@ -116,6 +128,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         on: Patterns::new(&options.arc.on),
         off: Patterns::new(&options.arc.off),
         values: HashMap::new(),
+        in_time: HashSet::new(),
     };
     let main = reader.load(None, text)?;
     let entry = main.proc("main").or_else(|| main.first_proc()).ok_or(ReadError::NoProgram("RAPID"))?;
@@ -132,6 +145,8 @@ struct Reader<'a> {
     off: Patterns,
     /// Numbers of variables that were assigned, in upper case.
     values: HashMap<String, f64>,
+    /// Flags that waits set where their time is over, in upper case.
+    in_time: HashSet<String>,
 }
 
 impl Reader<'_> {
@@ -162,18 +177,30 @@ impl Reader<'_> {
         let caller = std::mem::replace(&mut self.trace.module, module.name.clone());
         let handler = |text: &str| HANDLERS.iter().any(|h| h.eq_ignore_ascii_case(name(text).0));
         let body: Vec<(&str, usize)> = module.body(proc).take_while(|(text, _)| !handler(text)).collect();
-        unrolled(body.len(), |i| mark(body[i].0), |i| self.line(body[i].0, body[i].1, module, depth))?;
+        unrolled(body.len(), |i| mark(body[i].0), |i| self.line(&body, i, module, depth))?;
         self.trace.module = caller;
         Ok(())
     }
 
     /// A statement, and what comes after it.
-    fn line(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<Next, ReadError> {
+    fn line(
+        &mut self,
+        body: &[(&str, usize)],
+        i: usize,
+        module: &Rc<Module>,
+        depth: usize,
+    ) -> Result<Next, ReadError> {
+        let (text, line) = body[i];
         match mark(text) {
             Some(Mark::Begin) => {
-                let next = match strip_word(text, "IF") {
-                    Some(condition) => Next::taken(self.holds(condition, module)),
-                    None => turns(text, "FROM", Counting::Towards).map_or(Next::On, Next::Turns),
+                let until = behind(i + 1, body.len(), |at| mark(body[at].0));
+                let inside = || body[i + 1..until].iter().map(|(text, _)| *text);
+                let waits = || inside().all(|text| begins_with(text, &WAITING)).then_some(false);
+                let next = match (strip_word(text, "IF"), strip_word(text, "WHILE")) {
+                    (Some(condition), _) => Next::taken(self.holds(condition, module).or_else(waits)),
+                    // A loop that goes on while something is late.
+                    (_, Some(condition)) => Next::taken(self.is_late(condition).or_else(waits)),
+                    _ => turns(text, "FROM", Counting::Towards).map_or(Next::On, Next::Turns),
                 };
                 if next == Next::On {
                     let word = name(text).0.to_ascii_uppercase();
@@ -198,8 +225,17 @@ impl Reader<'_> {
         holds(condition.strip_suffix("THEN").unwrap_or(&condition), value)
     }
 
+    /// Whether a condition is the flag of a wait that may come too late: while all is well none does.
+    fn is_late(&self, condition: &str) -> Option<bool> {
+        let condition = compact(condition).to_ascii_uppercase();
+        self.in_time.contains(condition.strip_suffix("DO").unwrap_or(&condition)).then_some(false)
+    }
+
     fn statement(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {
         let (word, rest) = name(text);
+        if let Some((_, flag)) = text.split_once("\\TimeFlag:=") {
+            self.in_time.insert(name(flag).0.to_ascii_uppercase());
+        }
         let is = |name: &str| name.eq_ignore_ascii_case(word);
         if let Some(&(_, round, weld)) = MOTIONS.iter().find(|m| is(m.0)) {
             return self.motion(round, weld, is("MoveJ"), text, line, module);
@@ -440,12 +476,12 @@ impl Reader<'_> {
 fn mark(text: &str) -> Option<Mark> {
     let is = |word: &str| strip_word(text, word).is_some();
     let ends = |last: &str| text.get(text.len().saturating_sub(last.len())..).is_some_and(|t| t.eq_ignore_ascii_case(last));
-    if is("FOR") || (is("IF") && ends("THEN")) {
+    if is("FOR") || (is("IF") && ends("THEN")) || (is("WHILE") && ends("DO")) {
         Some(Mark::Begin)
     } else if is("ELSE") || is("ELSEIF") {
         Some(Mark::Else)
     } else {
-        (is("ENDFOR") || is("ENDIF")).then_some(Mark::End)
+        (is("ENDFOR") || is("ENDIF") || is("ENDWHILE")).then_some(Mark::End)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and the limits of its values.
 
 use super::write::AbbRapid;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
 use crate::program::ProgramSettings;
@@ -79,9 +79,17 @@ pub struct Rapid {
     pub tool_load: [f64; 4],
     /// Name of the wobjdata.
     pub wobj: String,
-    /// Frame of the part: x, y, z in mm and quaternion w, x, y, z; leave it out if the controller already has the
-    /// wobjdata.
+    /// Frame of the part: x, y, z in mm and quaternion w, x, y, z; on a turn table, its frame on the table. Leave it out if the
+    /// controller already has the wobjdata.
     pub part_frame: Option<[f64; 7]>,
+    /// Name of the mechanical unit that is the turn table, such as `STN1`: the work object turns with it, and the program
+    /// activates it. Needed for `program.table_angle` and `program.table_side`.
+    pub table_unit: Option<String>,
+    /// Which external axis of targets the turn table is, 1 to 6 for eax_a to eax_f, as the controller is configured; by
+    /// default the first that `program.linear_axis` leaves free.
+    pub table_axis: Option<u32>,
+    /// Name of the mechanical unit that is the linear axis, where it is not active from the start: the program activates it.
+    pub track_unit: Option<String>,
     /// Step of the deposition speeds, mm/s: each is written as the nominal speed plus a whole multiple of this step,
     /// with one welddata per speed.
     pub speed_step: f64,
@@ -116,7 +124,8 @@ pub struct Rapid {
     pub crater: Vec<String>,
     /// Statements at the end of the main program.
     pub end: Vec<String>,
-    /// Lines of subprograms that the other lines call, in the main module, behind `main`, with the data that they declare; default none.
+    /// Lines of subprograms that the other lines call, in the main module, behind `main`; lines before the first of them
+    /// declare data. Default none.
     #[serde(default)]
     pub routines: Vec<String>,
     /// Lines at other places of the program; default none.
@@ -153,6 +162,9 @@ pub struct RapidSeam {
     pub rollback_time: f64,
 }
 
+/// How the controller knows the turn table.
+const TABLE: &str = "It is the name of the turn table's mechanical unit, such as \"STN1\": the work object must turn with it.";
+
 fn ten_thousand() -> usize {
     10_000
 }
@@ -168,6 +180,7 @@ impl Section for Rapid {
                 "the pendant cannot show longer modules";
             "rapid.tool_load": self.tool_load[0], LEAST, 500.0, "kg", CONTROLLER;
             "rapid.speed_step": self.speed_step, LEAST, 100.0, "mm/s", CONTROLLER;
+            "rapid.table_axis": self.table_axis.unwrap_or(1).into(), 1.0, 6.0, "(external axis)", CONTROLLER;
             "rapid.schedule": self.schedule.into(), 0.0, 9999.0, "(synergic line or job)", CONTROLLER;
             "rapid.mode": self.mode.into(), 0.0, 99.0, "(process of the power source)", CONTROLLER;
             "rapid.voltage": self.voltage, -100.0, 100.0, "(volts, or a correction)", CONTROLLER;
@@ -185,10 +198,19 @@ impl Section for Rapid {
         limits
     }
 
-    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
         let broken = |key: &str, value: String, reason: &str| {
             Some(Broken { key: key.to_owned(), value, reason: reason.to_owned() })
         };
+        if let Some(axis) = self.table_axis.filter(|axis| *axis == 1 && program.linear_axis.is_some()) {
+            return broken("rapid.table_axis", axis.to_string(), "the linear axis (program.linear_axis) is eax_a, the first.");
+        }
+        for (key, unit) in [("rapid.table_unit", &self.table_unit), ("rapid.track_unit", &self.track_unit)] {
+            if let Some(unit) = unit.as_ref().filter(|unit| !names::is_identifier(unit)) {
+                let reason = "at most 32 letters, digits and _, a letter first: the name of the unit on the controller.";
+                return broken(key, format!("\"{unit}\""), reason);
+            }
+        }
         for (key, name) in [("rapid.tool", &self.tool), ("rapid.wobj", &self.wobj)] {
             let taken = names::OWN.iter().any(|own| own.eq_ignore_ascii_case(name));
             if taken || !names::is_identifier(name) {
@@ -227,8 +249,12 @@ impl Section for Rapid {
         ]
     }
 
-    fn supports(&self, extra: Extra) -> bool {
-        extra != Extra::Weave || self.arc == RapidArc::Instructions
+    fn supports(&self, _extra: Extra) -> bool {
+        true
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "rapid.table_unit", known: self.table_unit.is_some(), what: TABLE })
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -244,7 +270,7 @@ impl Section for Rapid {
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
         self.arc = RapidArc::Plain;
     }
 
@@ -253,6 +279,9 @@ impl Section for Rapid {
             needs::lines("rapid", &self.templates(), "SetAO aoWire,{{wire_feed_ratio}};", job)?;
         }
         let mut section = self.clone();
+        if self.arc == RapidArc::Instructions {
+            section.hooks.without_arc();
+        }
         section.orientation = orientation::quaternion(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(AbbRapid::new(job, section)))
     }

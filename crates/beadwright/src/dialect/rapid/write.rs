@@ -22,6 +22,9 @@ const MAX_COMMENT: usize = 76;
 /// Where to begin.
 const START: &str = "nStart";
 
+/// Words with which subprograms begin.
+const ROUTINES: [&str; 5] = ["PROC ", "TRAP ", "FUNC ", "LOCAL PROC ", "LOCAL TRAP "];
+
 /// Writes RAPID.
 pub(super) struct AbbRapid {
     name: String,
@@ -54,7 +57,7 @@ impl AbbRapid {
         let values = Values::new(&name, job);
         let rapid = with_ends(rapid, job);
         let orientation = data::quaternion(&rapid.orientation);
-        let axes = data::external_axes(job.program.linear_axis, job.program.table_angle);
+        let axes = data::external_axes(job.program, job.program.table_angle, &rapid);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
         Self { name, comment, supplies, rapid, program, weave, process, values, travel_speed, orientation, axes, digits: 3 }
@@ -138,7 +141,7 @@ impl AbbRapid {
         }
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
@@ -146,9 +149,32 @@ impl AbbRapid {
             statement(text, &format!("IF {START}>0 THEN"));
             self.motion(text, "MoveJ", above, "vHome", false);
             statement(text, &format!("{START}:=0;"));
+            statement(text, "ELSE");
+        }
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&self, text: &mut String) {
+        self.end_skippable(text);
+        self.hook(text, &self.rapid.hooks.pass_start);
+    }
+
+    /// The mechanical unit that turns under the part, if one does.
+    fn table(&self) -> Option<&str> {
+        self.rapid.table_unit.as_deref().filter(|_| self.program.has_table())
+    }
+
+    /// Activates the units that move along, and refuses a work object of the controller that does not turn with the table.
+    fn units(&self, text: &mut String) {
+        let track = self.rapid.track_unit.as_deref().filter(|_| self.program.linear_axis.is_some());
+        track.into_iter().chain(self.table()).for_each(|unit| statement(text, &format!("ActUnit {unit};")));
+        if let Some(unit) = self.table().filter(|_| self.rapid.part_frame.is_none()) {
+            let wobj = &self.rapid.wobj;
+            statement(text, &format!("IF {wobj}.ufprog OR {wobj}.ufmec<>\"{unit}\" THEN"));
+            statement(text, &format!("ErrWrite \"{wobj} does not turn with {unit}\",\"The path would not follow the part.\";"));
+            statement(text, "EXIT;");
             statement(text, "ENDIF");
         }
-        self.hook(text, &self.rapid.hooks.pass_start);
     }
 
     /// Lines where the torch stands, if there are any.
@@ -200,6 +226,10 @@ impl AbbRapid {
                 format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
             };
             text.push_str(&format!("  {declaration}\r\n"));
+            if let Some(weave) = self.weave.as_ref().filter(|_| self.with_arc()) {
+                let data = data::weave(weave, speed);
+                text.push_str(&format!("  LOCAL PERS weavedata wv{}:={data};\r\n", i + 1));
+            }
         }
     }
 
@@ -244,8 +274,8 @@ impl AbbRapid {
         for (i, &instruction) in all.iter().enumerate() {
             if let Some(attitude) = instruction.attitude() {
                 self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
-                if let Some(angle) = attitude.table {
-                    self.axes = data::external_axes(self.program.linear_axis, Some(angle));
+                if attitude.table.is_some() {
+                    self.axes = data::external_axes(&self.program, attitude.table, &self.rapid);
                 }
             }
             match (instruction, all.get(i + 1)) {
@@ -280,6 +310,7 @@ impl AbbRapid {
                 }
                 (Instruction::Dwell { seconds }, _) => wait(text, seconds),
                 (Instruction::PassStart { pass, above, .. }, _) => self.pass_start(text, pass, above),
+                (Instruction::Above, _) => self.above(text),
                 (Instruction::PassEnd, _) => {
                     self.hook(text, &self.rapid.hooks.pass_end);
                     self.end_skippable(text);
@@ -315,8 +346,8 @@ impl AbbRapid {
 
     /// The welddata of that number, and the weavedata where the torch swings.
     fn weld_data(&self, number: usize) -> String {
-        let weave = if self.weave.is_some() { "\\Weave:=wvBead" } else { "" };
-        format!("wd{number}{weave}")
+        let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
+        format!("wd{number}{}", weave.unwrap_or_default())
     }
 
     fn arc_off(&self, text: &mut String) {
@@ -360,7 +391,26 @@ impl AbbRapid {
     }
 }
 
+impl AbbRapid {
+    /// The data that the profile's subprograms declare, which RAPID wants before all routines, and the subprograms.
+    fn behind_main(&self) -> (Vec<String>, Vec<String>) {
+        let (mut data, mut routines) = (Vec::new(), Vec::new());
+        for lines in [&self.rapid.hooks.watch_routines, &self.rapid.routines] {
+            let lines: Vec<String> = self.values.expand(lines).collect();
+            let begins = |line: &String| ROUTINES.iter().any(|word| line.trim_start().starts_with(word));
+            let first = lines.iter().position(begins).unwrap_or(lines.len());
+            data.extend_from_slice(&lines[..first]);
+            routines.extend_from_slice(&lines[first..]);
+        }
+        (data, routines)
+    }
+}
+
 impl Writer for AbbRapid {
+    fn weaves(&self) -> bool {
+        self.weave.is_some() && self.with_arc()
+    }
+
     fn begin(&mut self, layers: usize) -> Vec<Chunk> {
         self.digits = layers.to_string().len().max(3);
         self.values.set("layers", layers);
@@ -377,17 +427,23 @@ impl Writer for AbbRapid {
             text.push_str("  ! mm to be added to the height of each layer\r\n");
             text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
         }
-        for line in data::declarations(&self.process, self.travel_speed, &self.rapid, self.with_arc()) {
+        let standing = self.program.table_angle.or(self.program.table_side.map(|_| 0.0));
+        let (arc, home) = (self.with_arc(), data::external_axes(&self.program, standing, &self.rapid));
+        for line in data::declarations(&self.process, self.travel_speed, &self.rapid, arc, self.table(), &home) {
             text.push_str(&format!("  {line}\r\n"));
         }
-        if let Some(weave) = self.weave.as_ref().filter(|_| self.with_arc()) {
-            text.push_str(&format!("  {}\r\n", data::weave(weave, self.process.deposition_speed)));
-        }
+        self.behind_main().0.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
         text.push_str("  PROC main()\r\n");
+        // The robot takes the posture nearest to the one that it has: configurations are unknown here.
         statement(&mut text, "ConfL \\Off;");
+        statement(&mut text, "ConfJ \\Off;");
         statement(&mut text, "SingArea \\Wrist;");
+        // The torch is held in the part's frame, along arcs too.
+        statement(&mut text, "CirPathMode \\ObjectFrame;");
+        self.units(&mut text);
         self.home(&mut text);
         self.lines(&mut text, &self.rapid.start);
+        self.lines(&mut text, &self.rapid.hooks.watch);
         let head = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\" ?>\r\n<Program>\r\n";
         let list = self.pgf(format!("{head}  <Module>{}.mod</Module>\r\n", self.name));
         [self.main(text)].into_iter().chain(list).collect()
@@ -410,10 +466,11 @@ impl Writer for AbbRapid {
         if self.program.layer_offsets {
             statement(&mut text, "PDispOff;");
         }
+        self.lines(&mut text, &self.rapid.hooks.all_off);
         self.lines(&mut text, &self.rapid.end);
         self.home(&mut text);
         text.push_str("  ENDPROC\r\n");
-        self.values.expand(&self.rapid.routines).for_each(|line| text.push_str(&format!("  {line}\r\n")));
+        self.behind_main().1.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
         text.push_str("ENDMODULE\r\n");
         [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
     }

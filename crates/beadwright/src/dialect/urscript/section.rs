@@ -4,6 +4,7 @@ use super::write::UniversalScript;
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
+use crate::dialect::writing::volumes::MEGABYTE;
 use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -32,7 +33,8 @@ pub struct Urscript {
     /// Blending radius along a pass, mm; reduced where points are closer together than twice the radius; 0 for exact
     /// stops.
     pub blend: f64,
-    /// Most that one script may hold, MB; longer programs come in several scripts, run one after another; default 2.
+    /// Most that one script may hold, MB; longer programs come in several scripts, run one after another, and a pass that alone
+    /// is longer is cut and lit again. Default 2.
     #[serde(default = "two")]
     pub max_megabytes: f64,
     /// Whether the script ends with a call of its program. A script that is sent to the controller's socket or loaded in a
@@ -107,8 +109,14 @@ impl Section for Urscript {
         ]
     }
 
-    fn supports(&self, extra: Extra) -> bool {
-        extra != Extra::Weave
+    fn supports(&self, _extra: Extra) -> bool {
+        true
+    }
+
+    fn longest_pass(&self, program: &ProgramSettings) -> Option<usize> {
+        // The longest line of a move; arcs have two poses.
+        let a_move = if program.arcs { 250 } else { 150 };
+        Some((self.max_megabytes * MEGABYTE) as usize / a_move)
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -116,7 +124,7 @@ impl Section for Urscript {
     }
 
     fn dry_run(&mut self) {
-        self.hooks.dry_run();
+        self.hooks.without_arc();
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {

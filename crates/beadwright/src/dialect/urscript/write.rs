@@ -6,7 +6,7 @@
 
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, upper_name};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
 use crate::number::{fixed, push_fixed};
 use super::section::Urscript;
 use crate::program::{Instruction, LayerProgram, ProgramSettings};
@@ -24,6 +24,9 @@ const BLEND_PART: f64 = 0.45;
 
 /// Smaller blends are left out, mm.
 const MIN_BLEND: f64 = 0.01;
+
+/// A function has about so many moves at most; a longer pass makes a longer function.
+const MAX_MOVES: usize = 2000;
 
 /// Comments are wrapped at this many characters.
 const MAX_COMMENT: usize = 76;
@@ -97,14 +100,21 @@ impl UniversalScript {
         }
     }
 
-    /// Begins a pass, to which the torch comes from anywhere where the program begins at it.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
     fn pass_start(&mut self, text: &mut String, indent: &str, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, indent, number);
         if self.program.restart {
             text.push_str(&format!("{indent}if {START} > 0:\n"));
             self.instruction(text, indent, Instruction::Approach { to: above }, None);
-            text.push_str(&format!("{indent}global {START} = 0\n{indent}end\n"));
+            text.push_str(&format!("{indent}global {START} = 0\n{indent}else:\n"));
+        }
+    }
+
+    /// The torch is above the start of the pass, whichever way it came.
+    fn above(&mut self, text: &mut String, indent: &str) {
+        if self.program.restart {
+            text.push_str(&format!("{indent}end\n"));
         }
         self.lines(text, indent, &self.urscript.hooks.pass_start);
     }
@@ -138,7 +148,7 @@ impl UniversalScript {
             // Rounded down: it must stay under half of the shorter move.
             push_fixed(text, (blend * 1000.0).floor() / 1e6, 6);
         }
-        text.push_str(if via.is_some() { ", mode=1)\n" } else { ")\n" });
+        text.push_str(if via.is_some() { ", mode=0)\n" } else { ")\n" });
     }
 
     /// The blend at the end of a move, mm; `next` is the move after it, if one follows without a stop.
@@ -194,6 +204,7 @@ impl UniversalScript {
                 self.lines(text, indent, &self.urscript.arc_off);
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, indent, pass, above),
+            Instruction::Above => self.above(text, indent),
             Instruction::PassEnd => {
                 self.lines(text, indent, &self.urscript.hooks.pass_end);
                 self.end_skippable(text, indent);
@@ -229,38 +240,58 @@ impl UniversalScript {
             text.push_str(&format!("  global place = {frame}\n  def lifted(height):\n"));
             text.push_str("    return pose_trans(place, p[0.0,0.0,height/1000.0,0.0,0.0,0.0])\n  end\n");
         }
+        self.lines(&mut text, "  ", &self.urscript.hooks.watch_routines);
         self.lines(&mut text, "  ", &self.urscript.routines);
+        self.volumes.add_frame(text.len() + self.closing().len());
         vec![self.chunk(text)]
     }
 
-    fn end_volume(&mut self) -> Vec<Chunk> {
+    /// What runs: home, the functions of the layers, home.
+    fn closing(&self) -> String {
         let mut text = String::new();
         self.home(&mut text);
         self.lines(&mut text, "  ", &self.urscript.start);
+        self.lines(&mut text, "  ", &self.urscript.hooks.watch);
         self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
+        self.lines(&mut text, "  ", &self.urscript.hooks.all_off);
         self.lines(&mut text, "  ", &self.urscript.end);
         self.home(&mut text);
         text.push_str("end\n");
         if self.urscript.call {
             text.push_str(&format!("{}()\n", self.main));
         }
-        vec![self.chunk(text)]
+        text
     }
 
-    fn function(&mut self, name: &str, program: &LayerProgram) -> String {
+    fn end_volume(&self) -> Vec<Chunk> {
+        vec![self.chunk(self.closing())]
+    }
+
+    /// The function of one part of a layer (`part` counts from 0; `last` if no other follows).
+    fn function(
+        &mut self,
+        name: &str,
+        program: &LayerProgram,
+        (part, last): (usize, bool),
+        moves: &[Instruction],
+    ) -> String {
         let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
-        text.reserve(program.instructions.len() * 120);
+        text.reserve(moves.len() * 120);
         if self.program.layer_offsets {
             text.push_str(&format!("    global part_frame = lifted(layer_dz[{}])\n", program.index));
         }
-        let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
-        self.skippable(&mut text, "    ", self.values.last_number(), &lines);
-        for (i, &instruction) in program.instructions.iter().enumerate() {
-            let behind = program.instructions[i + 1..].iter();
+        if part == 0 {
+            let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
+            self.skippable(&mut text, "    ", self.values.last_number(), &lines);
+        }
+        for (i, &instruction) in moves.iter().enumerate() {
+            let behind = moves[i + 1..].iter();
             let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
             self.instruction(&mut text, "    ", instruction, next);
         }
-        self.skippable(&mut text, "    ", self.values.last_number(), &self.urscript.hooks.layer_end);
+        if last {
+            self.skippable(&mut text, "    ", self.values.last_number(), &self.urscript.hooks.layer_end);
+        }
         text + "  end\n"
     }
 }
@@ -277,18 +308,24 @@ impl Writer for UniversalScript {
         if program.instructions.is_empty() {
             return Vec::new();
         }
-        let name = format!("layer_{:0digits$}", program.index + 1, digits = self.digits);
         self.values.set_layer(program);
-        let (mut chunks, mut text) = (Vec::new(), self.function(&name, program));
-        if !self.volumes.has_room(text.len()) {
-            chunks = self.end_volume();
-            chunks.extend(self.begin_volume());
-            let instructions = from_anywhere(&program.instructions);
-            text = self.function(&name, &LayerProgram { instructions, ..program.clone() });
+        let parts = split::passes(&program.instructions, MAX_MOVES);
+        let (count, mut chunks) = (parts.len(), Vec::new());
+        for (part, moves) in parts.into_iter().enumerate() {
+            let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
+            let name = format!("layer_{:0digits$}{more}", program.index + 1, digits = self.digits);
+            let place = (part, part + 1 == count);
+            let mut text = self.function(&name, program, place, moves);
+            if !self.volumes.has_room(text.len()) {
+                chunks.extend(self.end_volume());
+                chunks.extend(self.begin_volume());
+                text = self.function(&name, program, place, &from_anywhere(moves));
+            }
+            // With its call.
+            self.volumes.add(text.len() + name.len() + 5);
+            self.layers.push(name);
+            chunks.push(self.chunk(text));
         }
-        self.volumes.add(text.len());
-        self.layers.push(name);
-        chunks.push(self.chunk(text));
         chunks
     }
 

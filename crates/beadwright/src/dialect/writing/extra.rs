@@ -10,7 +10,7 @@ pub enum Extra {
     Restart,
     /// Heights added to layers (`program.layer_offsets`).
     LayerOffsets,
-    /// The controller's own weaving (`[weave]`).
+    /// A torch that swings (`[weave]`).
     Weave,
     /// A torch that leans (`program.follow_wall`, `program.travel_angle`).
     Tilt,
@@ -23,8 +23,7 @@ impl Extra {
         match self {
             Self::Restart => job.program.restart,
             Self::LayerOffsets => job.program.layer_offsets,
-            // A dry run has no arc to weave.
-            Self::Weave => job.weave.is_some() && !job.dry_run,
+            Self::Weave => job.weave.is_some(),
             Self::Tilt => job.program.tilts(),
         }
     }
@@ -34,15 +33,14 @@ impl Extra {
         match self {
             Self::Restart => (
                 "program.restart = true",
-                "Take it out; a stopped build goes on with plan --from-layer N --from-pass N.",
+                "Take it out; a stopped build goes on with plan --from-layer N --from-pass N. Robots have it, and CNC controls \
+                 whose gcode.control is given and whose wire is no axis.",
             ),
-            Self::LayerOffsets => {
-                ("program.layer_offsets = true", "Take it out; KRL, RAPID, FANUC and URScript have it.")
-            }
-            Self::Weave => (
-                "[weave]",
-                "Controllers weave with ArcTech, RobotWare Arc, FANUC and Yaskawa; take [weave] out for others.",
+            Self::LayerOffsets => (
+                "program.layer_offsets = true",
+                "Take it out; robots have it, and CNC controls whose gcode.control is given.",
             ),
+            Self::Weave => ("[weave]", "A printer does not weave: take it out."),
             Self::Tilt => (
                 "program.follow_wall or program.travel_angle",
                 "Only robots lean their torch; set both to 0 for others.",

@@ -54,6 +54,11 @@ pub trait Writer: Send {
     /// What comes after the last layer; the torch stands clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
 
+    /// Whether the controller swings the torch by itself where the job weaves; otherwise it is written as moves.
+    fn weaves(&self) -> bool {
+        false
+    }
+
     /// What people must know about the finished program: sentences.
     fn notes(&self) -> Vec<String> {
         Vec::new()
@@ -94,9 +99,14 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Makes the instructions of the layers.
-    pub fn programmer(&self) -> Programmer {
-        Programmer::of(&self.weld, self.program, self.dry_run)
+    /// Makes the instructions of the layers, as controllers need them that weave by themselves or not.
+    pub fn programmer(&self, weaves: bool) -> Programmer {
+        Programmer::of(&self.weld, self.program, self.dry_run).woven(self.weave.filter(|_| !weaves))
+    }
+
+    /// How the torch swings where a controller does it along with the arc: a dry run has none.
+    pub(super) fn weave(&self) -> Option<Weave> {
+        self.weave.filter(|_| !self.dry_run).cloned()
     }
 
     /// A comment for the head of files.
@@ -187,6 +197,11 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     if job.program.external_axes() && !dialect.external_axes {
         return Err(DialectError::NoExternalAxes(dialect.name));
     }
+    if let Some(table) = section.table().filter(|table| job.program.has_table() && !table.known) {
+        let why = if job.program.table_side.is_some() { "program.table_side" } else { "program.table_angle" };
+        let (profile, key, remedy) = (job.profile.clone(), table.key.to_owned(), table.what.to_owned());
+        return Err(DialectError::NoKey { profile, key, why: why.to_owned(), remedy });
+    }
     extra::check(dialect.name, section, job)?;
     section.writer(job)
 }
@@ -213,7 +228,7 @@ pub fn write_with<L: Borrow<Layer>>(
     layers: &[L],
     job: &Job<'_>,
 ) -> Result<BTreeMap<String, String>, DialectError> {
-    let mut programmer = job.programmer();
+    let mut programmer = job.programmer(writer.weaves());
     let mut chunks = writer.begin(layers.len());
     layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
     chunks.extend(writer.end());

@@ -11,7 +11,7 @@ use crate::weld::retract_time;
 pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
 
 /// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program goes on.
-pub const PLACEHOLDERS: [Placeholder; 27] = [
+pub const PLACEHOLDERS: [Placeholder; 30] = [
     ("program", |job| job.part.clone()),
     ("layer", |_| String::new()),
     ("pass", |_| String::new()),
@@ -21,6 +21,9 @@ pub const PLACEHOLDERS: [Placeholder; 27] = [
     ("z", |_| String::new()),
     ("arc_timeout", |job| job.safety.arc_timeout.to_string()),
     ("arc_timeout_ms", |job| milliseconds(job.safety.arc_timeout)),
+    ("arc_tries", |job| job.safety.arc_tries.to_string()),
+    ("gas_halt", |job| gas_halt(job).to_string()),
+    ("gas_halt_ms", |job| milliseconds(gas_halt(job))),
     ("wire_feed_speed", |job| job.weld.process.wire_feed_speed.to_string()),
     ("deposition_speed", |job| job.weld.process.deposition_speed.to_string()),
     ("arc_start_delay", |job| job.weld.process.arc_start_delay.to_string()),
@@ -40,6 +43,10 @@ pub const PLACEHOLDERS: [Placeholder; 27] = [
     ("wire_retract_time", |job| ((retract(job) * 100.0).round() / 100.0).to_string()),
     ("wire_retract_time_ms", |job| milliseconds(retract(job))),
 ];
+
+fn gas_halt(job: &Job<'_>) -> f64 {
+    job.safety.gas_halt.unwrap_or(job.weld.process.gas_postflow)
+}
 
 fn milliseconds(seconds: f64) -> String {
     (seconds * 1000.0).round().to_string()

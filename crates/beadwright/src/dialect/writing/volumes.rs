@@ -1,4 +1,4 @@
-//! Programs too large for a controller's memory, in volumes: each is a main program of its own with its layers, and they
+//! Programs too large for a controller's memory, in volumes: each is a main program of its own with its modules, and they
 //! are loaded and run one after another.
 
 use crate::program::Instruction;
@@ -10,19 +10,24 @@ pub(in crate::dialect) struct Volumes {
     most: usize,
     /// Size of the present one, bytes.
     size: usize,
+    /// Whether the present one has a module.
+    begun: bool,
     /// Names of the main programs.
     names: Vec<String>,
+    /// Size of the largest, bytes.
+    largest: usize,
     /// Size of all, bytes.
     total: usize,
 }
 
 /// Bytes in a megabyte, as controllers count them.
-const MEGABYTE: f64 = 1e6;
+pub(in crate::dialect) const MEGABYTE: f64 = 1e6;
 
 impl Volumes {
-    /// Volumes of at most so many megabytes; only a longer layer makes a larger one.
+    /// Volumes of at most so many megabytes.
     pub(in crate::dialect) fn new(megabytes: f64) -> Self {
-        Self { most: (megabytes * MEGABYTE) as usize, size: 0, names: Vec::new(), total: 0 }
+        let most = (megabytes * MEGABYTE) as usize;
+        Self { most, size: 0, begun: false, names: Vec::new(), largest: 0, total: 0 }
     }
 
     /// Begins a volume and returns its name: that of the program, with a number from the second on.
@@ -30,44 +35,57 @@ impl Volumes {
         let number = self.names.len() + 1;
         let name = if number == 1 { program.to_owned() } else { format!("{program}_{number}") };
         self.names.push(name.clone());
-        self.size = 0;
+        (self.size, self.begun) = (0, false);
         name
     }
 
-    /// Whether the text of a layer still fits.
+    /// Whether the text of a module still fits.
     pub(in crate::dialect) fn has_room(&self, bytes: usize) -> bool {
-        self.size == 0 || self.size + bytes <= self.most
+        !self.begun || self.size + bytes <= self.most
     }
 
-    /// Adds the text of a layer.
-    pub(in crate::dialect) fn add(&mut self, bytes: usize) {
+    /// Adds the text of what every volume has: the head and the end of its main program.
+    pub(in crate::dialect) fn add_frame(&mut self, bytes: usize) {
         self.size += bytes;
         self.total += bytes;
+        self.largest = self.largest.max(self.size);
     }
 
-    /// What to tell of them, if there are several.
+    /// Adds the text of a module.
+    pub(in crate::dialect) fn add(&mut self, bytes: usize) {
+        self.add_frame(bytes);
+        self.begun = true;
+    }
+
+    /// What people must know of them, if there are several, or if one is larger than it may be.
     pub(in crate::dialect) fn note(&self, language: &str, extension: &str) -> Option<String> {
-        let [first, .., last] = &self.names[..] else { return None };
-        Some(format!(
-            "The {language} program has {:.1} MB and comes in {} volumes of at most {:.1} MB, {first}.{extension} to \
-             {last}.{extension}: load and run them one after another.",
-            self.total as f64 / MEGABYTE,
-            self.names.len(),
-            self.most as f64 / MEGABYTE
-        ))
+        let megabytes = |bytes: usize| bytes as f64 / MEGABYTE;
+        let (total, largest, most) = (megabytes(self.total), megabytes(self.largest), megabytes(self.most));
+        match &self.names[..] {
+            [first, .., last] if self.largest <= self.most => Some(format!(
+                "The {language} program has {total:.1} MB and comes in {} volumes of at most {most:.1} MB, {first}.{extension} \
+                 to {last}.{extension}: load and run them one after another.",
+                self.names.len(),
+            )),
+            [.., last] if self.largest > self.most => Some(format!(
+                "A volume of the {language} program has {largest:.1} MB, more than the {most:.1} MB that the controller takes \
+                 ({last}.{extension} is the last of {}): one pass of it cannot be cut. Fit longer moves \
+                 (program.chord_tolerance = 0.05, program.arcs = true).",
+                self.names.len(),
+            )),
+            _ => None,
+        }
     }
 }
 
-/// The instructions of the first layer of a volume: the machine comes from anywhere to above the start of the first pass,
-/// and goes down there.
+/// The instructions with which a volume begins: the machine comes from anywhere to above the start of the first pass, and
+/// goes down there.
 pub(in crate::dialect) fn from_anywhere(instructions: &[Instruction]) -> Vec<Instruction> {
-    let first = instructions.iter().position(|i| matches!(i, Instruction::Weld { .. })).unwrap_or(instructions.len());
-    let ways: Vec<usize> = (0..first).filter(|&i| instructions[i].target().is_some()).collect();
-    let Some(&above) = ways.get(ways.len().saturating_sub(2)) else { return instructions.to_vec() };
-    let begin = |(i, instruction): (usize, &Instruction)| match *instruction {
-        Instruction::Travel { to } if i == above => Some(Instruction::Approach { to }),
-        Instruction::Travel { .. } if i < above => None,
-        other => Some(other),
+    let way = instructions.iter().position(|i| matches!(i, Instruction::Above)).unwrap_or(0);
+    let come = |(i, instruction): (usize, &Instruction)| match *instruction {
+        Instruction::PassStart { above, .. } if i < way => vec![*instruction, Instruction::Approach { to: above }],
+        Instruction::Approach { .. } | Instruction::Travel { .. } if i < way => Vec::new(),
+        other => vec![other],
     };
-    instructions.iter().enumerate().filter_map(begin).collect()
+    instructions.iter().enumerate().flat_map(come).collect()
 }

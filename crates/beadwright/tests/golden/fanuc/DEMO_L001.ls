@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 1";
-LINE_COUNT = 33;
+LINE_COUNT = 25;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -12,37 +12,29 @@ DEFAULT_GROUP = 1,*,*,*,*;
    4:J P[1] 20% FINE ;
    5:L P[2] 100.0mm/sec FINE ;
    6:  !pass 1 contour ;
-   7:  DO[1]=ON ;
-   8:  WAIT 0.5(sec) ;
-   9:  Weld Start[1,1] ;
-  10:  WAIT 0.2(sec) ;
-  11:C P[3]
+   7:  Weld Start[1,1] ;
+   8:  WAIT 0.2(sec) ;
+   9:C P[3]
     :  P[4] 8.0mm/sec CNT100 ;
-  12:C P[5]
+  10:C P[5]
     :  P[6] 8.0mm/sec CNT100 ;
-  13:C P[7]
+  11:C P[7]
     :  P[8] 8.0mm/sec FINE ;
-  14:  Weld End[1,1] ;
-  15:  WAIT 0.5(sec) ;
-  16:  WAIT 1(sec) ;
-  17:  DO[1]=OFF ;
-  18:L P[9] 100.0mm/sec FINE ;
-  19:L P[10] 100.0mm/sec FINE ;
-  20:L P[11] 100.0mm/sec FINE ;
-  21:  !pass 2 infill ;
-  22:  DO[1]=ON ;
-  23:  WAIT 0.5(sec) ;
-  24:  Weld Start[1,1] ;
-  25:  WAIT 0.2(sec) ;
-  26:L P[12] 8.0mm/sec CNT100 ;
-  27:C P[13]
+  12:  Weld End[1,1] ;
+  13:  WAIT 0.5(sec) ;
+  14:L P[9] 100.0mm/sec FINE ;
+  15:L P[10] 100.0mm/sec FINE ;
+  16:L P[11] 100.0mm/sec FINE ;
+  17:  !pass 2 infill ;
+  18:  Weld Start[1,1] ;
+  19:  WAIT 0.2(sec) ;
+  20:L P[12] 8.0mm/sec CNT100 ;
+  21:C P[13]
     :  P[14] 8.0mm/sec CNT100 ;
-  28:L P[15] 6.0mm/sec FINE ;
-  29:  Weld End[1,1] ;
-  30:  WAIT 0.5(sec) ;
-  31:  WAIT 1(sec) ;
-  32:  DO[1]=OFF ;
-  33:L P[16] 100.0mm/sec FINE ;
+  22:L P[15] 6.0mm/sec FINE ;
+  23:  Weld End[1,1] ;
+  24:  WAIT 0.5(sec) ;
+  25:L P[16] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:

@@ -2,7 +2,7 @@
 /ATTR
 OWNER = MNEDITOR;
 COMMENT = "LAYER 2";
-LINE_COUNT = 34;
+LINE_COUNT = 26;
 PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
@@ -13,37 +13,29 @@ DEFAULT_GROUP = 1,*,*,*,*;
    5:L P[2] 100.0mm/sec FINE ;
    6:L P[3] 100.0mm/sec FINE ;
    7:  !pass 1 contour ;
-   8:  DO[1]=ON ;
-   9:  WAIT 0.5(sec) ;
-  10:  Weld Start[1,1] ;
-  11:  WAIT 0.2(sec) ;
-  12:C P[4]
+   8:  Weld Start[1,1] ;
+   9:  WAIT 0.2(sec) ;
+  10:C P[4]
     :  P[5] 8.0mm/sec CNT100 ;
-  13:C P[6]
+  11:C P[6]
     :  P[7] 8.0mm/sec CNT100 ;
-  14:C P[8]
+  12:C P[8]
     :  P[9] 8.0mm/sec FINE ;
-  15:  Weld End[1,1] ;
-  16:  WAIT 0.5(sec) ;
-  17:  WAIT 1(sec) ;
-  18:  DO[1]=OFF ;
-  19:L P[10] 100.0mm/sec FINE ;
-  20:L P[11] 100.0mm/sec FINE ;
-  21:L P[12] 100.0mm/sec FINE ;
-  22:  !pass 2 infill ;
-  23:  DO[1]=ON ;
-  24:  WAIT 0.5(sec) ;
-  25:  Weld Start[1,1] ;
-  26:  WAIT 0.2(sec) ;
-  27:L P[13] 8.0mm/sec CNT100 ;
-  28:C P[14]
+  13:  Weld End[1,1] ;
+  14:  WAIT 0.5(sec) ;
+  15:L P[10] 100.0mm/sec FINE ;
+  16:L P[11] 100.0mm/sec FINE ;
+  17:L P[12] 100.0mm/sec FINE ;
+  18:  !pass 2 infill ;
+  19:  Weld Start[1,1] ;
+  20:  WAIT 0.2(sec) ;
+  21:L P[13] 8.0mm/sec CNT100 ;
+  22:C P[14]
     :  P[15] 8.0mm/sec CNT100 ;
-  29:L P[16] 6.0mm/sec FINE ;
-  30:  Weld End[1,1] ;
-  31:  WAIT 0.5(sec) ;
-  32:  WAIT 1(sec) ;
-  33:  DO[1]=OFF ;
-  34:L P[17] 100.0mm/sec FINE ;
+  23:L P[16] 6.0mm/sec FINE ;
+  24:  Weld End[1,1] ;
+  25:  WAIT 0.5(sec) ;
+  26:L P[17] 100.0mm/sec FINE ;
 /POS
 P[1]{
    GP1:

@@ -14,7 +14,9 @@ MODULE demo
   TASK PERS seamdata smBead:=[0.000,0.500,[1,7,0.000,2.400,0.000,129.000,0,0,0],0.200,0,6.000,0.000,0.000,[1,7,0.000,2.400,0.000,129.000,0,0,0],0.000,0.300,[1,7,0.000,1.680,0.000,129.000,0,0,0],0.080,0.000,[1,7,0.000,2.400,0.000,129.000,0,0,0],1.000];
   PROC main()
     ConfL \Off;
+    ConfJ \Off;
     SingArea \Wrist;
+    CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
     IF ModExist("demo_L001") EraseModule "demo_L001";
     Load \Dynamic,"HOME:/part/demo_L001.mod";

@@ -11,10 +11,19 @@ MODULE demo
   CONST speeddata vHome:=[100.000,500.000,5000,1000];
   CONST speeddata vTravel:=[100.000,500.000,5000,1000];
   CONST zonedata zBead:=[FALSE,1.000,1.000,1.000,0.100,1.000,0.100];
+  VAR intnum iArc;
+  PERS restartdata rdArc:=[FALSE,FALSE,0,0,0,0,0,0,0,0,0,0,0,0,0];
   PROC main()
     ConfL \Off;
+    ConfJ \Off;
     SingArea \Wrist;
+    CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+    IDelete iArc;
+    CONNECT iArc WITH tArcLost;
+    ISignalDI diArc,0,iArc;
+    ISleep iArc;
+    TriggStopProc rdArc\DO1:=doArc,doShadow;
     IF ModExist("demo_L001") EraseModule "demo_L001";
     Load \Dynamic,"HOME:/part/demo_L001.mod";
     %"demo_L001:Layer001"%;
@@ -23,6 +32,43 @@ MODULE demo
     Load \Dynamic,"HOME:/part/demo_L002.mod";
     %"demo_L002:Layer002"%;
     UnLoad "HOME:/part/demo_L002.mod";
+    SetDO doArc,0;
+    SetDO doGas,0;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
+  PROC ArcBurns()
+    VAR num tried:=1;
+    VAR bool late:=FALSE;
+    WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
+    WHILE late DO
+      SetDO doArc,0;
+      IF tried>=3 THEN
+        WaitTime 5;
+        SetDO doGas,0;
+        TPWrite "The arc does not burn. Start strikes it again.";
+        Stop;
+        SetDO doGas,1;
+        WaitTime 0.5;
+        tried:=0;
+      ENDIF
+      tried:=tried+1;
+      SetDO doArc,1;
+      WaitTime 0.2;
+      WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
+    ENDWHILE
+  ENDPROC
+  TRAP tArcLost
+    StopMove;
+    SetDO doArc,0;
+    WaitTime 5;
+    SetDO doGas,0;
+    TPWrite "The arc is out. Start strikes it again on the spot.";
+    Stop;
+    SetDO doGas,1;
+    WaitTime 0.5;
+    SetDO doArc,1;
+    WaitTime 0.2;
+    ArcBurns;
+    StartMove;
+  ENDTRAP
 ENDMODULE

@@ -7,8 +7,8 @@ MODULE demo_L001
   LOCAL CONST speeddata vd5:=[7.400,500.000,5000,1000];
   PROC Layer001()
     ! layer 1, z 1.419 mm
-    SetAO aoWire,1.0000;
     MoveJ [[0.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vHome,fine,tTorch\WObj:=wPart;
+    SetAO aoWire,1.0000;
     MoveL [[0.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
@@ -16,6 +16,8 @@ MODULE demo_L001
     WaitTime \InPos,0.5;
     SetDO doArc,1;
     WaitTime \InPos,0.2;
+    IWatch iArc;
+    ArcBurns;
     MoveL [[5.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd1,zBead,tTorch\WObj:=wPart;
     MoveL [[30.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd2,zBead,tTorch\WObj:=wPart;
     MoveL [[30.000,30.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd2,zBead,tTorch\WObj:=wPart;
@@ -27,14 +29,16 @@ MODULE demo_L001
     SetAO aoWire,0.5000;
     WaitTime \InPos,0.400;
     WaitTime \InPos,0;
+    ISleep iArc;
+    WaitTime \InPos,0;
     SetDO doArc,0;
     WaitTime \InPos,0.5;
     WaitTime \InPos,1;
     SetDO doGas,0;
     WaitTime \InPos,0.05;
     MoveL [[6.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
-    SetAO aoWire,1.0000;
     MoveL [[50.000,0.000,21.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
+    SetAO aoWire,1.0000;
     MoveL [[50.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 2 infill
     WaitTime \InPos,0;
@@ -42,6 +46,8 @@ MODULE demo_L001
     WaitTime \InPos,0.5;
     SetDO doArc,1;
     WaitTime \InPos,0.2;
+    IWatch iArc;
+    ArcBurns;
     MoveL [[55.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd1,zBead,tTorch\WObj:=wPart;
     MoveL [[70.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd2,zBead,tTorch\WObj:=wPart;
     MoveL [[86.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd4,zBead,tTorch\WObj:=wPart;
@@ -49,6 +55,8 @@ MODULE demo_L001
     WaitTime \InPos,0;
     SetAO aoWire,0.5000;
     WaitTime \InPos,0.400;
+    WaitTime \InPos,0;
+    ISleep iArc;
     WaitTime \InPos,0;
     SetDO doArc,0;
     WaitTime \InPos,0.5;

@@ -1,17 +1,68 @@
 MODULE frame
   ! frame, cmt-steel-abb
+  ! The cell must supply:
+  ! RobotWare Arc watches the arc; with arc = "plain" diArc is on while current
+  ! flows, and programs wait for it.
+  ! The emergency stop also switches the power source off.
+  ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
   TASK PERS wobjdata wPart:=[FALSE,TRUE,"",[[900.000,0.000,400.000],[1.0000000,0.0000000,0.0000000,0.0000000]],[[0,0,0],[1,0,0,0]]];
   CONST jointtarget jHome:=[[0.000,0.000,0.000,0.000,30.000,0.000],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
   CONST speeddata vHome:=[100.000,500.000,5000,1000];
   CONST speeddata vTravel:=[100.000,500.000,5000,1000];
   CONST zonedata zBead:=[FALSE,1.000,1.000,1.000,0.100,1.000,0.100];
+  VAR intnum iArc;
+  PERS restartdata rdArc:=[FALSE,FALSE,0,0,0,0,0,0,0,0,0,0,0,0,0];
   PROC main()
     ConfL \Off;
+    ConfJ \Off;
     SingArea \Wrist;
+    CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+    IDelete iArc;
+    CONNECT iArc WITH tArcLost;
+    ISignalDI diArc,0,iArc;
+    ISleep iArc;
+    TriggStopProc rdArc\DO1:=doArc,doShadow;
     %"frame_L001:Layer001"%;
     %"frame_L002:Layer002"%;
+    SetDO doArc,0;
+    SetDO doGas,0;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
+  PROC ArcBurns()
+    VAR num tried:=1;
+    VAR bool late:=FALSE;
+    WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
+    WHILE late DO
+      SetDO doArc,0;
+      IF tried>=3 THEN
+        WaitTime 5;
+        SetDO doGas,0;
+        TPWrite "The arc does not burn. Start strikes it again.";
+        Stop;
+        SetDO doGas,1;
+        WaitTime 0.5;
+        tried:=0;
+      ENDIF
+      tried:=tried+1;
+      SetDO doArc,1;
+      WaitTime 0.2;
+      WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
+    ENDWHILE
+  ENDPROC
+  TRAP tArcLost
+    StopMove;
+    SetDO doArc,0;
+    WaitTime 5;
+    SetDO doGas,0;
+    TPWrite "The arc is out. Start strikes it again on the spot.";
+    Stop;
+    SetDO doGas,1;
+    WaitTime 0.5;
+    SetDO doArc,1;
+    WaitTime 0.2;
+    ArcBurns;
+    StartMove;
+  ENDTRAP
 ENDMODULE

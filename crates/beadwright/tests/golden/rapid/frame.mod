@@ -1,5 +1,10 @@
 MODULE frame
   ! frame, cmt-steel-abb
+  ! The cell must supply:
+  ! RobotWare Arc watches the arc; with arc = "plain" diArc is on while current
+  ! flows, and programs wait for it.
+  ! The emergency stop also switches the power source off.
+  ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
   TASK PERS wobjdata wPart:=[FALSE,TRUE,"",[[900.000,0.000,400.000],[1.0000000,0.0000000,0.0000000,0.0000000]],[[0,0,0],[1,0,0,0]]];
   CONST jointtarget jHome:=[[0.000,0.000,0.000,0.000,30.000,0.000],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
@@ -9,7 +14,9 @@ MODULE frame
   TASK PERS seamdata smBead:=[0.000,0.500,[1,7,0.000,2.710,0.000,129.000,0,0,0],0.200,0,6.000,0.000,0.000,[1,7,0.000,2.710,0.000,129.000,0,0,0],0.000,0.350,[1,7,0.000,2.710,0.000,129.000,0,0,0],0.080,0.000,[1,7,0.000,2.710,0.000,129.000,0,0,0],1.000];
   PROC main()
     ConfL \Off;
+    ConfJ \Off;
     SingArea \Wrist;
+    CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
     IF ModExist("frame_L001") EraseModule "frame_L001";
     Load \Dynamic,"HOME:/part/frame_L001.mod";
