@@ -1,20 +1,25 @@
 //! `beadwright check`.
 
+use crate::say::Findings;
 use crate::{profile, program, progress, reach};
 use beadwright::check::{self, CHECKS, Finding};
+use beadwright::dialect::reading::{FAULTS, Fault};
 use beadwright::files::write_file;
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::robot::{self, Cell, Track};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json; without it, the checks are listed.
+    /// plan.json, or a program in KRL, RAPID, FANUC TP, INFORM, URScript or G-code (of several files the main one), which is
+    /// read as a welding programmer would; without it, the checks are listed.
     plan: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
+    #[command(flatten)]
+    reading: program::Reading,
     /// Also check whether the robot of this cell can weld the plan: a built-in name or a TOML file.
     #[arg(long, value_name = "NAME|FILE")]
     cell: Option<String>,
@@ -39,17 +44,24 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 check.name, check.what, check.why, check.example, check.remedy
             )?;
         }
+        writeln!(out, "\nIn programs:")?;
+        for kind in FAULTS {
+            writeln!(out, "{}: {}.\n  Why: {}.\n  Remedy: {}.", kind.name, kind.what, kind.why, kind.remedy)?;
+        }
         return Ok(());
     };
     let source = program::Source::open(plan)?;
-    anyhow::ensure!(
-        source.plan().is_some(),
-        "{}: plans are checked; give the plan.json of the program",
-        plan.display()
-    );
-    let profile = source.profile(&arguments.wanted)?;
+    let (profile, is_program) = (source.profile(&arguments.wanted)?, source.plan().is_none());
     let (task, bar) = progress::task()?;
-    let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
+    let loaded = source.load(&arguments.reading, &arguments.wanted, &profile, None, &task)?;
+    if is_program {
+        anyhow::ensure!(
+            arguments.cell.is_none(),
+            "--cell asks the robot of a plan: give the plan.json of the program."
+        );
+        bar.finish_and_clear();
+        return read_program(arguments, plan, &loaded, &mut out);
+    }
     let settings = loaded.deposit_settings(None)?;
     let mut findings = check::check(&loaded.layers, &profile, settings, &task)?;
     if let Some(cell) = &arguments.cell {
@@ -65,15 +77,50 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     } else {
         print(&mut out, &findings)?
     }
-    if findings.is_empty() { Ok(()) } else { Err(Findings { count: findings.len(), plan: plan.clone() }.into()) }
+    if findings.is_empty() { Ok(()) } else { Err(Findings { count: findings.len(), place: plan.clone() }.into()) }
 }
 
-/// A plan with findings.
-#[derive(Debug, thiserror::Error)]
-#[error("{count} {} in {}", if *count == 1 { "finding" } else { "findings" }, plan.display())]
-pub(crate) struct Findings {
-    count: usize,
-    plan: PathBuf,
+/// Tells the dangerous lines of a program.
+fn read_program(
+    arguments: &Arguments,
+    path: &Path,
+    loaded: &program::Loaded,
+    out: &mut impl Write,
+) -> anyhow::Result<()> {
+    let value = |fault: &Fault| {
+        let (line, module) =
+            (fault.place.as_ref().map(|p| p.line), fault.place.as_ref().and_then(|p| p.module.clone()));
+        serde_json::json!({
+            "check": fault.kind.name, "module": module, "line": line, "count": fault.count, "text": fault.text,
+            "remedy": fault.kind.remedy,
+        })
+    };
+    let json = format!("{:#}", serde_json::Value::from(loaded.faults.iter().map(value).collect::<Vec<_>>()));
+    if let Some(file) = &arguments.output {
+        write_file(file, json.as_bytes())?;
+    }
+    if arguments.json {
+        writeln!(out, "{json}")?;
+    } else {
+        writeln!(out, "{}: {}, {} arc starts", loaded.name, loaded.language, loaded.totals.arc_starts)?;
+        for kind in FAULTS {
+            let found: Vec<&Fault> = loaded.faults.iter().filter(|fault| fault.kind == *kind).collect();
+            if found.is_empty() {
+                continue;
+            }
+            writeln!(out, "{} ({}): {}.", kind.name, found.iter().map(|fault| fault.count).sum::<usize>(), kind.why)?;
+            found.iter().take(PRINTED).try_for_each(|fault| writeln!(out, "  {fault}"))?;
+            writeln!(out, "  Remedy: {}.", kind.remedy)?;
+        }
+        loaded.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+        if loaded.faults.is_empty() {
+            writeln!(out, "{} checks of programs, nothing found.", FAULTS.len())?;
+        }
+    }
+    match loaded.faults.len() {
+        0 => Ok(()),
+        count => Err(Findings { count, place: path.to_owned() }.into()),
+    }
 }
 
 /// What the robot cannot do, as findings.

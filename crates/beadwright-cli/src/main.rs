@@ -132,7 +132,7 @@ fn main() -> ExitCode {
             let error = memory::exceeded().map_or(error, anyhow::Error::msg);
             let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));
             eprintln!("error: {error:#}{remedy}");
-            let doubtful = error.is::<plan::Refused>() || error.is::<check::Findings>() || error.is::<batch::Unfit>();
+            let doubtful = error.is::<plan::Refused>() || error.is::<say::Findings>() || error.is::<batch::Unfit>();
             if doubtful { ExitCode::from(FINDINGS) } else { ExitCode::FAILURE }
         }
     }

@@ -3,6 +3,7 @@
 use crate::several::{Build, Order, Several};
 use crate::{model, profile, program, progress, say};
 use anyhow::Context;
+use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
@@ -215,7 +216,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         return Err(Refused(summary.forbidden).into());
     }
-    summary.notes.splice(0..0, note.into_iter().chain(files.notes()));
+    let faults = check::rehearse(&profile).into_iter();
+    let faults =
+        faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
+    summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
     let figures = files.figures();
     let written = files.finish(&summary, &model.repair())?;
 

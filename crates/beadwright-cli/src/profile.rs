@@ -1,7 +1,9 @@
 //! `beadwright profile`, and how `--profile` and `--set` are read.
 
 use crate::file;
+use crate::say::Findings;
 use anyhow::Context;
+use beadwright::check;
 use beadwright::dialect::{DialectError, Job};
 use beadwright::files::{self, Programs, write_file};
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
@@ -67,6 +69,13 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             writeln!(out, "{}: every value is possible.", checked.name)?;
             for note in checked.notes() {
                 writeln!(out, "note: {note}")?;
+            }
+            let found = check::rehearse(&checked);
+            for (post, fault) in &found {
+                writeln!(out, "{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy)?;
+            }
+            if !found.is_empty() {
+                return Err(Findings { count: found.len(), place: PathBuf::from(profile) }.into());
             }
         }
         Command::Schema => writeln!(out, "{:#}", Profile::schema())?,

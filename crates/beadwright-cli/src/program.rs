@@ -5,8 +5,7 @@ use crate::{file, model};
 use anyhow::Context;
 use beadwright::compare::Totals;
 use beadwright::deposit::{self, DepositSettings};
-use beadwright::dialect::inform::InformSpeed;
-use beadwright::dialect::reading::{self, ArcCodes, Metal};
+use beadwright::dialect::reading::{self, ArcCodes, Fault, Metal};
 use beadwright::export::toolpath;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
@@ -57,6 +56,8 @@ pub(crate) struct Loaded {
     pub(crate) totals: Totals,
     pub(crate) settings: DepositSettings,
     pub(crate) notes: Vec<String>,
+    /// Dangerous lines of a program.
+    pub(crate) faults: Vec<Fault>,
 }
 
 impl Loaded {
@@ -162,9 +163,9 @@ impl Source {
         let main =
             Main { folder, extension: path.extension().map(|e| e.to_ascii_lowercase()), dialect: recognised(&text) };
         let mut module = |name: &str| main.module(name);
-        let inform_cm_per_min =
-            profile.dialects.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
-        let options = reading::Options { arc: reading.codes(profile), filament_diameter: None, inform_cm_per_min };
+        let dialect = reading::recognise(&text).map(|dialect| dialect.name);
+        let options = profile.reading_options(Some(&name), dialect);
+        let options = reading::Options { arc: reading.codes(options.arc), ..options };
         let mut program = reading::read(&text, &mut module, &options).with_context(|| format!("{}", path.display()))?;
         let (told, printer) = (told_profile(&text), program.moves.iter().any(|m| matches!(m.metal, Metal::Volume(_))));
         anyhow::ensure!(
@@ -211,7 +212,8 @@ impl Source {
         if let Some(motion) = &profile.motion {
             totals.total_time_s = program.seconds(motion);
         }
-        Ok(Loaded { name, language, layers, totals, settings, notes })
+        let faults = program.faults;
+        Ok(Loaded { name, language, layers, totals, settings, notes, faults })
     }
 }
 
@@ -226,9 +228,8 @@ fn told_profile(text: &str) -> Option<&'static str> {
 }
 
 impl Reading {
-    /// What switches the arc: the words given, and the lines of the profile's templates without placeholders.
-    fn codes(&self, profile: &Profile) -> ArcCodes {
-        let templates = profile.dialects.arc_codes();
+    /// What switches the arc: the words given, and those of the profile.
+    fn codes(&self, templates: ArcCodes) -> ArcCodes {
         ArcCodes {
             on: self.arc_on.iter().cloned().chain(templates.on).collect(),
             off: self.arc_off.iter().cloned().chain(templates.off).collect(),
@@ -243,7 +244,7 @@ fn layers_of(name: String, plan: PlanFile, profile: &Profile) -> Loaded {
     let mut metrics = Metrics::new(profile);
     plan.layers.iter().for_each(|layer| metrics.add(layer));
     let (totals, notes) = (Totals::of_plan(&metrics), Vec::new());
-    Loaded { name, language: "plan", layers: plan.layers, totals, settings, notes }
+    Loaded { name, language: "plan", layers: plan.layers, totals, settings, notes, faults: Vec::new() }
 }
 
 /// The main file of a program, whose modules lie beside it.

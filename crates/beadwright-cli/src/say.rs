@@ -1,6 +1,7 @@
 //! How much is said: `--quiet` and `--verbose`.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// How much a command says besides what it is asked for.
@@ -37,4 +38,12 @@ pub(crate) fn done(output_is_standard: bool) -> Box<dyn Write> {
         _ if output_is_standard => Box::new(std::io::stderr().lock()),
         _ => Box::new(std::io::stdout().lock()),
     }
+}
+
+/// A check that has found something.
+#[derive(Debug, thiserror::Error)]
+#[error("{count} {} in {}", if *count == 1 { "finding" } else { "findings" }, place.display())]
+pub(crate) struct Findings {
+    pub(crate) count: usize,
+    pub(crate) place: PathBuf,
 }

@@ -18,6 +18,7 @@ mod overfill;
 mod overhang;
 mod points;
 mod program_size;
+mod rehearsal;
 mod retraced;
 mod short_arc;
 mod short_pass;
@@ -26,6 +27,8 @@ mod stacked_starts;
 mod towers;
 mod void;
 mod wire_balance;
+
+pub use rehearsal::rehearse;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
 use crate::layer::Layer;

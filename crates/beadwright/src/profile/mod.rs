@@ -32,6 +32,8 @@ pub use wall::WallSection;
 
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
+use crate::dialect::inform::InformSpeed;
+use crate::dialect::reading::Options;
 use crate::dialect::{Job, Sections};
 use crate::fill::FillSettings;
 use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
@@ -401,6 +403,20 @@ impl Profile {
             weave: self.weave.as_ref(),
             dry_run: self.dry_run,
         }
+    }
+
+    /// How programs of this profile are read back: the lines that switch the arc, and what the controller takes. `file` is the
+    /// name of the main file, `post` its dialect.
+    pub fn reading_options(&self, file: Option<&str>, post: Option<&str>) -> Options {
+        let sections = &self.dialects;
+        let inform_cm_per_min = sections.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
+        let max_megabytes = match post {
+            Some("krl") => sections.krl.as_ref().map(|krl| krl.max_megabytes),
+            Some("urscript") => sections.urscript.as_ref().map(|script| script.max_megabytes),
+            _ => None,
+        };
+        let (arc, file) = (sections.arc_codes(), file.map(str::to_owned));
+        Options { arc, filament_diameter: None, inform_cm_per_min, file, max_megabytes }
     }
 
     /// Why no program should be written with this profile, as sentences.

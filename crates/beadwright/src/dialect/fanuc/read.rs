@@ -4,15 +4,18 @@
 //! them, on lines of their own or after a motion, or by the codes in the options.
 
 use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
-use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::fault::{
+    BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON, WEAVE_PITCH,
+};
+use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
-use glam::DVec3;
+use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal, by their first words.
-const HARMLESS: [&str; 23] = [
+const HARMLESS: [&str; 22] = [
     "END",
     "ABORT",
     "PAUSE",
@@ -25,7 +28,6 @@ const HARMLESS: [&str; 23] = [
     "COL",
     "MONITOR",
     "STOP_TRACKING",
-    "Weave",
     "Track",
     "TC_ONLINE",
     "RESUME_PROG",
@@ -38,14 +40,20 @@ const HARMLESS: [&str; 23] = [
     "BREAK",
 ];
 
+/// Most lines of a program.
+const MAX_LINES: usize = 9_999;
+
+/// Longest name of a program.
+const MAX_NAME: usize = 36;
+
 /// Branches and loops.
 const CONTROL: [&str; 5] = ["IF", "ELSE", "SELECT", "JMP", "WHILE"];
 
 /// Where a position lies.
 #[derive(Clone, Copy)]
 enum Position {
-    /// User frame and place, mm.
-    Place(u32, DVec3),
+    /// User frame, place, mm, and what else it states.
+    Place(u32, DVec3, Stated),
     /// Joint angles, or not taught.
     Unknown,
 }
@@ -72,6 +80,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         frame: None,
         registers: HashMap::new(),
         unshifted: false,
+        blended: None,
+        weave: None,
+        pitch: None,
     };
     let main = reader.listing(None, text)?;
     if main.statements.is_empty() {
@@ -93,6 +104,12 @@ struct Reader<'a> {
     registers: HashMap<String, f64>,
     /// Whether the offset of motions is known to be 0.
     unshifted: bool,
+    /// How the last move goes over into the next, if it does not end exactly.
+    blended: Option<String>,
+    /// Frequency at which the torch weaves, Hz; 0 where a schedule tells it.
+    weave: Option<f64>,
+    /// Pitch of the weave in this pass, mm.
+    pitch: Option<f64>,
 }
 
 impl Reader<'_> {
@@ -106,13 +123,31 @@ impl Reader<'_> {
             } else if part.starts_with("MN") {
                 statement(line, i, &mut statements);
             } else if part.starts_with("POS") && block.line(line, i, &self.trace)? {
-                let Block { number, frame, place, .. } = std::mem::take(&mut block);
+                let Block { number, frame, place, turns, .. } = std::mem::take(&mut block);
+                let tool = match turns.map(|turn| turn.map(f64::to_radians)) {
+                    [Some(w), Some(p), Some(r)] => Some(DQuat::from_euler(EulerRot::ZYX, r, p, w)),
+                    _ => None,
+                };
+                let stated = Stated { tool, axes: [None; 6] };
                 let place = match place {
-                    [Some(x), Some(y), Some(z)] => Position::Place(frame, DVec3::new(x, y, z)),
+                    [Some(x), Some(y), Some(z)] => Position::Place(frame, DVec3::new(x, y, z), stated),
                     _ => Position::Unknown,
                 };
                 positions.extend(number.map(|n| (n, place)));
             }
+        }
+        if statements.len() > MAX_LINES {
+            let text = format!("the program has {} lines; controllers take {MAX_LINES}.", statements.len());
+            let place = Some(self.trace.place(1));
+            self.trace.faults.add(&TOO_LARGE, place, text);
+        }
+        let name = text.lines().find_map(|line| line.trim().strip_prefix("/PROG")).map(str::trim).unwrap_or_default();
+        let name = name.split_whitespace().next().unwrap_or_default();
+        let legal = |b: u8| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_';
+        let begins = name.starts_with(|c: char| c.is_ascii_uppercase());
+        if name.len() > MAX_NAME || !begins || !name.bytes().all(legal) {
+            let text = format!("\"{name}\" is no name of a program: at most {MAX_NAME} letters, digits and _, a letter first.");
+            self.trace.faults.add(&BAD_NAME, None, text);
         }
         self.trace.module = caller;
         Ok(Rc::new(Listing { module: module.map(str::to_owned), statements, positions }))
@@ -170,6 +205,11 @@ impl Reader<'_> {
         }
         let flat = compact(text);
         if self.switches(&flat, line) {
+        } else if let Some(kind) = flat.strip_prefix("WEAVE") {
+            self.weaves(kind);
+        } else if is(&"PAUSE") && self.trace.arc {
+            let place = Some(self.trace.place(line));
+            self.trace.faults.add(&LEFT_ON, place, "the program pauses with the arc on.");
         } else if is(&"WAIT") {
             // Other waits are for signals.
             if let Some(seconds) = rest.split_once("(sec)").map(|(seconds, _)| seconds) {
@@ -207,9 +247,41 @@ impl Reader<'_> {
         let (on, off) = (has(["WELDSTART[", "ARCSTART["]), has(["WELDEND[", "ARCEND["]));
         let (on, off) = (on || self.on.matches(flat), off || self.off.matches(flat));
         if on || off {
+            let place = Some(self.trace.place(line));
+            if let Some(end) = self.blended.as_ref().filter(|_| on != self.trace.arc) {
+                let what = if on { "struck" } else { "ended" };
+                let text = format!("the arc is {what} behind a move with {end}.");
+                self.trace.faults.add(&BLENDED_SWITCH, place.clone(), text);
+            }
+            if self.weave.is_some() && off && self.trace.arc {
+                self.trace.faults.add(&WEAVE_LEFT_ON, place, "the arc ends while the torch still weaves.");
+            }
+            self.pitch = None;
             self.trace.set_arc(on, line);
         }
         on || off
+    }
+
+    /// `SINE[2.0HZ,1.5MM,0.1S,0.1S]`, `SINE[1]` or `END`.
+    fn weaves(&mut self, kind: &str) {
+        let inside = kind.split_once('[').map(|(_, inside)| inside);
+        self.weave = match inside {
+            _ if kind.starts_with("END") => None,
+            Some(inside) => Some(inside.split(',').find_map(|field| number(field.strip_suffix("HZ")?)).unwrap_or(0.0)),
+            None => self.weave,
+        };
+    }
+
+    /// The way along the pass in which the torch swings once follows from speed and frequency.
+    fn pitch(&mut self, speed: f64, line: usize) {
+        let Some(hertz) = self.weave.filter(|hertz| *hertz > 0.0 && speed > 0.0 && self.trace.arc) else { return };
+        let pitch = speed / hertz;
+        let first = *self.pitch.get_or_insert(pitch);
+        if (pitch / first - 1.0).abs() > 0.1 {
+            let place = Some(self.trace.place(line));
+            let text = format!("the weave has {first:.1} mm a swing at first and {pitch:.1} mm here: its frequency stays as it was.");
+            self.trace.faults.add(&WEAVE_PITCH, place, text);
+        }
     }
 
     fn call(&mut self, rest: &str, line: usize, depth: usize) -> Result<(), ReadError> {
@@ -256,6 +328,18 @@ impl Reader<'_> {
         if ["A", "S"].contains(&word) {
             self.trace.note(word, "is a curve through several points and was read as straight moves", line);
         }
+        let place = self.trace.place(line);
+        if word == "J" && self.trace.arc {
+            self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "the joints move with the arc on.");
+        }
+        if self.weave.is_some() && !self.trace.arc {
+            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
+        }
+        self.pitch(speed.unwrap_or(0.0), line);
+        self.blended = rest.split_whitespace().find(|word| word.starts_with("CNT") && *word != "CNT0").map(str::to_owned);
+        if let Some(Position::Place(_, to, stated)) = targets.last().and_then(|n| listing.positions.get(&(*n)?)).copied() {
+            self.trace.stand(&stated, to, "a position", line);
+        }
         let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
         let places: Vec<Option<DVec3>> = targets.iter().map(|t| self.place(*t, relative, listing, line)).collect();
         match places[..] {
@@ -270,7 +354,7 @@ impl Reader<'_> {
     }
 
     fn place(&mut self, number: Option<u32>, relative: bool, listing: &Listing, line: usize) -> Option<DVec3> {
-        let Position::Place(frame, place) = *listing.positions.get(&number?)? else { return None };
+        let Position::Place(frame, place, _) = *listing.positions.get(&number?)? else { return None };
         if *self.frame.get_or_insert(frame) != frame {
             self.trace.note("a position in another user frame", "was read as if it were in the first", line);
         }
@@ -317,6 +401,8 @@ struct Block {
     groups: usize,
     frame: u32,
     place: [Option<f64>; 3],
+    /// W, P, R, °.
+    turns: [Option<f64>; 3],
 }
 
 impl Block {
@@ -331,6 +417,9 @@ impl Block {
         }
         for (field, value) in line.split(',').filter_map(|f| f.split_once(['=', ':'])).filter(|_| self.groups < 2) {
             let (field, value) = (field.trim(), value.trim().split(' ').next().unwrap_or_default());
+            if let Some(turn) = ["W", "P", "R"].iter().position(|a| *a == field) {
+                self.turns[turn] = number(value.trim_end_matches("deg"));
+            }
             let value = value.trim_end_matches("mm");
             if field == "UF" {
                 self.frame = value.parse().unwrap_or_default();

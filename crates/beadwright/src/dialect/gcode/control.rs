@@ -24,6 +24,11 @@ const TAKEN: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
 const MAX_NAME: usize = 24;
 
 impl GcodeControl {
+    /// Whether the control takes a name of a program, without its extension.
+    pub(super) fn takes(self, name: &str) -> bool {
+        self.file_name(name).eq_ignore_ascii_case(name)
+    }
+
     /// The name of a part's file, without its extension.
     pub(super) fn file_name(self, part: &str) -> String {
         if self != Self::Siemens {

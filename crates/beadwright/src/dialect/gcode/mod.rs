@@ -5,6 +5,7 @@ mod branches;
 mod control;
 mod hints;
 mod read;
+mod review;
 mod section;
 pub(super) mod write;
 

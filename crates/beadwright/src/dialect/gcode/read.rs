@@ -5,6 +5,8 @@
 //! options).
 
 use super::block::{Block, Code, Line, begins_block};
+use super::review;
+use crate::dialect::reading::fault::{NO_OUTPUT, RAPID_WITH_ARC};
 use crate::dialect::reading::trace::{Curve, Step, Trace};
 use super::hints;
 use super::branches::{Branches, Seen, without_number};
@@ -71,6 +73,14 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     if hints.printer && options.filament_diameter.is_none() && hints.diameter.is_none() && !hints.volumetric {
         reader.trace.note("the filament's diameter", "is not told and was taken as 1.75 mm", 1);
     }
+    if let Some(line) = reader.lit_without_speed.filter(|_| review::is_linuxcnc(text)) {
+        let place = Some(reader.trace.place(line));
+        let text = "M3 without S: a spindle without a speed does not turn, so its output stays off and the arc is never lit.";
+        reader.trace.faults.add(&NO_OUTPUT, place, text);
+    }
+    if !hints.printer {
+        review::program(&mut reader.trace, text, options);
+    }
     reader.trace.finish(super::DIALECT.language)
 }
 
@@ -120,6 +130,10 @@ struct Reader {
     width: Option<f64>,
     flow: f64,
     pace: f64,
+    /// Speed of the spindle.
+    spindle: f64,
+    /// The first line that starts the spindle without a speed.
+    lit_without_speed: Option<usize>,
 }
 
 impl Reader {
@@ -148,6 +162,8 @@ impl Reader {
             width: None,
             flow: 1.0,
             pace: 1.0,
+            spindle: 0.0,
+            lit_without_speed: None,
         }
     }
 
@@ -183,6 +199,12 @@ impl Reader {
         self.modes(block, line);
         if self.on.iter().any(|c| c.is_in(block)) {
             self.trace.set_arc(true, line);
+        }
+        if let Some(speed) = block.get(b'S').filter(|_| !self.printer && !block.g.has(40)) {
+            self.spindle = speed;
+        }
+        if !self.printer && block.m.has(30) && self.spindle == 0.0 {
+            self.lit_without_speed = self.lit_without_speed.or(Some(line));
         }
         if block.g.has(40) {
             self.trace.dwell += self.dwell(block);
@@ -342,6 +364,10 @@ impl Reader {
             self.trace.note("a move before the first G0 to G3", "was read as G1", line);
             1
         });
+        if motion == 0 && self.trace.arc && !self.printer {
+            let place = Some(self.trace.place(line));
+            self.trace.faults.add(&RAPID_WITH_ARC, place, "G0 moves with the arc on.");
+        }
         let across = arc || to.truncate() != start.truncate();
         let metal = match laid > 0.0 && across {
             true => Metal::Volume(laid),

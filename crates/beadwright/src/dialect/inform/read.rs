@@ -7,18 +7,25 @@
 //! circle, so a chain that leaves its circle is noted).
 
 use crate::dialect::reading::loops::{Next, holds, unrolled};
-use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON};
+use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
-use glam::DVec3;
+use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal, by their first words.
-const HARMLESS: [&str; 23] = [
-    "SFTOF", "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
-    "SUB", "WVON", "WVOF", "ARCSET", "MSG", "PAUSE", "SPEED",
+const HARMLESS: [&str; 19] = [
+    "NOP", "END", "DOUT", "DIN", "AOUT", "PULSE", "WAIT", "SET", "SETE", "GETE", "GETS", "CLEAR", "INC", "DEC", "ADD",
+    "SUB", "ARCSET", "MSG", "SPEED",
 ];
+
+/// Most instructions of a job.
+const MAX_INSTRUCTIONS: usize = 9_999;
+
+/// Longest name of a job.
+const MAX_NAME: usize = 32;
 
 /// Branches and loops.
 const CONTROL: [&str; 8] = ["JUMP", "IF", "IFTHENEXP", "ELSE", "FOR", "WHILE", "SWITCH", "RET"];
@@ -33,7 +40,7 @@ const OFF_CIRCLE_MM: f64 = 0.1;
 struct Job {
     module: Option<String>,
     instructions: Vec<(usize, String)>,
-    positions: HashMap<String, Option<DVec3>>,
+    positions: HashMap<String, Option<(DVec3, Stated)>>,
 }
 
 /// Whether a line can occur only in a job.
@@ -52,6 +59,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         circle: Circle::None,
         variables: HashMap::new(),
         unshifted: false,
+        blended: None,
+        weaves: false,
+        shifts: false,
     };
     let main = reader.job(None, text)?;
     if main.instructions.is_empty() {
@@ -59,6 +69,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
     }
     reader.run(&main, 0)?;
     reader.end_circle();
+    if reader.shifts {
+        reader.trace.faults.add(&WEAVE_LEFT_ON, None, "the moves are still shifted where the program ends (no SFTOF).");
+    }
     reader.trace.finish(super::DIALECT.language)
 }
 
@@ -88,6 +101,11 @@ struct Reader<'a> {
     variables: HashMap<String, f64>,
     /// Whether the shift that may be switched on is known to be 0.
     unshifted: bool,
+    /// How the last move goes over into the next, if it does not end exactly.
+    blended: Option<String>,
+    weaves: bool,
+    /// Whether moves are shifted.
+    shifts: bool,
 }
 
 impl Reader<'_> {
@@ -106,11 +124,22 @@ impl Reader<'_> {
                 positions.insert(name.trim().to_owned(), place);
             }
         }
+        if instructions.len() > MAX_INSTRUCTIONS {
+            let text = format!("the job has {} instructions; controllers take {MAX_INSTRUCTIONS}.", instructions.len());
+            let place = Some(self.trace.place(1));
+            self.trace.faults.add(&TOO_LARGE, place, text);
+        }
+        let name = text.lines().find_map(|line| line.trim().strip_prefix("//NAME")).map(str::trim).unwrap_or_default();
+        let legal = |b: u8| b.is_ascii_uppercase() || b.is_ascii_digit() || b"_-".contains(&b);
+        if name.is_empty() || name.len() > MAX_NAME || !name.bytes().all(legal) {
+            let text = format!("\"{name}\" is no name of a job: at most {MAX_NAME} capital letters, digits, _ and -.");
+            self.trace.faults.add(&BAD_NAME, None, text);
+        }
         self.trace.module = caller;
         Ok(Rc::new(Job { module: module.map(str::to_owned), instructions, positions }))
     }
 
-    fn place(&self, value: &str, line: usize) -> Result<DVec3, ReadError> {
+    fn place(&self, value: &str, line: usize) -> Result<(DVec3, Stated), ReadError> {
         let mut place = [0.0; 3];
         let mut fields = value.split(',');
         for axis in &mut place {
@@ -118,7 +147,12 @@ impl Reader<'_> {
             let wrong = if field.is_empty() { value } else { field };
             *axis = number(field).ok_or_else(|| self.trace.number_error(line, wrong))?;
         }
-        Ok(DVec3::from_array(place))
+        let turns: Vec<f64> = value.split(',').skip(3).take(3).filter_map(number).map(f64::to_radians).collect();
+        let tool = match turns[..] {
+            [x, y, z] => Some(DQuat::from_euler(EulerRot::ZYX, z, y, x)),
+            _ => None,
+        };
+        Ok((DVec3::from_array(place), Stated { tool, axes: [None; 6] }))
     }
 
     fn run(&mut self, job: &Rc<Job>, depth: usize) -> Result<(), ReadError> {
@@ -154,6 +188,14 @@ impl Reader<'_> {
         let flat = compact(text);
         let (on, off) = (word == "ARCON" || self.on.matches(&flat), word == "ARCOF" || self.off.matches(&flat));
         if on || off {
+            let place = Some(self.trace.place(line));
+            if let Some(level) = self.blended.as_ref().filter(|_| on != self.trace.arc) {
+                let what = if on { "struck" } else { "ended" };
+                self.trace.faults.add(&BLENDED_SWITCH, place.clone(), format!("the arc is {what} behind a move with {level}."));
+            }
+            if off && self.weaves && self.trace.arc {
+                self.trace.faults.add(&WEAVE_LEFT_ON, place, "the arc ends while the torch still weaves.");
+            }
             self.end_circle();
             self.trace.set_arc(on, line);
         } else if word == "TIMER" {
@@ -171,7 +213,17 @@ impl Reader<'_> {
         } else if word == "SETE" {
             // An element of a position variable, such as the height that shifts a layer.
             self.unshifted = words.nth(2).and_then(number) == Some(0.0);
+        } else if word == "WVON" || word == "WVOF" {
+            self.weaves = word == "WVON";
+        } else if word == "SFTOF" {
+            self.shifts = false;
+        } else if word == "PAUSE" {
+            if self.trace.arc {
+                let place = Some(self.trace.place(line));
+                self.trace.faults.add(&LEFT_ON, place, "the job pauses with the arc on.");
+            }
         } else if word == "SFTON" {
+            self.shifts = true;
             if !self.unshifted {
                 self.trace.note("SFTON", "shifts the moves behind it, which is not applied", line);
             }
@@ -206,15 +258,26 @@ impl Reader<'_> {
         let name = words.first().copied().unwrap_or_default();
         let position = job.positions.get(name).copied();
         // Home positions may be in pulses: torch and arc are then off, and joints move.
-        if position == Some(None) && (kind != "J" || self.trace.arc) {
+        if matches!(position, Some(None)) && (kind != "J" || self.trace.arc) {
             return Err(ReadError::Pulses { place: self.trace.place(line), name: name.to_owned() });
+        }
+        let place = self.trace.place(line);
+        if kind == "J" && self.trace.arc {
+            self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "the joints move with the arc on.");
+        }
+        if self.weaves && !self.trace.arc {
+            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
+        }
+        self.blended = words.iter().find(|word| word.starts_with("PL=") && **word != "PL=0").map(|word| (*word).to_owned());
+        if let Some(Some((to, stated))) = position {
+            self.trace.stand(&stated, to, "a position", line);
         }
         let speed = words.iter().find_map(|w| w.strip_prefix("V=")).and_then(number).map(|v| v * self.unit);
         if speed.is_none() && kind != "J" {
             self.trace.note("a speed", "is no plain V= and was read as unknown", line);
         }
         let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
-        let Some(to) = position.flatten() else {
+        let Some((to, _)) = position.flatten() else {
             self.trace.note("a motion to a place that is unknown here", "was left out", line);
             self.circle = Circle::None;
             self.trace.forget();

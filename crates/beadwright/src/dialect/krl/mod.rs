@@ -3,6 +3,7 @@
 mod arctech;
 mod arctech_section;
 mod read;
+mod review;
 mod section;
 mod write;
 

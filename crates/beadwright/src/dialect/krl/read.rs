@@ -5,15 +5,17 @@
 //! they are; how SPL curves only the controller knows, so it is refused where it welds.
 
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
-use crate::dialect::reading::trace::{Step, Trace};
+use super::review;
+use crate::dialect::reading::fault::{RAPID_WITH_ARC, TURNING_TORCH, TWO_SWITCHES};
+use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
-use glam::DVec3;
-use std::collections::HashMap;
+use glam::{DQuat, DVec3, EulerRot};
+use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// Statements that affect neither position nor metal.
-const HARMLESS: [&str; 25] = [
+const HARMLESS: [&str; 24] = [
     "DECL",
     "INT",
     "REAL",
@@ -29,7 +31,6 @@ const HARMLESS: [&str; 25] = [
     "SIGNAL",
     "EXT",
     "EXTFCT",
-    "INTERRUPT",
     "GLOBAL",
     "CONTINUE",
     "PTP_SPLINE",
@@ -92,22 +93,21 @@ impl Motion {
     }
 }
 
-/// Where a motion goes.
+/// Where a motion goes, and what else its target states.
 #[derive(Clone, Copy)]
-enum Target {
-    /// X, Y, Z, mm.
-    Place([Option<f64>; 3]),
-    /// Axis angles.
-    Axes,
+struct Target {
+    /// X, Y, Z, mm; `None` for axis angles.
+    place: Option<[Option<f64>; 3]>,
+    stated: Stated,
 }
 
 /// A module: its text, where each program in it begins, and its data.
-struct Source {
+pub(super) struct Source {
     /// None for the main file.
-    module: Option<String>,
-    text: Rc<str>,
+    pub(super) module: Option<String>,
+    pub(super) text: Rc<str>,
     /// Name in upper case, byte after the DEF line, number of the next line.
-    programs: Vec<(String, usize, usize)>,
+    pub(super) programs: Vec<(String, usize, usize)>,
     targets: HashMap<String, Target>,
     /// ArcTech data sets.
     arc_data: HashMap<String, ArcData>,
@@ -146,6 +146,12 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         block_speed: None,
         later: None,
         values: HashMap::new(),
+        circle_by_path: false,
+        interrupts: HashMap::new(),
+        outputs: BTreeSet::new(),
+        lit_with: BTreeSet::new(),
+        forms: false,
+        runs_on: false,
     };
     let main = reader.load(None, text.into())?;
     // A fragment has no DEF and runs from its first line.
@@ -157,7 +163,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         None => (0, 1),
     };
     reader.run(main, start, 0)?;
-    reader.trace.finish(super::DIALECT.language)
+    let Reader { mut trace, sources, interrupts, lit_with, .. } = reader;
+    review::program(&mut trace, &sources, &interrupts, &lit_with, options);
+    trace.finish(super::DIALECT.language)
 }
 
 struct Reader<'a> {
@@ -176,18 +184,32 @@ struct Reader<'a> {
     later: Option<bool>,
     /// Variables with a plain number, in upper case.
     values: HashMap<String, f64>,
+    /// Whether `$CIRC_TYPE` carries the tool along with the tangent.
+    circle_by_path: bool,
+    /// Conditions of the interrupts that are declared, by their numbers, without blanks.
+    interrupts: HashMap<u32, String>,
+    /// Outputs that are on.
+    outputs: BTreeSet<u32>,
+    /// Outputs that were on while the arc burned by them.
+    lit_with: BTreeSet<u32>,
+    /// Whether forms of ArcTech light the arc.
+    forms: bool,
+    /// Whether the last line was CONTINUE.
+    runs_on: bool,
 }
 
 impl Reader<'_> {
     /// Loads a module and its data file.
     fn load(&mut self, module: Option<&str>, text: Rc<str>) -> Result<usize, ReadError> {
         let programs = programs(&text);
+        self.trace.bytes += text.len();
         let own = module.or(programs.first().map(|p| p.0.as_str())).map(|name| format!("{name}.dat"));
         let data = own.as_ref().and_then(|name| (self.module)(name));
         let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
         let (targets, arc_data) = (HashMap::new(), HashMap::new());
         let mut source = Source { module: self.trace.module.clone(), text, programs, targets, arc_data };
         if let Some(data) = data {
+            self.trace.bytes += data.len();
             self.trace.module = own;
             for (i, line) in data.lines().enumerate() {
                 self.declaration(before_comment(line, ';').trim(), i + 1, &mut source)?;
@@ -262,6 +284,9 @@ impl Reader<'_> {
             turns(lines[i], "=", Counting::Up)
         } else {
             let condition = compact(rest);
+            if condition.contains("$IN[") {
+                self.trace.watch.look();
+            }
             let condition = condition.strip_suffix("THEN").unwrap_or(&condition);
             let until = behind(i + 1, lines.len(), |at| mark(lines[at]));
             let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
@@ -290,11 +315,22 @@ impl Reader<'_> {
             return Ok(());
         }
         let flat = compact(line);
+        // An output stops the advance run, unless CONTINUE stands before it.
+        let runs_on = std::mem::replace(&mut self.runs_on, flat == "CONTINUE");
+        if self.runs_on {
+            return Ok(());
+        }
+        if flat.starts_with("$OUT[") && !runs_on {
+            self.trace.watch.wait();
+        }
         if self.arc(&flat, line, number, source)? {
             return Ok(());
         }
         if let Some(speed) = flat.strip_prefix("$VEL.CP=").or_else(|| bas_speed(&flat)) {
             return self.set_speed(speed, number);
+        }
+        if strip_word(line, "WAIT").is_some() || strip_word(line, "HALT").is_some() {
+            self.trace.watch.wait();
         }
         if let Some(rest) = strip_word(line, "WAIT").and_then(|r| strip_word(r, "SEC")) {
             let seconds = words::number(rest);
@@ -309,11 +345,16 @@ impl Reader<'_> {
         let (word, rest) = name(line);
         let is = |name: &&str| name.eq_ignore_ascii_case(word);
         if line.starts_with('$') {
-            if flat.starts_with("$BASE=") {
+            if let Some(frame) = flat.strip_prefix("$BASE=") {
                 self.trace.note("$BASE", "is not applied: places are those of the base", number);
-            } else if flat.starts_with("$OUT[") && flat.ends_with("=TRUE") {
-                self.trace.see(line);
+                self.trace.frame_turns = frame.starts_with("EK(");
+            } else if let Some(kind) = flat.strip_prefix("$CIRC_TYPE=") {
+                self.circle_by_path = kind == "#PATH";
+            } else if let Some((output, on)) = output(flat) {
+                self.switch(output, on, line, number);
             }
+        } else if let Some(rest) = strip_word(unscoped(line), "INTERRUPT") {
+            self.interrupt(rest, number);
         } else if rest.starts_with('=') && rest[1..].trim_start().starts_with('{') {
             let target = self.aggregate(&rest[1..], number)?;
             self.sources[source].targets.insert(word.to_ascii_uppercase(), target);
@@ -371,7 +412,50 @@ impl Reader<'_> {
             return Ok(true);
         }
         self.trace.set_arc(lit, number);
+        if let Some((output, on)) = output(flat) {
+            self.switch(output, on, line, number);
+            let place = self.trace.place(number);
+            self.trace.watch.switch(lit, &mut self.trace.faults, place);
+            if lit {
+                self.lit_with.extend(&self.outputs);
+            }
+        } else if !self.forms && lit {
+            self.forms = true;
+        }
         Ok(true)
+    }
+
+    /// An output is switched.
+    fn switch(&mut self, output: u32, on: bool, line: &str, number: usize) {
+        if on {
+            self.outputs.insert(output);
+            self.trace.see(line);
+        } else {
+            self.outputs.remove(&output);
+        }
+        if self.forms {
+            let place = Some(self.trace.place(number));
+            let text = format!("$OUT[{output}] is switched beside the forms of ArcTech.");
+            self.trace.faults.add(&TWO_SWITCHES, place, text);
+        }
+    }
+
+    /// `DECL 11 WHEN $IN[1]==FALSE DO LOST( )`, `ON 11` or `OFF 11`.
+    fn interrupt(&mut self, rest: &str, line: usize) {
+        let (word, rest) = name(rest);
+        let (number, condition) = name(rest);
+        let Ok(number) = number.parse::<u32>() else { return };
+        let of_arc = self.interrupts.get(&number).is_some_and(|condition| condition.contains("$IN["));
+        if word.eq_ignore_ascii_case("DECL") {
+            let flat = compact(condition);
+            let when = flat.strip_prefix("WHEN").and_then(|when| when.split_once("DO")).map(|(when, _)| when);
+            self.interrupts.extend(when.map(|when| (number, when.to_owned())));
+        } else if of_arc && word.eq_ignore_ascii_case("ON") {
+            self.trace.watch.arm();
+        } else if of_arc && word.eq_ignore_ascii_case("OFF") {
+            let place = self.trace.place(line);
+            self.trace.watch.disarm(&format!("INTERRUPT OFF {number}"), &mut self.trace.faults, place);
+        }
     }
 
     fn set_speed(&mut self, text: &str, number: usize) -> Result<(), ReadError> {
@@ -405,11 +489,39 @@ impl Reader<'_> {
             };
             *target = Some(found);
         }
+        let blend = ["C_DIS", "C_SPL", "C_VEL", "C_ORI", "C_PTP"].into_iter().find(|word| rest.to_uppercase().ends_with(word));
+        let place = self.trace.place(number);
+        if self.forms {
+            self.trace.watch.wait();
+        } else {
+            self.trace.watch.go(blend, &mut self.trace.faults, place.clone());
+        }
+        if motion.joint && self.trace.arc {
+            self.trace.faults.add(&RAPID_WITH_ARC, Some(place), "the joints move with the arc on.");
+        }
         let speed = with_speed(rest).unwrap_or(if motion.joint { 0.0 } else { self.block_speed.unwrap_or(self.speed) });
         let step = Step { speed, metal: self.trace.metal(), width: None, line: number };
-        match targets {
-            [Some(Target::Place(aux)), Some(Target::Place(end))] => self.circle(motion, [aux, end], &pieces, step)?,
-            [Some(Target::Place(to)), None] => self.trace.line(self.absolute(motion, to), step),
+        let what = at(0).split(['{', '[']).next().map(str::trim).filter(|name| !name.is_empty());
+        let what = what.map_or_else(|| "a target".to_owned(), str::to_owned);
+        if let Some(last) = targets.iter().rev().find_map(|target| *target).filter(|_| !motion.relative) {
+            match last.place {
+                Some(to) => {
+                    let to = self.whole(motion, to);
+                    self.trace.stand(&last.stated, to, &what, number);
+                }
+                None => self.trace.home(&last.stated.axes, &what, number),
+            }
+        }
+        match targets.map(|target| target.map(|target| target.place)) {
+            [Some(Some(aux)), Some(Some(end))] => {
+                if self.circle_by_path && self.trace.arc {
+                    let place = Some(self.trace.place(number));
+                    let text = "$CIRC_TYPE = #PATH carries the torch along with the arc's tangent.";
+                    self.trace.faults.add(&TURNING_TORCH, place, text);
+                }
+                self.circle(motion, [aux, end], &pieces, step)?;
+            }
+            [Some(Some(to)), None] => self.trace.line(self.absolute(motion, to), step),
             _ => {
                 let what = "a motion to axis angles";
                 self.trace.note(what, "goes to a place that is unknown here and was left out", number);
@@ -423,12 +535,7 @@ impl Reader<'_> {
     }
 
     fn circle(&mut self, motion: Motion, ends: [[Option<f64>; 3]; 2], pieces: &[&str], step: Step) -> Result<(), ReadError> {
-        let start = self.trace.at;
-        let whole = |target: [Option<f64>; 3]| {
-            let target = self.absolute(motion, target);
-            DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(start[i])))
-        };
-        let [aux, end] = ends.map(whole);
+        let [aux, end] = ends.map(|target| self.whole(motion, target));
         let angle = pieces.iter().find_map(|p| strip_word(p, "CA"));
         let angle = match angle {
             Some(text) => Some(number_before(text).ok_or_else(|| self.trace.number_error(step.line, text))?),
@@ -436,6 +543,12 @@ impl Reader<'_> {
         };
         self.trace.arc_over(aux, end, angle.map(f64::to_radians), step);
         Ok(())
+    }
+
+    /// A target with the axes that it leaves out where they are.
+    fn whole(&self, motion: Motion, target: [Option<f64>; 3]) -> DVec3 {
+        let (target, start) = (self.absolute(motion, target), self.trace.at);
+        DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(start[i])))
     }
 
     fn absolute(&self, motion: Motion, target: [Option<f64>; 3]) -> [Option<f64>; 3] {
@@ -461,19 +574,26 @@ impl Reader<'_> {
     fn aggregate(&self, text: &str, number: usize) -> Result<Target, ReadError> {
         let inside = text.trim_start().trim_start_matches('{').split('}').next().unwrap_or_default();
         let inside = inside.split_once(':').map_or(inside, |(_, fields)| fields);
-        let mut place = [None; 3];
+        let (mut place, mut turns, mut stated, mut joints) = ([None; 3], [None; 3], Stated::default(), false);
         for field in inside.split(',') {
             let (axis, value) = name(field.trim());
-            let Some(i) = ["X", "Y", "Z"].iter().position(|a| a.eq_ignore_ascii_case(axis)) else {
-                if axis.len() == 2 && axis.starts_with(['A', 'a']) {
-                    return Ok(Target::Axes);
-                }
-                continue;
-            };
-            let value = words::number(value).ok_or_else(|| self.trace.number_error(number, field));
-            place[i] = Some(value?);
+            let letter = |letters: [&str; 3]| letters.iter().position(|a| a.eq_ignore_ascii_case(axis));
+            let external = axis.strip_prefix(['E', 'e']).and_then(|n| n.parse::<usize>().ok()).filter(|n| (1..=6).contains(n));
+            if let Some(i) = letter(["X", "Y", "Z"]) {
+                let value = words::number(value).ok_or_else(|| self.trace.number_error(number, field));
+                place[i] = Some(value?);
+            } else if let Some(i) = letter(["A", "B", "C"]) {
+                turns[i] = words::number(value);
+            } else if let Some(n) = external {
+                stated.axes[n - 1] = words::number(value);
+            } else {
+                joints |= axis.len() == 2 && axis.starts_with(['A', 'a']);
+            }
         }
-        Ok(Target::Place(place))
+        if let [Some(a), Some(b), Some(c)] = turns.map(|turn| turn.map(f64::to_radians)) {
+            stated.tool = Some(DQuat::from_euler(EulerRot::ZYX, a, b, c));
+        }
+        Ok(Target { place: (!joints).then_some(place), stated })
     }
 
     fn call(&mut self, called: &str, rest: &str, line: usize, source: usize, depth: usize) -> Result<(), ReadError> {
@@ -521,8 +641,14 @@ fn input(condition: &str) -> Option<bool> {
     inside.strip_suffix(']').is_some_and(|number| number.bytes().all(|b| b.is_ascii_digit())).then_some(wanted)
 }
 
+/// Number and state of an output that a compact statement switches.
+pub(super) fn output(flat: &str) -> Option<(u32, bool)> {
+    let (number, value) = flat.strip_prefix("$OUT[")?.split_once("]=")?;
+    Some((number.parse().ok()?, value == "TRUE"))
+}
+
 /// The name in a line `DEF NAME( )` or `GLOBAL DEF ..`.
-fn is_head(line: &str) -> Option<&str> {
+pub(super) fn is_head(line: &str) -> Option<&str> {
     let line = strip_word(line, "GLOBAL").unwrap_or(line);
     let rest = strip_word(line, "DEF").or_else(|| strip_word(line, "DEFFCT"))?;
     // A function has a type before its name.

@@ -4,6 +4,7 @@ mod data;
 mod module;
 mod names;
 mod read;
+mod review;
 mod section;
 mod write;
 

@@ -1,7 +1,8 @@
 //! A RAPID module: its statements, procedures and data.
 
+use crate::dialect::reading::trace::Stated;
 use crate::dialect::reading::words::{name, number, strip_word};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -31,17 +32,34 @@ const LINES: [&str; 21] = [
 ];
 
 /// Data kinds whose values matter.
-const KINDS: [&str; 5] = ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA", "NUM"];
+const KINDS: [&str; 8] =
+    ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA", "NUM", "WOBJDATA", "JOINTTARGET", "WEAVEDATA"];
 
 /// A value of named data.
 #[derive(Clone, Copy)]
 pub(super) enum Value {
-    /// Position, mm.
-    Target(DVec3),
+    /// A robtarget.
+    Target(Target),
+    /// External axes of a jointtarget.
+    Joints([Option<f64>; 6]),
+    /// Whether a work object moves with a mechanical unit.
+    WorkObject(bool),
+    /// Length and stay at the left side of a weave, mm; the length is a frequency for some types.
+    Weave([f64; 2]),
     /// Speed, mm/s, or a plain number.
     Speed(f64),
     /// Times for which the torch stands at the start and at the end of a seam, s.
     Seam([f64; 2]),
+}
+
+/// A robtarget.
+#[derive(Clone, Copy)]
+pub(super) struct Target {
+    /// mm
+    pub(super) at: DVec3,
+    pub(super) stated: Stated,
+    /// Whether its configuration is all 0, as where it is not known.
+    pub(super) unconfigured: bool,
 }
 
 /// A module.
@@ -49,7 +67,7 @@ pub(super) struct Module {
     /// Name by which it was requested; `None` for the main file.
     pub(super) name: Option<String>,
     /// The text with blanks in place of comments.
-    text: String,
+    pub(super) text: String,
     /// Range in the text and line, from 1.
     statements: Vec<(Range<usize>, usize)>,
     /// Name in upper case and statements.
@@ -203,8 +221,47 @@ pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
 }
 
+/// A value of 9E9 or more is an axis that is not there.
+fn axis(value: f64) -> Option<f64> {
+    (value < 9e8).then_some(value)
+}
+
+/// A robtarget as a literal, or the text that is not a number; what stands behind its place may be left out.
+pub(super) fn target(text: &str) -> Result<Target, &str> {
+    let at = DVec3::from_array(three_numbers(text)?);
+    let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
+    let mut stated = Stated::default();
+    if let [_, _, _, w, x, y, z, ..] = numbers[..] {
+        stated.tool = Some(DQuat::from_xyzw(x, y, z, w)).filter(|tool| (tool.length() - 1.0).abs() < 0.01);
+    }
+    if let Some(axes) = numbers.get(11..17) {
+        stated.axes = std::array::from_fn(|i| axis(axes[i]));
+    }
+    Ok(Target { at, stated, unconfigured: numbers.get(7..11).is_some_and(|conf| conf == [0.0; 4]) })
+}
+
+/// The external axes of a jointtarget as a literal.
+pub(super) fn external_axes(text: &str) -> Option<[Option<f64>; 6]> {
+    let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
+    let axes = numbers.get(6..12)?;
+    Some(std::array::from_fn(|i| axis(axes[i])))
+}
+
+/// Whether a work object as a literal moves with a mechanical unit: its user frame is not fixed.
+pub(super) fn moves_with_unit(text: &str) -> Option<bool> {
+    let mut fields = text.trim_start().strip_prefix('[')?.split(',').map(str::trim);
+    let (_, fixed) = (fields.next()?, fields.next()?);
+    Some(fixed.eq_ignore_ascii_case("FALSE"))
+}
+
+/// Length and stay at the left side of weavedata as a literal.
+pub(super) fn weave(text: &str) -> Option<[f64; 2]> {
+    let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
+    Some([*numbers.get(2)?, *numbers.get(5)?])
+}
+
 /// The first three numbers of an aggregate, or the text that is not a number.
-pub(super) fn three_numbers(text: &str) -> Result<[f64; 3], &str> {
+fn three_numbers(text: &str) -> Result<[f64; 3], &str> {
     let inside = text.trim_start_matches(|c: char| c == '[' || c.is_whitespace());
     let mut fields = inside.split([',', ']']);
     let mut next = || {

@@ -3,14 +3,15 @@
 //! Positions are in the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the codes
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
-use super::module::{Module, Value};
+use super::module::{Module, Target, Value};
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
-use super::module;
+use super::{module, review};
+use crate::dialect::reading::fault::{CONFIGURATION, RAPID_WITH_ARC, TWO_SWITCHES, WEAVE_PITCH};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 
 /// Instructions that affect neither position nor metal.
@@ -129,11 +130,20 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         off: Patterns::new(&options.arc.off),
         values: HashMap::new(),
         in_time: HashSet::new(),
+        configured: [true; 2],
+        interrupts: HashMap::new(),
+        package: false,
+        stops: false,
+        lit_with: BTreeSet::new(),
+        outputs: BTreeSet::new(),
+        weaves: HashMap::new(),
     };
     let main = reader.load(None, text)?;
     let entry = main.proc("main").or_else(|| main.first_proc()).ok_or(ReadError::NoProgram("RAPID"))?;
     reader.run(&main, entry, 0)?;
-    reader.trace.finish(super::DIALECT.language)
+    let Reader { mut trace, stops, lit_with, .. } = reader;
+    review::program(&mut trace, &main, stops, &lit_with);
+    trace.finish(super::DIALECT.language)
 }
 
 struct Reader<'a> {
@@ -147,23 +157,41 @@ struct Reader<'a> {
     values: HashMap<String, f64>,
     /// Flags that waits set where their time is over, in upper case.
     in_time: HashSet<String>,
+    /// Whether the robot holds to the configurations of joint moves, and watches those of others.
+    configured: [bool; 2],
+    /// Interrupts on an input that goes off, in upper case, and whether they are awake.
+    interrupts: HashMap<String, bool>,
+    /// Whether RobotWare Arc lights the arc.
+    package: bool,
+    /// Whether a stop of the program ends the arc.
+    stops: bool,
+    /// Outputs that were on while the arc burned by them, in upper case.
+    lit_with: BTreeSet<String>,
+    /// Outputs that are on, in upper case.
+    outputs: BTreeSet<String>,
+    /// For the length of each weave, the least and greatest time that the torch stays at a side, s.
+    weaves: HashMap<String, [f64; 2]>,
 }
 
 impl Reader<'_> {
     /// Loads a module and evaluates its data.
     fn load(&mut self, name: Option<&str>, text: &str) -> Result<Rc<Module>, ReadError> {
         let mut module = Module::new(name, text);
+        self.trace.bytes += text.len();
         let caller = std::mem::replace(&mut self.trace.module, name.map(str::to_owned));
         for (line, kind, variable, value) in module.declarations() {
             let found = match kind {
                 "ROBTARGET" => self.target(&value, &module, line)?.map(Value::Target),
                 "SEAMDATA" => module::seam_times(&value).map(Value::Seam),
+                "WOBJDATA" => module::moves_with_unit(&value).map(Value::WorkObject),
+                "JOINTTARGET" => module::external_axes(&value).map(Value::Joints),
+                "WEAVEDATA" => module::weave(&value).map(Value::Weave),
                 "SPEEDDATA" => module::first_number(&value).map(Value::Speed),
                 _ => module::first_number(&value).map(Value::Speed),
             };
             match found {
                 Some(found) => module.set(&variable, found),
-                None if kind == "NUM" => {}
+                None if ["NUM", "WOBJDATA", "JOINTTARGET", "WEAVEDATA"].contains(&kind) => {}
                 None => self.trace.note(&variable, "has a value that is not understood", line),
             }
         }
@@ -241,15 +269,28 @@ impl Reader<'_> {
             return self.motion(round, weld, is("MoveJ"), text, line, module);
         }
         let flat = compact(text);
-        if self.on.matches(&flat) {
-            self.trace.set_arc(true, line);
-        } else if self.off.matches(&flat) {
-            self.trace.set_arc(false, line);
+        self.watched(word, rest, &flat, line);
+        let (lit, ended) = (self.on.matches(&flat), self.off.matches(&flat));
+        if lit || ended {
+            self.trace.set_arc(lit, line);
+            let place = self.trace.place(line);
+            self.trace.watch.switch(lit, &mut self.trace.faults, place);
+            if lit {
+                self.lit_with.extend(self.outputs.iter().cloned());
+            }
         } else if is("WaitTime") {
             let seconds = arguments(rest).into_iter().rfind(|p| !p.starts_with('\\')).unwrap_or_default();
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
             self.trace.dwell += wait.max(0.0);
         } else if is("MoveAbsJ") || is("MoveExtJ") {
+            let target = arguments(rest).first().copied().unwrap_or_default();
+            let joints = match self.value(target, module) {
+                Some(Value::Joints(axes)) => Some(axes),
+                _ => module::external_axes(target).filter(|_| target.starts_with('[')),
+            };
+            if let Some(axes) = joints.filter(|_| is("MoveAbsJ")) {
+                self.trace.home(&axes, target, line);
+            }
             self.trace.note(word, "goes to a place that is unknown here and was left out", line);
             self.trace.forget();
         } else if is("Load") || is("StartLoad") {
@@ -265,6 +306,48 @@ impl Reader<'_> {
             return self.other(text, &flat, line, module, depth);
         }
         Ok(())
+    }
+
+    /// What a statement means for those who watch the arc, and for how the robot moves.
+    fn watched(&mut self, word: &str, rest: &str, flat: &str, line: usize) {
+        let is = |name: &str| name.eq_ignore_ascii_case(word);
+        let first = || arguments(rest).first().copied().unwrap_or_default().to_ascii_uppercase();
+        if is("ConfJ") || is("ConfL") {
+            self.configured[usize::from(is("ConfL"))] = !flat.ends_with("\\OFF");
+        } else if is("TriggStopProc") {
+            self.stops = true;
+        } else if is("ISignalDI") {
+            // An interrupt on a signal that goes off.
+            let parts = arguments(rest);
+            if let [_, value, interrupt] = parts[parts.len().saturating_sub(3)..]
+                && value == "0"
+            {
+                self.interrupts.insert(interrupt.to_ascii_uppercase(), true);
+                self.trace.watch.arm();
+            }
+        } else if (is("ISleep") || is("IDelete")) && self.interrupts.contains_key(&first()) {
+            let place = self.trace.place(line);
+            self.trace.watch.disarm(&format!("{word} {}", rest.trim()), &mut self.trace.faults, place);
+        } else if is("IWatch") && self.interrupts.contains_key(&first()) {
+            self.trace.watch.arm();
+        } else if is("WaitDI") {
+            self.trace.watch.look();
+        } else if is("WaitTime") && flat.contains("\\INPOS") || is("WaitRob") {
+            self.trace.watch.wait();
+        } else if is("SetDO") || is("Set") || is("Reset") {
+            let parts = arguments(rest);
+            let output = parts.first().copied().unwrap_or_default().to_ascii_uppercase();
+            if is("Set") || parts.get(1) == Some(&"1") {
+                self.outputs.insert(output.clone());
+            } else {
+                self.outputs.remove(&output);
+            }
+            if self.package {
+                let place = Some(self.trace.place(line));
+                let text = format!("{output} is switched beside RobotWare Arc.");
+                self.trace.faults.add(&TWO_SWITCHES, place, text);
+            }
+        }
     }
 
     /// `IF a THEN` on its own line needs nothing more; `IF a MoveL ..;` and `IF a THEN MoveL ..;` hold a statement.
@@ -410,9 +493,17 @@ impl Reader<'_> {
             Weld::Seam | Weld::End => Metal::Arc,
         };
         let step = Step { speed: speed.unwrap_or(0.0), metal, width: None, line };
-        match (self.target(at(0), module, line)?, round.then(|| self.target(at(1), module, line)).transpose()?) {
-            (Some(to), None) => self.trace.line(to.to_array().map(Some), step),
-            (Some(aux), Some(Some(end))) => self.trace.arc_over(aux, end, None, step),
+        self.package |= weld == Weld::Start;
+        let targets = (self.target(at(0), module, line)?, round.then(|| self.target(at(1), module, line)).transpose()?);
+        if let (_, Some(Some(last))) | (Some(last), None) = targets {
+            self.before_motion(&last, joint, rest, module, line);
+        }
+        if metal == Metal::Arc {
+            self.weaving(rest, step.speed, module, line);
+        }
+        match targets {
+            (Some(to), None) => self.trace.line(to.at.to_array().map(Some), step),
+            (Some(aux), Some(Some(end))) => self.trace.arc_over(aux.at, end.at, None, step),
             _ => {
                 self.trace.note("a motion to a place that is computed or not declared", "was left out", line);
                 self.trace.forget();
@@ -431,6 +522,48 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// What a motion states beside its place, before it is made.
+    fn before_motion(&mut self, target: &Target, joint: bool, rest: &str, module: &Module, line: usize) {
+        let wobj = rest.split_once("\\WObj:=").map(|(_, wobj)| name(wobj).0);
+        if let Some(Value::WorkObject(moves)) = wobj.and_then(|wobj| self.value(wobj, module)) {
+            self.trace.frame_turns = moves;
+        }
+        let place = self.trace.place(line);
+        let controlled = self.configured[usize::from(!joint)];
+        if target.unconfigured && controlled {
+            let (word, kind) = if joint { ("ConfJ", "joint moves") } else { ("ConfL", "straight moves and arcs") };
+            let text = format!("targets have the configuration [0,0,0,0], and {word} holds {kind} to it.");
+            self.trace.faults.add(&CONFIGURATION, Some(place.clone()), text);
+        }
+        if joint && self.trace.arc {
+            self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "MoveJ moves the joints with the arc on.");
+        }
+        if self.package {
+            self.trace.watch.wait();
+        } else {
+            let exact = arguments(rest).iter().any(|piece| piece.eq_ignore_ascii_case("fine"));
+            self.trace.watch.go((!exact).then_some("a zone"), &mut self.trace.faults, place);
+        }
+        self.trace.stand(&target.stated, target.at, "a target", line);
+    }
+
+    /// The time for which a weave stays at a side follows from its way and the speed.
+    fn weaving(&mut self, rest: &str, speed: f64, module: &Module, line: usize) {
+        let weave = rest.split_once("\\Weave:=").map(|(_, weave)| name(weave).0);
+        let Some(Value::Weave([length, stay])) = weave.and_then(|weave| self.value(weave, module)) else { return };
+        if speed <= 0.0 || stay <= 0.0 {
+            return;
+        }
+        let time = stay / speed;
+        let times = self.weaves.entry(format!("{length}")).or_insert([time, time]);
+        *times = [times[0].min(time), times[1].max(time)];
+        if times[1] > 1.1 * times[0] {
+            let text = format!("the weave stays at its sides for {:.3} to {:.3} s: a way of its data, not a time.", times[0], times[1]);
+            let place = Some(self.trace.place(line));
+            self.trace.faults.add(&WEAVE_PITCH, place, text);
+        }
+    }
+
     /// mm/s of a speeddata or welddata: predefined, named, or written out; `\V:=` overrides it.
     fn speed(&self, text: &str, options: &str, module: &Module) -> Option<f64> {
         if let Some((_, v)) = options.split_once("\\V:=") {
@@ -441,7 +574,7 @@ impl Reader<'_> {
         }
         match self.value(text, module) {
             Some(Value::Speed(speed)) => Some(speed),
-            Some(Value::Target(_) | Value::Seam(_)) => None,
+            Some(_) => None,
             None => number(text.strip_prefix(['v', 'V'])?),
         }
     }
@@ -451,10 +584,10 @@ impl Reader<'_> {
     }
 
     /// `[[x,y,z],..]`, a name, or `Offs(place,x,y,z)`; none when it is something else.
-    fn target(&self, text: &str, module: &Module, line: usize) -> Result<Option<DVec3>, ReadError> {
+    fn target(&self, text: &str, module: &Module, line: usize) -> Result<Option<Target>, ReadError> {
         if text.starts_with('[') {
-            let numbers = module::three_numbers(text).map_err(|bad| self.trace.number_error(line, bad))?;
-            return Ok(Some(DVec3::from_array(numbers)));
+            let target = module::target(text).map_err(|bad| self.trace.number_error(line, bad))?;
+            return Ok(Some(target));
         }
         if let Some(inside) = strip_word(text, "Offs").and_then(|r| r.strip_prefix('(')?.strip_suffix(')')) {
             let pieces = arguments(inside);
@@ -463,11 +596,12 @@ impl Reader<'_> {
             for (value, text) in offset.iter_mut().zip(by) {
                 *value = number(text).ok_or_else(|| self.trace.number_error(line, text))?;
             }
-            return Ok(self.target(base, module, line)?.map(|p| p + DVec3::from_array(offset)));
+            let offset = DVec3::from_array(offset);
+            return Ok(self.target(base, module, line)?.map(|target| Target { at: target.at + offset, ..target }));
         }
         match self.value(text, module) {
             Some(Value::Target(to)) => Ok(Some(to)),
-            Some(Value::Speed(_) | Value::Seam(_)) | None => Ok(None),
+            _ => Ok(None),
         }
     }
 }

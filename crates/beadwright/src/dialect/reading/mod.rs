@@ -6,16 +6,20 @@
 //! | `words` | numbers, names and patterns of the robots' languages |
 //! | `trace` | the moves as they come: places, flattened arcs, notes |
 //! | `loops` | loops with constant bounds |
+//! | `fault`, `watch` | lines that would be dangerous, and who watches the arc |
 //! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
 //!
 //! Programs are read from top to bottom; calls are followed, and loops with constant bounds turn as often as they say.
 //! Nothing is computed: branches and other loops are read once, variables and expressions are not evaluated. Whatever is not understood is listed in [`ReadProgram::notes`].
 
+pub(super) mod fault;
 mod layers;
 pub(super) mod loops;
 pub(super) mod trace;
+pub(super) mod watch;
 pub(super) mod words;
 
+pub use fault::{FAULTS, Fault, FaultKind};
 pub use layers::{ReadLayer, ReadPass, ReadTotals};
 pub use trace::CHORD_MM;
 
@@ -68,6 +72,8 @@ pub struct ReadProgram {
     pub dwell: f64,
     /// What was not understood or had to be assumed, one sentence each with count and first line.
     pub notes: Vec<String>,
+    /// Lines that would be dangerous, or that the controller would refuse.
+    pub faults: Vec<Fault>,
 }
 
 /// Codes that light and end the arc, besides those that a dialect knows by itself.
@@ -110,6 +116,10 @@ pub struct Options {
     /// Whether `V=` in INFORM is in cm/min instead of mm/s; controllers can be set to either, and jobs do not say
     /// which.
     pub inform_cm_per_min: bool,
+    /// Name of the main file, as the controller will know it.
+    pub file: Option<String>,
+    /// Most that the controller takes of a KRL program or of a script, MB.
+    pub max_megabytes: Option<f64>,
 }
 
 /// A line of the program, or of one of its modules.

@@ -1,8 +1,10 @@
 //! The moves of a program as a reader finds them: positions that may be unknown, arcs, notes.
 
+use super::fault::{Faults, LEFT_ON, MISSING_AXIS, STATIC_FRAME, TURNING_TORCH};
+use super::watch::Watch;
 use super::{Metal, Move, Place, ReadError, ReadProgram};
 use crate::model::MAX_REACH_MM;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
 /// Chords lie this close to their arc, mm.
@@ -39,6 +41,24 @@ pub(in crate::dialect) struct Step {
     pub(in crate::dialect) width: Option<f64>,
     pub(in crate::dialect) line: usize,
 }
+
+/// How a target states that the torch stands, beside its place.
+#[derive(Clone, Copy, Default)]
+pub(in crate::dialect) struct Stated {
+    /// The tool, in the frame of the place.
+    pub(in crate::dialect) tool: Option<DQuat>,
+    /// Axes beside the robot's, mm or °.
+    pub(in crate::dialect) axes: [Option<f64>; 6],
+}
+
+/// A torch that turns faster than this with the arc on swings, ° for each mm of its way.
+const MOST_TURN_A_MM: f64 = 30.0;
+
+/// Smaller turns are none, °.
+const LEAST_TURN: f64 = 5.0;
+
+/// Smaller moves of an axis are none, mm or °.
+const LEAST_AXIS: f64 = 0.05;
 
 /// An arc `centre + u cos t + v sin t + rise t/sweep`, t from 0 to `sweep`.
 pub(in crate::dialect) struct Curve {
@@ -108,6 +128,21 @@ pub(in crate::dialect) struct Trace {
     pub(in crate::dialect) dwell: f64,
     /// The module being read; none for the main file.
     pub(in crate::dialect) module: Option<String>,
+    /// Dangerous lines.
+    pub(in crate::dialect) faults: Faults,
+    /// Who watches the arc.
+    pub(in crate::dialect) watch: Watch,
+    /// Whether the frame of the part turns with the table under it.
+    pub(in crate::dialect) frame_turns: bool,
+    /// Text that was read, bytes.
+    pub(in crate::dialect) bytes: usize,
+    tool: Option<DQuat>,
+    /// Axes beside the robot's as the last target states them.
+    axes: Option<[Option<f64>; 6]>,
+    /// Where the table stood when the arc was lit first, and how far it has turned since below a frame that stands, °: before
+    /// the present move and behind it.
+    table: Option<f64>,
+    turn: [f64; 2],
     moves: Vec<Move>,
     notes: Vec<Note>,
     seen: Vec<String>,
@@ -125,6 +160,14 @@ impl Trace {
             arc: false,
             dwell: 0.0,
             module: None,
+            faults: Faults::default(),
+            watch: Watch::default(),
+            frame_turns: false,
+            bytes: 0,
+            tool: None,
+            axes: None,
+            table: None,
+            turn: [0.0; 2],
             moves: Vec::new(),
             notes: Vec::new(),
             seen: Vec::new(),
@@ -182,6 +225,60 @@ impl Trace {
         self.known = [false; 3];
     }
 
+    /// What a motion states beside its place `to`, before it is made; `what` names the motion.
+    pub(in crate::dialect) fn stand(&mut self, stated: &Stated, to: DVec3, what: &str, line: usize) {
+        let place = Some(self.place(line));
+        self.states_axes(&stated.axes, what, line);
+        self.turn[0] = self.turn[1];
+        let moved = |(before, now): (&Option<f64>, &Option<f64>)| {
+            before.zip(*now).is_some_and(|(before, now)| (before - now).abs() > LEAST_AXIS)
+        };
+        let moving = self.axes.and_then(|axes| axes.iter().zip(&stated.axes).position(moved));
+        if let (Some(axis), true, false) = (moving, self.arc, self.frame_turns) {
+            let text = format!(
+                "external axis {} moves while the arc burns, and the frame of the part stands still. Right only for a track \
+                 under the robot.",
+                axis + 1
+            );
+            self.faults.add(&STATIC_FRAME, place.clone(), text);
+            // The part turns away below the path.
+            let angle = stated.axes[axis].unwrap_or_default();
+            let from = self.axes.and_then(|axes| axes[axis]).unwrap_or_default();
+            self.turn[1] = angle - *self.table.get_or_insert(from);
+        }
+        if let (Some(before), Some(now), true) = (self.tool, stated.tool, self.arc) {
+            let angle = before.angle_between(now).min(before.angle_between(-now)).to_degrees();
+            let length = if self.known == [true; 3] { self.at.distance(to) } else { f64::INFINITY };
+            if angle > LEAST_TURN && angle > MOST_TURN_A_MM * length {
+                let text = format!("the torch turns by {angle:.0}° on {length:.2} mm with the arc on.");
+                self.faults.add(&TURNING_TORCH, place, text);
+            }
+        }
+        self.tool = stated.tool.or(self.tool);
+        self.axes = Some(stated.axes);
+    }
+
+    /// All targets state the same axes.
+    pub(in crate::dialect) fn states_axes(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
+        let lacks = |axis: &usize| self.axes.is_some_and(|before| before[*axis].is_some() != axes[*axis].is_some());
+        if let Some(axis) = (0..6).find(lacks) {
+            let (has, others) = if axes[axis].is_some() {
+                ("states", "targets before it do not")
+            } else {
+                ("does not state", "others do")
+            };
+            let text = format!("{what} {has} external axis {}, and {others}.", axis + 1);
+            let place = Some(self.place(line));
+            self.faults.add(&MISSING_AXIS, place, text);
+        }
+    }
+
+    /// Axes that a target without a place states: home.
+    pub(in crate::dialect) fn home(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
+        self.states_axes(axes, what, line);
+        self.axes = Some(*axes);
+    }
+
     /// A straight move; axes without a value stand still.
     pub(in crate::dialect) fn line(&mut self, target: [Option<f64>; 3], mut step: Step) {
         let to = DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(self.at[i])));
@@ -196,8 +293,9 @@ impl Trace {
         }
         self.known = [0, 1, 2].map(|i| self.known[i] || target[i].is_some());
         self.at = to;
-        if self.known == [true; 3] && self.moves.last().is_none_or(|m| m.to != to) {
-            self.push(to, step);
+        let on_part = turned_back(to, self.turn[1]);
+        if self.known == [true; 3] && self.moves.last().is_none_or(|m| m.to != on_part) {
+            self.push(on_part, step);
         }
     }
 
@@ -258,10 +356,12 @@ impl Trace {
         if let Metal::Volume(volume) = step.metal {
             step.metal = Metal::Volume(volume / chords as f64);
         }
+        let [from, to] = self.turn;
         for i in 1..chords {
-            self.push(curve.point(i as f64 / chords as f64), step);
+            let part = i as f64 / chords as f64;
+            self.push(turned_back(curve.point(part), from + (to - from) * part), step);
         }
-        self.push(end, step);
+        self.push(turned_back(end, to), step);
         self.at = end;
     }
 
@@ -307,7 +407,7 @@ impl Trace {
     }
 
     /// The program, if it lays anything.
-    pub(in crate::dialect) fn finish(self, language: &'static str) -> Result<ReadProgram, ReadError> {
+    pub(in crate::dialect) fn finish(mut self, language: &'static str) -> Result<ReadProgram, ReadError> {
         if let Some(fault) = self.fault {
             return Err(fault);
         }
@@ -319,11 +419,20 @@ impl Trace {
             };
             return Err(ReadError::NoDeposition { hint });
         }
+        if self.arc {
+            self.faults.add(&LEFT_ON, None, "the program ends with the arc on.");
+        }
         let sentence = |n: &Note| {
             let times = if n.count == 1 { "once, in".to_owned() } else { format!("{} times, first in", n.count) };
             format!("{} {} ({times} {}).", n.what, n.fate, n.first)
         };
         let notes = self.notes.iter().map(sentence).collect();
-        Ok(ReadProgram { language, moves: self.moves, dwell: self.dwell, notes })
+        let faults = self.faults.sorted();
+        Ok(ReadProgram { language, moves: self.moves, dwell: self.dwell, notes, faults })
     }
+}
+
+/// A place of a frame that stands, on a part that has turned by an angle (°) about the frame's origin.
+fn turned_back(at: DVec3, angle: f64) -> DVec3 {
+    if angle == 0.0 { at } else { DQuat::from_rotation_z(-angle.to_radians()) * at }
 }

@@ -5,11 +5,12 @@
 //! program, that program runs.
 
 use crate::dialect::reading::loops::{Mark, Next, behind, holds, stepped, unrolled};
-use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::fault::{ENDLESS_WAIT, LEFT_ON, RAPID_WITH_ARC, STOP_LEAVES_ON, TOO_LARGE, TURNING_TORCH};
+use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
-use glam::DVec3;
-use std::collections::HashMap;
+use glam::{DQuat, DVec3};
+use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
 /// Statements that affect neither position nor metal, by the beginning of their names.
@@ -45,9 +46,18 @@ type Body = Vec<(usize, String)>;
 /// A value of a variable.
 #[derive(Clone)]
 enum Value {
-    /// Frame, if any, and position, mm.
-    Pose(String, DVec3),
+    Pose(Pose),
     Number(f64),
+}
+
+/// A pose.
+#[derive(Clone)]
+struct Pose {
+    /// Its frame; empty for the base.
+    frame: String,
+    /// mm
+    at: DVec3,
+    tool: Option<DQuat>,
 }
 
 /// Whether a line can occur only in URScript.
@@ -67,13 +77,19 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
         frame: None,
         on: Patterns::new(&options.arc.on),
         off: Patterns::new(&options.arc.off),
+        outputs: BTreeSet::new(),
+        lit_with: BTreeSet::new(),
+        low_when_stopped: BTreeSet::new(),
+        thread: None,
     };
+    reader.trace.bytes = text.len();
     let called = |(_, line): &(usize, String)| reader.functions.contains_key(name(line).0);
     let defines_only = !top.iter().any(called) && !top.iter().any(|(_, line)| line.starts_with("move"));
     reader.run(&top, 0)?;
     if let Some(first) = first.filter(|_| defines_only) {
         reader.call(&first, 1, 0)?;
     }
+    reader.review(options);
     reader.trace.finish(super::DIALECT.language)
 }
 
@@ -119,9 +135,59 @@ struct Reader {
     frame: Option<String>,
     on: Patterns,
     off: Patterns,
+    /// Digital outputs that are on.
+    outputs: BTreeSet<u32>,
+    /// Outputs that were on while the arc burned by them.
+    lit_with: BTreeSet<u32>,
+    /// Outputs that are low whenever the program does not run.
+    low_when_stopped: BTreeSet<u32>,
+    /// The handle of the thread that watches the arc.
+    thread: Option<String>,
+}
+
+/// Number and state of a digital output that a compact statement switches.
+fn output(flat: &str) -> Option<(u32, bool)> {
+    let (_, call) = flat.split_once("DIGITAL_OUT(")?;
+    let (number, value) = call.strip_suffix(')')?.split_once(',')?;
+    Some((number.parse().ok()?, value == "TRUE"))
 }
 
 impl Reader {
+    /// What a welding programmer sees without running it: questions and waits that leave outputs on, and stops that do.
+    fn review(&mut self, options: &Options) {
+        let mut functions: Vec<(String, Rc<Body>)> = self.functions.clone().into_iter().collect();
+        functions.sort_by(|a, b| a.0.cmp(&b.0));
+        for (name, body) in functions {
+            let mut on = if body.iter().any(|(_, line)| line.starts_with("move")) { BTreeSet::new() } else { self.lit_with.clone() };
+            for (i, (line, text)) in body.iter().enumerate() {
+                if let Some((output, state)) = output(&compact(text)) {
+                    if state { on.insert(output) } else { on.remove(&output) };
+                }
+                let burning = on.intersection(&self.lit_with).map(u32::to_string).collect::<Vec<_>>().join(" and ");
+                if burning.is_empty() {
+                    continue;
+                }
+                let place = Some(self.trace.place(*line));
+                let waits = strip_word(text, "while").and_then(input) == Some(false) && !moves_or_calls(&body[i..]);
+                if text.starts_with("popup(") || text == "pause" {
+                    self.trace.faults.add(&LEFT_ON, place, format!("{name} asks with output {burning} on."));
+                } else if waits && !counts(&body[i..]) {
+                    self.trace.faults.add(&ENDLESS_WAIT, place, format!("{name} waits for ever, with output {burning} on."));
+                }
+            }
+        }
+        let left = self.lit_with.difference(&self.low_when_stopped).map(u32::to_string).collect::<Vec<_>>().join(" and ");
+        if !left.is_empty() {
+            let text = format!("output {left} is on with the arc, and stays as it is where the program stops or pauses.");
+            self.trace.faults.add(&STOP_LEAVES_ON, None, text);
+        }
+        if let Some(most) = options.max_megabytes.filter(|most| self.trace.bytes as f64 > most * 1e6) {
+            let size = self.trace.bytes as f64 / 1e6;
+            let text = format!("the script has {size:.1} MB; the controller takes {most:.1} MB.");
+            self.trace.faults.add(&TOO_LARGE, None, text);
+        }
+    }
+
     fn run(&mut self, body: &Body, depth: usize) -> Result<(), ReadError> {
         unrolled(body.len(), |i| mark(&body[i].1), |i| {
             let (line, text) = &body[i];
@@ -142,11 +208,14 @@ impl Reader {
 
     /// How often the block at the start of these lines turns: a branch whose condition is known, or that only asks an input
     /// and moves nothing; `while i < 5:` where `i` is known and changes once a turn by a plain number.
-    fn turns(&self, lines: &[(usize, String)]) -> Option<u64> {
+    fn turns(&mut self, lines: &[(usize, String)]) -> Option<u64> {
         let head = &lines.first()?.1;
         let until = behind(1, lines.len(), |at| mark(&lines[at].1));
         let moves = lines[1..until].iter().any(|(_, line)| line.starts_with("move"));
         let (word, condition) = name(head);
+        if input(condition).is_some() {
+            self.trace.watch.look();
+        }
         let asked = input(condition).filter(|_| ["if", "while"].contains(&word) && !moves);
         let branch = || holds(condition.trim_end_matches(':'), |name| self.number(name)).filter(|_| word == "if");
         if let Some(taken) = asked.or_else(branch) {
@@ -182,10 +251,28 @@ impl Reader {
             return self.motion(word, inside(rest), line);
         }
         let flat = compact(text);
-        if self.on.matches(&flat) {
-            self.trace.set_arc(true, line);
-        } else if self.off.matches(&flat) {
-            self.trace.set_arc(false, line);
+        if let Some((output, on)) = output(&flat) {
+            if on { self.outputs.insert(output) } else { self.outputs.remove(&output) };
+        }
+        let (lit, ended) = (self.on.matches(&flat), self.off.matches(&flat));
+        if lit || ended {
+            self.trace.set_arc(lit, line);
+            let place = self.trace.place(line);
+            self.trace.watch.switch(lit, &mut self.trace.faults, place);
+            if lit {
+                self.lit_with.extend(&self.outputs);
+            }
+        } else if let Some(setting) = flat.strip_prefix("SET_RUNSTATE_STANDARD_DIGITAL_OUTPUT_TO_VALUE(") {
+            // 1: low when the program is not running, 3: high when it runs, which it then holds by itself.
+            let numbers: Vec<u32> = setting.trim_end_matches(')').split(',').filter_map(|n| n.parse().ok()).collect();
+            if let [output, 1 | 3] = numbers[..] {
+                self.low_when_stopped.insert(output);
+            }
+        } else if strip_word(text, "kill").is_some_and(|handle| Some(handle) == self.thread.as_deref()) {
+            // The statement before has ended when this one runs.
+            self.trace.watch.wait();
+            let place = self.trace.place(line);
+            self.trace.watch.disarm(text, &mut self.trace.faults, place);
         } else if word == "sleep" {
             let seconds = inside(rest);
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
@@ -194,6 +281,15 @@ impl Reader {
             let moves = |body: &Rc<Body>| body.iter().any(|(_, line)| line.starts_with("move"));
             if self.functions.get(thread).is_none_or(moves) {
                 self.trace.note(thread, "runs beside the program and was left out", line);
+            }
+            let watches = |body: &Rc<Body>| {
+                body.iter().any(|(_, line)| line.contains("digital_in(")) && body.iter().any(|(_, line)| self.off.matches(&compact(line)))
+            };
+            if self.functions.get(thread).is_some_and(watches) {
+                self.thread = text.split_once('=').map(|(handle, _)| handle.trim().to_owned());
+                self.trace.watch.arm();
+                // It looks at the input by itself, all the time.
+                self.trace.watch.look();
             }
         } else if rest.starts_with('(') && self.functions.contains_key(word) {
             return self.call(word, line, depth);
@@ -212,7 +308,7 @@ impl Reader {
         let Some(variable) = left.split_whitespace().next_back() else { return Ok(()) };
         let value = match number(value) {
             Some(number) => Some(Value::Number(number)),
-            None => self.pose(value, line)?.map(|(frame, place)| Value::Pose(frame, place)),
+            None => self.pose(value, line)?.map(Value::Pose),
         };
         match value {
             Some(value) => self.values.insert(variable.to_owned(), value),
@@ -222,25 +318,28 @@ impl Reader {
     }
 
     /// Frame and position, mm, of `p[x,y,z,..]`, `pose_trans(frame, pose)` or a name; `None` for a computed pose.
-    fn pose(&self, text: &str, line: usize) -> Result<Option<(String, DVec3)>, ReadError> {
+    fn pose(&self, text: &str, line: usize) -> Result<Option<Pose>, ReadError> {
         if let Some(numbers) = text.strip_prefix("p[") {
-            let mut fields = numbers.trim_end_matches(']').split(',');
+            let numbers = numbers.trim_end_matches(']');
+            let mut fields = numbers.split(',');
             let mut place = [0.0; 3];
             for axis in &mut place {
                 let field = fields.next().unwrap_or_default();
                 let wrong = if field.trim().is_empty() { text } else { field };
                 *axis = 1e3 * number(field).ok_or_else(|| self.trace.number_error(line, wrong))?;
             }
-            return Ok(Some((String::new(), DVec3::from_array(place))));
+            let turns: Vec<f64> = numbers.split(',').skip(3).filter_map(number).collect();
+            let tool = <[f64; 3]>::try_from(turns).ok().map(|vector| DQuat::from_scaled_axis(DVec3::from_array(vector)));
+            return Ok(Some(Pose { frame: String::new(), at: DVec3::from_array(place), tool }));
         }
         if let Some(rest) = strip_word(text, "pose_trans") {
             let [frame, pose] = arguments(inside(rest))[..] else { return Ok(None) };
             // Frames within frames are not composed.
-            let found = self.pose(pose, line)?.filter(|(inner, _)| inner.is_empty());
-            return Ok(found.map(|(_, place)| (compact(frame), place)));
+            let found = self.pose(pose, line)?.filter(|pose| pose.frame.is_empty());
+            return Ok(found.map(|pose| Pose { frame: compact(frame), ..pose }));
         }
         Ok(match self.values.get(text) {
-            Some(Value::Pose(frame, place)) => Some((frame.clone(), *place)),
+            Some(Value::Pose(pose)) => Some(pose.clone()),
             Some(Value::Number(_)) | None => None,
         })
     }
@@ -248,7 +347,7 @@ impl Reader {
     fn number(&self, text: &str) -> Option<f64> {
         number(text).or_else(|| match self.values.get(text.trim()) {
             Some(Value::Number(number)) => Some(*number),
-            Some(Value::Pose(..)) | None => None,
+            Some(Value::Pose(_)) | None => None,
         })
     }
 
@@ -265,14 +364,31 @@ impl Reader {
         }
         let speed = speed.unwrap_or(0.0) * 1e3;
         let step = Step { speed, metal: self.trace.metal(), width: None, line };
-        for (frame, _) in places.iter().flatten() {
+        let blended = pieces.iter().any(|piece| {
+            let radius = piece.strip_prefix('r').and_then(|rest| rest.trim_start().strip_prefix('='));
+            radius.and_then(number).is_some_and(|radius| radius > 0.0)
+        });
+        let place = self.trace.place(line);
+        self.trace.watch.go(blended.then_some("a blend"), &mut self.trace.faults, place.clone());
+        if let Some(Some(last)) = places.last() {
+            let stated = Stated { tool: last.tool, axes: [None; 6] };
+            self.trace.stand(&stated, last.at, "a pose", line);
+        }
+        if self.trace.arc && word == "movej" {
+            self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "movej moves the joints with the arc on.");
+        }
+        if self.trace.arc && word == "movec" && pieces.iter().any(|piece| compact(piece) == "MODE=1") {
+            let text = "mode=1 turns the torch with the arc's tangent.";
+            self.trace.faults.add(&TURNING_TORCH, Some(place), text);
+        }
+        for Pose { frame, .. } in places.iter().flatten() {
             if self.frame.get_or_insert_with(|| frame.clone()) != frame {
                 self.trace.note("a pose in another frame", "was read as if it were in the first", line);
             }
         }
-        match places[..] {
-            [Some((_, to))] => self.trace.line(to.to_array().map(Some), step),
-            [Some((_, via)), Some((_, to))] => self.trace.arc_over(via, to, None, step),
+        match &places[..] {
+            [Some(to)] => self.trace.line(to.at.to_array().map(Some), step),
+            [Some(via), Some(to)] => self.trace.arc_over(via.at, to.at, None, step),
             _ => {
                 self.trace.note("a motion to a place that is unknown here", "was left out", line);
                 self.trace.forget();
@@ -286,6 +402,18 @@ impl Reader {
         let named = pieces.iter().find_map(|p| Some(p.strip_prefix('v')?.trim_start().strip_prefix('=')?.trim()));
         self.number(named.or_else(|| pieces.get(poses + 1).copied().filter(|p| !p.contains('=')))?)
     }
+}
+
+/// Whether the block at the start of these lines moves the torch.
+fn moves_or_calls(lines: &[(usize, String)]) -> bool {
+    let until = behind(1, lines.len(), |at| mark(&lines[at].1));
+    lines[1..until].iter().any(|(_, line)| line.starts_with("move"))
+}
+
+/// Whether the block at the start of these lines asks something else too, such as for how long it has waited.
+fn counts(lines: &[(usize, String)]) -> bool {
+    let until = behind(1, lines.len(), |at| mark(&lines[at].1));
+    lines[1..until].iter().any(|(_, line)| strip_word(line, "if").is_some())
 }
 
 /// The thread that `run thread()` or `handle = run thread()` starts.

@@ -1,0 +1,61 @@
+//! A small program written with a profile in each of its dialects and read back, so that dangerous lines of its templates and
+//! settings are seen before anything is planned.
+
+use crate::dialect::reading::{self, Fault};
+use crate::dialect::{self, own};
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, PassKind};
+use crate::profile::Profile;
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// Name of the part that is rehearsed.
+const PART: &str = "rehearsal";
+
+/// Moves of a circle.
+const MOVES: usize = 72;
+
+/// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs, and dialects of one's own,
+/// are not read for them; what a profile cannot write at all is refused elsewhere.
+pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
+    let posts = profile.posts.iter().filter(|post| !own::is_folder(post) && *post != "marlin");
+    posts.flat_map(|post| faults(profile, post).into_iter().map(|fault| (post.clone(), fault))).collect()
+}
+
+fn faults(profile: &Profile, post: &str) -> Vec<Fault> {
+    let layers = [layer(profile, 0), layer(profile, 1)];
+    let Ok(files) = dialect::write(post, &layers, &profile.job(PART)) else { return Vec::new() };
+    let Some((main, text)) = main_file(&files) else { return Vec::new() };
+    let mut find = |name: &str| {
+        let named = |file: &&String| {
+            let stem = file.rsplit_once('.').map_or(file.as_str(), |(stem, _)| stem);
+            file.eq_ignore_ascii_case(name) || (stem.eq_ignore_ascii_case(name) && !file.ends_with(".dat"))
+        };
+        files.keys().find(named).and_then(|file| files.get(file)).cloned()
+    };
+    let options = profile.reading_options(Some(main), Some(post));
+    reading::read(text, &mut find, &options).map(|program| program.faults).unwrap_or_default()
+}
+
+/// The file that calls the others: the one with the shortest name that is neither data nor a list.
+fn main_file(files: &BTreeMap<String, String>) -> Option<(&str, &str)> {
+    let programs = files.iter().filter(|(file, _)| !file.ends_with(".dat") && !file.ends_with(".pgf"));
+    programs.min_by_key(|(file, _)| file.len()).map(|(file, text)| (file.as_str(), text.as_str()))
+}
+
+/// A circle, and a line along which the torch becomes slower.
+fn layer(profile: &Profile, index: usize) -> Layer {
+    let (width, pace, height) = (profile.bead.width, profile.process.deposition_speed, profile.layers.height);
+    let (z, radius) = (height * (index + 1) as f64, 10.0 * width);
+    let around = |k: usize| radius * DVec2::from_angle(TAU * k as f64 / MOVES as f64);
+    let circle = (0..MOVES).map(|k| around(k).extend(z)).collect();
+    let along = |k: usize| DVec3::new(2.0 * radius + 4.0 * width * k as f64, 0.0, z);
+    let pass = |kind, closed, points, pace| Pass { kind, closed, points, width: Along::Same(width), pace, wait: 0.0 };
+    let paces = Along::Each(vec![pace, pace, 0.75 * pace, 0.75 * pace]);
+    let passes = vec![
+        pass(PassKind::Contour, true, circle, Along::Same(pace)),
+        pass(PassKind::Infill, false, (0..4).map(along).collect(), paces),
+    ];
+    Layer { index, z, height, passes, ..Layer::default() }
+}

@@ -1,0 +1,73 @@
+//! Who watches the arc while a program is read: what lights it, what is armed, who looked, and whether the torch stands.
+
+use super::Place;
+use super::fault::{BLENDED_SWITCH, Faults, UNWATCHED_ARC, UNWATCHED_END, UNWATCHED_START};
+
+/// The watch over an arc that outputs light; packages watch theirs themselves.
+#[derive(Debug, Clone, Default)]
+pub(in crate::dialect) struct Watch {
+    /// Whether outputs light the arc, now or before.
+    pub(in crate::dialect) by_outputs: bool,
+    lit: bool,
+    armed: bool,
+    looked: bool,
+    /// Whether a move was laid since the arc was lit.
+    moved: bool,
+    /// How the last move is blended into the next, if it is.
+    blended: Option<String>,
+    /// Whether the program waited for the torch since the last move.
+    waited: bool,
+}
+
+impl Watch {
+    /// The arc is switched by an output.
+    pub(in crate::dialect) fn switch(&mut self, on: bool, faults: &mut Faults, place: Place) {
+        if let Some(blend) = self.blended.as_ref().filter(|_| on != self.lit) {
+            let what = if on { "struck" } else { "ended" };
+            faults.add(&BLENDED_SWITCH, Some(place), format!("the arc is {what} behind a move with {blend}."));
+        }
+        self.by_outputs |= on;
+        (self.lit, self.moved) = (on, false);
+        if on {
+            self.looked = false;
+        }
+    }
+
+    /// A watch is armed on the input of the arc.
+    pub(in crate::dialect) fn arm(&mut self) {
+        (self.armed, self.looked) = (true, false);
+    }
+
+    /// The watch ends.
+    pub(in crate::dialect) fn disarm(&mut self, how: &str, faults: &mut Faults, place: Place) {
+        if self.armed && self.lit && self.moved && !self.waited {
+            let text = format!("{how} stands straight behind a move, which the robot has not made yet.");
+            faults.add(&UNWATCHED_END, Some(place), text);
+        }
+        self.armed = false;
+    }
+
+    /// The program looks at the input of the arc.
+    pub(in crate::dialect) fn look(&mut self) {
+        self.looked = true;
+    }
+
+    /// The program waits for the robot.
+    pub(in crate::dialect) fn wait(&mut self) {
+        self.waited = true;
+        self.blended = None;
+    }
+
+    /// The robot moves; `blended` says how it goes over into the next move.
+    pub(in crate::dialect) fn go(&mut self, blended: Option<&str>, faults: &mut Faults, place: Place) {
+        if self.lit && !self.moved {
+            if !self.armed {
+                faults.add(&UNWATCHED_ARC, Some(place), "the torch leaves with the arc on, and nothing watches it.");
+            } else if !self.looked {
+                let text = "the watch is armed, and nobody looks whether the arc burns before the torch leaves.";
+                faults.add(&UNWATCHED_START, Some(place), text);
+            }
+        }
+        (self.moved, self.waited, self.blended) = (true, false, blended.map(str::to_owned));
+    }
+}
