@@ -23,6 +23,8 @@ use std::collections::BTreeSet;
 pub(crate) struct Judged {
     pub(crate) entry: Entry,
     pub(crate) notes: Vec<String>,
+    /// Dangerous lines of a program, as sentences.
+    pub(crate) faults: Vec<String>,
 }
 
 #[pymethods]
@@ -55,6 +57,11 @@ impl Judged {
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
+    }
+
+    #[getter]
+    fn faults(&self) -> Vec<String> {
+        self.faults.clone()
     }
 }
 
@@ -122,7 +129,7 @@ pub(crate) fn compare<'py>(
     Running::new(threads, progress).run(py, Some(&part.name), |task| {
         let judged = |name: &String| {
             let entry = library::strategy(mesh, profile, name, settings, &chosen, task)?;
-            Ok::<_, beadwright::PlanError<_>>(Judged { entry, notes: Vec::new() })
+            Ok::<_, beadwright::PlanError<_>>(Judged { entry, notes: Vec::new(), faults: Vec::new() })
         };
         strategies.iter().map(judged).collect::<Result<Vec<_>, _>>()
     })
@@ -147,7 +154,7 @@ pub(crate) fn judge<'py>(
     let (name, totals) = (&planned.header.part, Totals::of_plan(&metrics));
     let entry = Running::new(threads, progress)
         .run(py, Some(name), |task| library::program(name, &layers, totals, settings, &None, task))?;
-    Ok(Judged { entry, notes: Vec::new() })
+    Ok(Judged { entry, notes: Vec::new(), faults: Vec::new() })
 }
 
 /// The height field of a layer: rows of heights above its bottom (mm) from low y to high, the lowest point (mm), and the

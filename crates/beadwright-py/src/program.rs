@@ -6,8 +6,7 @@ use crate::part::Part;
 use crate::profile::Profile;
 use crate::running::Running;
 use beadwright::compare::{self, Totals};
-use beadwright::dialect::inform::InformSpeed;
-use beadwright::dialect::reading::{self, ArcCodes, Metal, ReadError, ReadProgram};
+use beadwright::dialect::reading::{self, Fault, Metal, ReadError, ReadProgram};
 use beadwright::profile::{self, BUILT_IN};
 use beadwright::{Layer, Mesh, Task, plan, simulate as library};
 use pyo3::prelude::*;
@@ -66,10 +65,10 @@ pub(crate) fn simulate<'py>(
     let (mut loaded, judged_with) = (Loaded::of(program, profile, reading.2), plan::deposit_settings(profile));
     Running::new(threads, None).run(py, Some(name), |task| loaded.outline(mesh, profile, task))?;
     let settings = fitted(grid, judged_with, &extent(&loaded.layers), loaded.layers.len())?;
-    let Loaded { layers, totals, notes } = loaded;
+    let Loaded { layers, totals, notes, faults } = loaded;
     let entry = Running::new(threads, progress)
         .run(py, Some(name), |task| compare::program(name, &layers, totals, settings, &None, task))?;
-    Ok(Judged { entry, notes })
+    Ok(Judged { entry, notes, faults })
 }
 
 /// The moves, with the codes given and those of the profile's templates.
@@ -79,14 +78,10 @@ fn read(
     profile: &profile::Profile,
     (on, off, _): &Reading,
 ) -> Result<ReadProgram, ReadError> {
-    let templates = profile.dialects.arc_codes();
-    let arc = ArcCodes {
-        on: on.iter().cloned().chain(templates.on).collect(),
-        off: off.iter().cloned().chain(templates.off).collect(),
-    };
-    let inform = profile.dialects.inform.as_ref();
-    let inform_cm_per_min = inform.is_some_and(|inform| inform.speed == InformSpeed::CentimetresPerMinute);
-    reading::read(text, module, &reading::Options { arc, filament_diameter: None, inform_cm_per_min })
+    let mut options = profile.reading_options(None, None);
+    options.arc.on.splice(0..0, on.iter().cloned());
+    options.arc.off.splice(0..0, off.iter().cloned());
+    reading::read(text, module, &options)
 }
 
 /// A program as layers.
@@ -94,6 +89,7 @@ struct Loaded {
     layers: Vec<Layer>,
     totals: Totals,
     notes: Vec<String>,
+    faults: Vec<String>,
 }
 
 impl Loaded {
@@ -118,7 +114,8 @@ impl Loaded {
         if let Some(motion) = &profile.motion {
             totals.total_time_s = program.seconds(motion);
         }
-        Self { layers, totals, notes }
+        let faults = program.faults.iter().map(Fault::to_string).collect();
+        Self { layers, totals, notes, faults }
     }
 
     /// Gives the layers the slices of the part, over whose middle the program is moved where it lies elsewhere.

@@ -2,19 +2,12 @@
 //! `BEADWRIGHT_GOLDEN=write cargo test -p beadwright --test check_pages` writes it anew.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
 use beadwright::check::CHECKS;
+use beadwright::dialect::reading::{FAULTS, FaultKind};
 use beadwright::warning::WarningKind;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-
-fn page() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/checks.md")
-}
-
-/// What stands between the two marks of a part of the page.
-fn marks(part: &str) -> (String, String) {
-    (format!("<!-- {part}: written by tests/check_pages.rs -->\n\n"), format!("<!-- end of {part} -->\n"))
-}
 
 /// A sentence of parts of sentences.
 fn sentence(part: &str) -> String {
@@ -46,20 +39,19 @@ fn warnings() -> String {
     format!("| warning | cause | remedy |\n| --- | --- | --- |\n{rows}\n")
 }
 
+fn faults() -> String {
+    let row = |fault: &&FaultKind| {
+        let [what, why, remedy] = [fault.what, fault.why, fault.remedy].map(|text| sentence(text).replace('|', "\\|"));
+        format!("| `{}` | {what} | {why} | {remedy} |\n", fault.name)
+    };
+    let rows: String = FAULTS.iter().map(row).collect();
+    format!("| check | looks for | why | remedy |\n| --- | --- | --- | --- |\n{rows}\n")
+}
+
 #[test]
-fn the_page_tells_every_check_and_warning() {
-    let text = std::fs::read_to_string(page()).unwrap();
-    let mut now = text.clone();
-    for (part, made) in [("checks", checks()), ("warnings", warnings())] {
-        let (begin, end) = marks(part);
-        let (head, rest) = now.split_once(&begin).unwrap();
-        let (_, tail) = rest.split_once(&end).unwrap();
-        now = format!("{head}{begin}{made}{end}{tail}");
-    }
-    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
-        std::fs::write(page(), &now).unwrap();
-    } else {
-        assert!(now == text, "docs/book/checks.md is stale. BEADWRIGHT_GOLDEN=write writes it anew.");
+fn the_page_names_every_check_and_warning() {
+    for (part, made) in [("checks", checks()), ("checks of programs", faults()), ("warnings", warnings())] {
+        common::page_shows("book/checks.md", part, &made);
     }
 }
 

@@ -13,7 +13,7 @@ use common::profile;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 type Files = BTreeMap<String, String>;
 
@@ -40,7 +40,7 @@ const PAGES: [Page; 8] = [
 ];
 
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/dialects")
+    common::docs().join("dialects")
 }
 
 /// A line that turns into a quarter of a circle of 8 mm, in as many points.
@@ -108,26 +108,10 @@ fn programs(page: &str, shown: &[(&str, &str)]) -> String {
     out
 }
 
-const BEGIN: &str = "<!-- programs: written by tests/dialect_pages.rs -->\n\n";
-const END: &str = "<!-- end of programs -->\n";
-
 #[test]
 fn the_pages_show_what_is_written() {
     for (page, shown) in PAGES {
-        let path = docs().join(format!("{page}.md"));
-        let text = std::fs::read_to_string(&path).unwrap();
-        let (head, rest) = text.split_once(BEGIN).unwrap_or_else(|| panic!("{page}.md has no mark"));
-        let (_, tail) = rest.split_once(END).unwrap();
-        let now = format!("{head}{BEGIN}{}{END}{tail}", programs(page, shown));
-        if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
-            std::fs::write(&path, &now).unwrap();
-        } else {
-            let differs = now.lines().zip(text.lines()).find(|(a, b)| a != b);
-            assert!(
-                now == text,
-                "docs/dialects/{page}.md is stale: {differs:?}. BEADWRIGHT_GOLDEN=write writes it anew."
-            );
-        }
+        common::page_shows(&format!("dialects/{page}.md"), "programs", &programs(page, shown));
     }
 }
 

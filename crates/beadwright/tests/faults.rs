@@ -69,10 +69,13 @@ fn faults(post: &str, profile: &Profile, files: &Files) -> Vec<Fault> {
     faults_named(post, profile, files, main_of(files))
 }
 
+/// Sets what a program is asked for.
+type Ask = fn(&mut Profile);
+
 /// Ways to write with what programs may be asked for.
 fn asked() -> Vec<(String, &'static str, Profile)> {
     let mut all = Vec::new();
-    let ways: [(&str, fn(&mut Profile)); 7] = [
+    let ways: [(&str, Ask); 7] = [
         ("plain", |_| {}),
         ("table", |p| p.program.table_side = Some(-90.0)),
         ("restart", |p| p.program.restart = true),
@@ -135,7 +138,7 @@ fn every_profile_says_what_the_cell_must_supply() {
 
 /// A fault put into a program: its dialect, how the program is asked for, a text and what takes its place, and the kind that
 /// must be found.
-type Seed = (&'static str, fn(&mut Profile), &'static str, &'static str, &'static str);
+type Seed = (&'static str, Ask, &'static str, &'static str, &'static str);
 
 fn as_it_is(_: &mut Profile) {}
 
@@ -176,60 +179,31 @@ fn offsets(profile: &mut Profile) {
     profile.program.layer_offsets = true;
 }
 
+#[rustfmt::skip]
 const SEEDS: &[Seed] = &[
     // A frame that stands below a table that turns, and axes that are missing.
     ("krl", table, "EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])", "BASE_DATA[1]", "static-frame"),
     ("krl", table, "A6 0.0,E1 0.0000}", "A6 0.0}", "missing-axis"),
     ("krl", standing_table, ",E1 -35.0000} C_DIS", "} C_DIS", "missing-axis"),
-    (
-        "rapid",
-        standing_table,
-        "[-35.0000,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead",
-        "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead",
-        "missing-axis",
-    ),
+    ("rapid", standing_table, "[-35.0000,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead", "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,smBead", "missing-axis"),
     ("rapid", table, "[FALSE,FALSE,\"STN1\",", "[FALSE,TRUE,\"\",", "static-frame"),
     ("rapid", table, "30.000,0.000],[0.0000,", "30.000,0.000],[9E+09,", "missing-axis"),
     // The watch over the arc.
     ("krl", as_it_is, "WAIT SEC 0\r\n", "", "unwatched-end"),
-    (
-        "krl",
-        as_it_is,
-        "INTERRUPT ON 11\r\nINTERRUPT ON 12\r\nDEMO_ARC( )\r\n",
-        "DEMO_ARC( )\r\nINTERRUPT ON 11\r\n",
-        "unwatched-start",
-    ),
-    ("krl", as_it_is, "INTERRUPT ON 11\r\nINTERRUPT ON 12\r\n", "", "unwatched-arc"),
-    (
-        "krl",
-        as_it_is,
-        "INTERRUPT ON 11\r\nDEMO_ARC( )\r\nEND",
-        "INTERRUPT ON 11\r\nWAIT FOR $IN[1]\r\nEND",
-        "endless-wait",
-    ),
+    ("krl", as_it_is, "INTERRUPT ON 11\r\nINTERRUPT ON 12\r\nINTERRUPT ON 13\r\nDEMO_ARC( )\r\n", "DEMO_ARC( )\r\nINTERRUPT ON 11\r\n", "unwatched-start"),
+    ("krl", as_it_is, "INTERRUPT ON 11\r\nINTERRUPT ON 12\r\nINTERRUPT ON 13\r\n", "", "unwatched-arc"),
+    ("krl", as_it_is, "INTERRUPT ON 13\r\nDEMO_ARC( )\r\nEND", "INTERRUPT ON 13\r\nWAIT FOR $IN[1]\r\nEND", "endless-wait"),
     ("krl", as_it_is, "WAIT SEC 5\r\n$OUT[1] = FALSE\r\nHALT", "HALT", "left-on"),
     ("krl", as_it_is, "INTERRUPT DECL 12 WHEN $STOPMESS==TRUE DO ARC_STOP( )\r\n", "", "stop-leaves-on"),
-    ("rapid", plain, "WaitTime \\InPos,0;\r\n    ISleep iArc;", "ISleep iArc;", "unwatched-end"),
-    (
-        "rapid",
-        plain,
-        "    IWatch iArc;\r\n    ArcBurns;\r\n",
-        "    ArcBurns;\r\n    IWatch iArc;\r\n",
-        "unwatched-start",
-    ),
-    ("rapid", plain, "    IWatch iArc;\r\n", "", "unwatched-arc"),
+    ("rapid", plain, "WaitTime \\InPos,0;\r\n    IDelete iArc;", "IDelete iArc;", "unwatched-end"),
+    ("rapid", plain, "    WatchArc;\r\n    ArcBurns;\r\n", "    ArcBurns;\r\n    WatchArc;\r\n", "unwatched-start"),
+    ("rapid", plain, "    WatchArc;\r\n", "", "unwatched-arc"),
     ("rapid", plain, "    ArcBurns;\r\n    StartMove;", "    WaitDI diArc,1;\r\n    StartMove;", "endless-wait"),
     ("rapid", plain, "    SetDO doGas,0;\r\n    TPWrite \"The arc is out", "    TPWrite \"The arc is out", "left-on"),
     ("rapid", plain, "    TriggStopProc rdArc\\DO1:=doArc,doShadow;\r\n", "", "stop-leaves-on"),
     ("urscript", as_it_is, "    watch = run watch_arc()\n", "", "unwatched-arc"),
     ("urscript", endless, "sync()", "sync()", "endless-wait"),
-    (
-        "urscript",
-        as_it_is,
-        "          set_standard_digital_out(0, False)\n          popup",
-        "          popup",
-        "left-on",
-    ),
+    ("urscript", as_it_is, "          set_standard_digital_out(0, False)\n          popup", "          popup", "left-on"),
     ("urscript", as_it_is, "to_value(1, 1)", "to_value(1, 4)", "stop-leaves-on"),
     ("urscript", as_it_is, "  set_runstate_standard_digital_output_to_value(0, 1)\n", "", "stop-leaves-on"),
     ("gcode", as_it_is, " M65 P0\n", " G4 P0\n", "left-on"),
@@ -237,25 +211,13 @@ const SEEDS: &[Seed] = &[
     ("urscript", as_it_is, "mode=0", "mode=1", "turning-torch"),
     ("krl", as_it_is, "$CIRC_TYPE = #BASE", "$CIRC_TYPE = #PATH", "turning-torch"),
     ("krl", advanced, "180.0000}\r\n; pass 1 contour\r\n", "180.0000} C_DIS\r\n", "blended-switch"),
-    (
-        "rapid",
-        plain,
-        ",vTravel,fine,tTorch\\WObj:=wPart;\r\n    ! pass 1 contour\r\n    WaitTime \\InPos,0;\r\n    SetDO doGas,1;\r\n    WaitTime \\InPos,0.5;",
-        ",vTravel,zBead,tTorch\\WObj:=wPart;\r\n    SetDO doGas,1;",
-        "blended-switch",
-    ),
+    ("rapid", plain, ",vTravel,fine,tTorch\\WObj:=wPart;\r\n    ! pass 1 contour\r\n    WaitTime \\InPos,0;\r\n    SetDO doGas,1;\r\n    WaitTime \\InPos,0.5;", ",vTravel,zBead,tTorch\\WObj:=wPart;\r\n    SetDO doGas,1;", "blended-switch"),
     ("fanuc", as_it_is, "100.0mm/sec FINE ;\r\n   6:  !pass", "100.0mm/sec CNT50 ;\r\n   6:  !pass", "blended-switch"),
     ("inform", as_it_is, "V=100.0 PL=0\r\n'PASS", "V=100.0 PL=1\r\n'PASS", "blended-switch"),
     ("gcode", as_it_is, " G1 X", " G0 X", "rapid-with-arc"),
     ("gcode", as_it_is, "M3 S1", "M3", "no-output"),
     ("krl", arctech, "PTP XHOME\r\nEND", "$OUT[2] = FALSE\r\nPTP XHOME\r\nEND", "two-switches"),
-    (
-        "rapid",
-        as_it_is,
-        "    MoveAbsJ jHome,vHome,fine,tTorch\\WObj:=wPart;\r\n  ENDPROC",
-        "    SetDO doArc,0;\r\n  ENDPROC",
-        "two-switches",
-    ),
+    ("rapid", as_it_is, "    MoveAbsJ jHome,vHome,fine,tTorch\\WObj:=wPart;\r\n  ENDPROC", "    SetDO doArc,0;\r\n  ENDPROC", "two-switches"),
     // Postures, weaves, shifts.
     ("rapid", as_it_is, "    ConfJ \\Off;\r\n", "", "configuration"),
     ("rapid", as_it_is, "    ConfL \\Off;\r\n", "", "configuration"),
@@ -324,7 +286,7 @@ fn sizes_and_names_are_looked_at() {
 /// What a profile cannot have is refused by a sentence that names its key.
 #[test]
 fn profiles_are_refused_where_they_would_be_dangerous() {
-    let refused = |post: &str, ask: fn(&mut Profile)| {
+    let refused = |post: &str, ask: Ask| {
         let mut profile = base();
         ask(&mut profile);
         dialect::write(post, &job(), &profile.job("demo")).unwrap_err().to_string()
@@ -332,8 +294,7 @@ fn profiles_are_refused_where_they_would_be_dangerous() {
     for (post, ask, key) in [
         (
             "krl",
-            (|p| (p.program.table_side, p.dialects.krl.as_mut().unwrap().table_machine) = (Some(0.0), None))
-                as fn(&mut Profile),
+            (|p| (p.program.table_side, p.dialects.krl.as_mut().unwrap().table_machine) = (Some(0.0), None)) as Ask,
             "krl.table_machine",
         ),
         (

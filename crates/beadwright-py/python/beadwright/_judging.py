@@ -49,6 +49,11 @@ class Judged:
         return self._inner.notes
 
     @property
+    def faults(self) -> list[str]:
+        """Lines that would be dangerous on a controller, or that it would refuse; empty where a plan was judged."""
+        return self._inner.faults
+
+    @property
     def row(self) -> dict[str, float]:
         """Its row of a comparison; the headings tell the units."""
         return dict(self._inner.columns)

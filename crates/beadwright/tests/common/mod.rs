@@ -37,6 +37,28 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
     all
 }
 
+/// The folder of the documents.
+pub(crate) fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+/// A page of the documents shows a text between the marks of a part; `BEADWRIGHT_GOLDEN=write` writes it anew.
+pub(crate) fn page_shows(page: &str, part: &str, text: &str) {
+    let (path, mark) = (docs().join(page), format!("<!-- {part}: written by "));
+    let old = std::fs::read_to_string(&path).unwrap();
+    let (head, rest) = old.split_once(&mark).unwrap_or_else(|| panic!("docs/{page} has no mark of {part}"));
+    let (test, rest) = rest.split_once('\n').unwrap();
+    let end = format!("<!-- end of {part} -->\n");
+    let (_, tail) = rest.split_once(&end).unwrap();
+    let now = format!("{head}{mark}{test}\n\n{text}{end}{tail}");
+    if std::env::var("BEADWRIGHT_GOLDEN").is_ok_and(|v| v == "write") {
+        std::fs::write(&path, &now).unwrap();
+    } else {
+        let differs = now.lines().zip(old.lines()).find(|(a, b)| a != b);
+        assert!(now == old, "docs/{page} is stale: {differs:?}. BEADWRIGHT_GOLDEN=write writes it anew.");
+    }
+}
+
 /// An example part, planned.
 pub(crate) fn planned(part: &str, profile: &Profile) -> Plan {
     plan::plan(part, &example::find(part).unwrap().mesh(), profile, &Task::new()).unwrap()

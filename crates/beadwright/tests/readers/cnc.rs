@@ -60,7 +60,7 @@ pub fn run(control: Control, text: &str, arc: [u32; 2]) -> Run {
             Jump::On => at + 1,
             Jump::To(label) => {
                 let found = |line: &&str| line.split(' ').next() == Some(&label);
-                at + 1 + lines[at + 1..].iter().position(|line| found(line)).expect("the label comes behind")
+                at + 1 + lines[at + 1..].iter().position(found).expect("the label comes behind")
             }
         };
     }
@@ -82,6 +82,9 @@ struct Reader {
     /// Where the program begins.
     start: f64,
 }
+
+/// How a condition begins, what stands before its label, and when it holds.
+type Condition = (&'static str, &'static str, fn(f64, f64) -> bool);
 
 /// What comes after a line.
 enum Jump {
@@ -108,7 +111,7 @@ impl Reader {
             self.start = start.parse().unwrap();
             return Jump::On;
         }
-        let conditions: [(&str, &str, fn(f64, f64) -> bool); 2] = match self.control {
+        let conditions: [Condition; 2] = match self.control {
             Control::Fanuc => [("IF[#100GT", "]GOTO", |a, b| a > b), ("IF[#100EQ", "]GOTO", |a, b| a == b)],
             Control::Siemens => [("IF R90>", " GOTOF ", |a, b| a > b), ("IF R90==", " GOTOF ", |a, b| a == b)],
             Control::TwinCat => [("@126 R90 K", " ", |a, b| a > b), ("@122 R90 K", " ", |a, b| a == b)],

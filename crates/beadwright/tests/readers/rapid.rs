@@ -71,10 +71,10 @@ fn pgf(text: &str) -> BTreeSet<String> {
 }
 
 /// Routines of the watch over the arc.
-const WATCH: [&str; 2] = ["ArcBurns", "tArcLost"];
+const WATCH: [&str; 4] = ["WatchArc", "ArcBurns", "tArcLost", "AllOff"];
 
 /// Statements of that watch.
-const WATCHING: [&str; 6] = ["IDelete", "CONNECT", "ISignalDI", "ISleep", "IWatch", "TriggStopProc"];
+const WATCHING: [&str; 2] = ["IDelete", "TriggStopProc"];
 
 struct Datum {
     kind: String,
@@ -302,7 +302,8 @@ impl Reader<'_> {
             }
             "PDispOff" => self.machine.lift = 0.0,
             "ActUnit" => assert!(self.active.insert(rest.to_owned()), "{rest} is active already"),
-            "ArcBurns" => assert!(self.machine.burns(), "the arc is looked at before it is lit"),
+            "WatchArc" | "ArcBurns" => assert!(self.machine.burns(), "the arc is looked at before it is lit"),
+            "AllOff" => assert!(!self.machine.burns()),
             _ if WATCHING.contains(&word) => {}
             "MoveAbsJ" => {
                 assert!(!self.machine.burns());

@@ -20,9 +20,6 @@ MODULE demo
     CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
     IDelete iArc;
-    CONNECT iArc WITH tArcLost;
-    ISignalDI diArc,0,iArc;
-    ISleep iArc;
     TriggStopProc rdArc\DO1:=doArc,doShadow;
     IF ModExist("demo_L001") EraseModule "demo_L001";
     Load \Dynamic,"HOME:/part/demo_L001.mod";
@@ -32,9 +29,17 @@ MODULE demo
     Load \Dynamic,"HOME:/part/demo_L002.mod";
     %"demo_L002:Layer002"%;
     UnLoad "HOME:/part/demo_L002.mod";
+    AllOff;
+    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+  ENDPROC
+  PROC WatchArc()
+    IDelete iArc;
+    CONNECT iArc WITH tArcLost;
+    ISignalDI \SingleSafe,diArc,0,iArc;
+  ENDPROC
+  PROC AllOff()
     SetDO doArc,0;
     SetDO doGas,0;
-    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
   PROC ArcBurns()
     VAR num tried:=1;
@@ -68,6 +73,7 @@ MODULE demo
     WaitTime 0.5;
     SetDO doArc,1;
     WaitTime 0.2;
+    WatchArc;
     ArcBurns;
     StartMove;
   ENDTRAP

@@ -16,7 +16,7 @@ MODULE demo_L001
     WaitTime \InPos,0.5;
     SetDO doArc,1;
     WaitTime \InPos,0.2;
-    IWatch iArc;
+    WatchArc;
     ArcBurns;
     MoveL [[5.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd1,zBead,tTorch\WObj:=wPart;
     MoveL [[30.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd2,zBead,tTorch\WObj:=wPart;
@@ -29,7 +29,7 @@ MODULE demo_L001
     SetAO aoWire,0.5000;
     WaitTime \InPos,0.400;
     WaitTime \InPos,0;
-    ISleep iArc;
+    IDelete iArc;
     WaitTime \InPos,0;
     SetDO doArc,0;
     WaitTime \InPos,0.5;
@@ -46,7 +46,7 @@ MODULE demo_L001
     WaitTime \InPos,0.5;
     SetDO doArc,1;
     WaitTime \InPos,0.2;
-    IWatch iArc;
+    WatchArc;
     ArcBurns;
     MoveL [[55.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd1,zBead,tTorch\WObj:=wPart;
     MoveL [[70.000,0.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vd2,zBead,tTorch\WObj:=wPart;
@@ -56,7 +56,7 @@ MODULE demo_L001
     SetAO aoWire,0.5000;
     WaitTime \InPos,0.400;
     WaitTime \InPos,0;
-    ISleep iArc;
+    IDelete iArc;
     WaitTime \InPos,0;
     SetDO doArc,0;
     WaitTime \InPos,0.5;

@@ -20,15 +20,20 @@ MODULE frame
     CirPathMode \ObjectFrame;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
     IDelete iArc;
-    CONNECT iArc WITH tArcLost;
-    ISignalDI diArc,0,iArc;
-    ISleep iArc;
     TriggStopProc rdArc\DO1:=doArc,doShadow;
     %"frame_L001:Layer001"%;
     %"frame_L002:Layer002"%;
+    AllOff;
+    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
+  ENDPROC
+  PROC WatchArc()
+    IDelete iArc;
+    CONNECT iArc WITH tArcLost;
+    ISignalDI \SingleSafe,diArc,0,iArc;
+  ENDPROC
+  PROC AllOff()
     SetDO doArc,0;
     SetDO doGas,0;
-    MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
   PROC ArcBurns()
     VAR num tried:=1;
@@ -62,6 +67,7 @@ MODULE frame
     WaitTime 0.5;
     SetDO doArc,1;
     WaitTime 0.2;
+    WatchArc;
     ArcBurns;
     StartMove;
   ENDTRAP
