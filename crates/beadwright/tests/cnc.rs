@@ -5,8 +5,10 @@
 mod common;
 mod readers;
 
+use beadwright::layer::Layer;
 use beadwright::plan::Plan;
 use beadwright::profile::Profile;
+use beadwright::program::Weave;
 use common::{planned, profile};
 use readers::cnc::{Control, Run, run};
 use std::collections::BTreeMap;
@@ -94,34 +96,60 @@ fn an_impossible_axis_of_the_wire_is_refused() {
     }
 }
 
-/// Asks LinuxCNC's interpreter what it would do with our program; `BEADWRIGHT_RS274` is the command.
+/// What LinuxCNC's interpreter would do with a program; `BEADWRIGHT_RS274` is its command.
+fn interpreted(program: &str) -> readers::linuxcnc::Totals {
+    let command = std::env::var("BEADWRIGHT_RS274").expect("BEADWRIGHT_RS274 is the path of rs274");
+    let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("part.ngc"), program).unwrap();
+    std::fs::write(folder.join("tool.tbl"), "T1 P1 D1 Z0\n").unwrap();
+    let mut run = std::process::Command::new(&command);
+    let output = run.args(["-g", "-t", "tool.tbl", "part.ngc"]).current_dir(&folder).output().unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    readers::linuxcnc::run(&String::from_utf8(output.stdout).unwrap())
+}
+
+/// The interpreter's calls: lengths and times are those of the plan, and arc, gas and wire are on along beads and nowhere else.
 #[test]
 #[ignore = "needs LinuxCNC's rs274: run benches/linuxcnc.sh"]
 fn linuxcnc_runs_what_was_planned() {
-    let command = std::env::var("BEADWRIGHT_RS274").expect("BEADWRIGHT_RS274 is the path of rs274");
-    // A program that can begin at any pass does the same from its beginning.
-    for (part, restart) in [("cross", false), ("propeller", false), ("cross", true)] {
-        let mut profile = welder("plasma-304-cnc");
-        profile.program.restart = restart;
-        let plan = planned(part, &profile);
-        let m = &plan.summary.metrics;
-        let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        std::fs::write(folder.join("part.ngc"), program(&plan, &profile)).unwrap();
-        std::fs::write(folder.join("tool.tbl"), "T1 P1 D1 Z0\n").unwrap();
-        let output = std::process::Command::new(&command)
-            .args(["-g", "-t", "tool.tbl", "part.ngc"])
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        std::fs::remove_dir_all(&folder).unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let found = readers::linuxcnc::run(&String::from_utf8(output.stdout).unwrap());
-        assert_eq!(found.arc_starts, m.arc_starts);
+    // A program that can begin at any pass, or whose layers can be raised, does the same from its beginning.
+    for (part, strategy) in [("cross", "contour"), ("blade", "wall"), ("propeller", "contour")] {
+        for way in ["plain", "restart", "offsets", "weave"] {
+            let mut profile = welder("plasma-304-cnc");
+            profile.fill.strategy = strategy.to_owned();
+            (profile.program.restart, profile.program.layer_offsets) = (way == "restart", way == "offsets");
+            let plan = planned(part, &profile);
+            let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.0, file: 1 };
+            profile.weave = (way == "weave").then_some(weave);
+            println!("{part}, {way}");
+            compare(&plan, &profile);
+        }
+    }
+}
+
+fn compare(plan: &Plan, profile: &Profile) {
+    let m = &plan.summary.metrics;
+    let text = program(plan, profile);
+    let found = interpreted(&text);
+    assert_eq!(found.arc_starts, m.arc_starts);
+    close(found.travel, travel(plan, profile), "travel");
+    let crater = profile.start_stop.crater_fill_time * m.arc_starts as f64;
+    close(found.arc_time, m.arc_time_s - crater, "arc time");
+    close(found.arc_time + found.waits + m.travel_length_mm / profile.travel.speed, m.total_time_s, "total time");
+    println!("beads for {:.0} s, all outputs on; {:.0} mm of travel, all off", found.arc_time, found.travel);
+    let heights = |raised: i64| {
+        let of = |(i, layer): (usize, &Layer)| (layer.z * 1e3).round() as i64 + if i == 1 { raised } else { 0 };
+        plan.layers.iter().enumerate().map(of).collect()
+    };
+    assert_eq!(found.heights, heights(0));
+    if profile.weave.is_none() {
         close(found.weld_length, m.deposited_length_mm, "deposited length");
-        close(found.travel, travel(&plan, &profile), "travel");
-        let crater = profile.start_stop.crater_fill_time * m.arc_starts as f64;
-        close(found.arc_time, m.arc_time_s - crater, "arc time");
-        close(found.arc_time + found.waits + m.travel_length_mm / profile.travel.speed, m.total_time_s, "total time");
+    }
+    if profile.program.layer_offsets {
+        let (first, rest) = text.split_once("Z0.000\n").unwrap();
+        let raised = format!("{first}Z0.000\n{}", rest.replacen("G52 X0.0 Y0.0 Z0.000", "G52 X0.0 Y0.0 Z0.700", 1));
+        assert_eq!(interpreted(&raised).heights, heights(700));
     }
 }

@@ -1,10 +1,13 @@
 //! Adds up what LinuxCNC's interpreter (`rs274`) calls when it runs a program: its canonical machining functions.
 
 use super::{Point, distance};
+use std::collections::BTreeSet;
 
 /// Totals of a run.
 #[derive(Debug, Default)]
 pub struct Totals {
+    /// Heights at which beads are laid, µm.
+    pub heights: BTreeSet<i64>,
     pub arc_starts: usize,
     /// mm
     pub weld_length: f64,
@@ -18,7 +21,9 @@ pub struct Totals {
 
 /// Lines such as `12 N..... STRAIGHT_FEED(10.0000, 0.0000, 5.0000, 0.0000, 0.0000, 0.0000)`.
 pub fn run(canon: &str) -> Totals {
-    let (mut out, mut at, mut feed, mut burns, mut ended) = (Totals::default(), None::<Point>, 0.0, false, false);
+    let (mut out, mut at, mut feed, mut ended) = (Totals::default(), None::<Point>, 0.0, false);
+    // A spindle without a speed does not turn; gas and wire are outputs 0 and 1.
+    let (mut speed, mut forward, mut outputs, mut offset) = (0.0, false, BTreeSet::new(), 0.0);
     // The first two moves, up and across, come from where the machine happens to stand.
     let mut known = 0;
     for line in canon.lines() {
@@ -42,9 +47,12 @@ pub fn run(canon: &str) -> Totals {
         };
         if let Some((to, length)) = moved {
             at = Some(to);
-            // G0 never with the arc on, G1 never without.
-            assert_eq!(call == "STRAIGHT_TRAVERSE", !burns, "{line}");
-            if burns {
+            // All outputs are on along a bead, and none anywhere else.
+            let lays = call != "STRAIGHT_TRAVERSE";
+            let on = (forward && speed > 0.0, outputs.contains(&0), outputs.contains(&1));
+            assert_eq!(on, (lays, lays, lays), "arc, gas, wire: {line}");
+            if lays {
+                out.heights.insert(((to[2] + offset) * 1e3).round() as i64);
                 out.weld_length += length;
                 out.arc_time += length / (feed / 60.0);
             } else if known >= 2 {
@@ -56,14 +64,18 @@ pub fn run(canon: &str) -> Totals {
             ("SET_FEED_RATE", &[rate]) => feed = rate,
             ("DWELL", &[seconds]) => out.waits += seconds,
             ("PROGRAM_END", _) => ended = true,
-            _ if call.starts_with("START_SPINDLE") => {
-                burns = true;
+            ("SET_SPINDLE_SPEED", &[_, to]) => speed = to,
+            ("SET_AUX_OUTPUT_BIT", &[output]) => drop(outputs.insert(output as u32)),
+            ("CLEAR_AUX_OUTPUT_BIT", &[output]) => drop(outputs.remove(&(output as u32))),
+            ("SET_G92_OFFSET", &[_, _, z, ..]) => offset = z,
+            ("START_SPINDLE_CLOCKWISE", _) => {
+                forward = true;
                 out.arc_starts += 1;
             }
-            _ if call.starts_with("STOP_SPINDLE") => burns = false,
+            ("STOP_SPINDLE_TURNING", _) => forward = false,
             _ => {}
         }
     }
-    assert!(ended, "the program does not end");
+    assert!(ended && outputs.is_empty() && !forward, "the program ends with outputs on: {outputs:?}");
     out
 }
