@@ -22,3 +22,11 @@ if [ -z "${BEADWRIGHT_RS274:-}" ]; then
     export BEADWRIGHT_RS274
 fi
 cargo test -p beadwright --test cnc -- --ignored --nocapture linuxcnc
+# The lines that end the arc run only where LinuxCNC is installed; halrun does not run for root.
+BEADWRIGHT_HALRUN="${BEADWRIGHT_HALRUN:-$(command -v halrun || true)}"
+if [ -n "$BEADWRIGHT_HALRUN" ]; then
+    export BEADWRIGHT_HALRUN
+    cargo test -p beadwright --test cnc -- --ignored --nocapture hal_ends
+else
+    echo "halrun is not installed, so examples/cells/linuxcnc-arc.hal was not run."
+fi

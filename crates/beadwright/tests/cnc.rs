@@ -153,3 +153,49 @@ fn compare(plan: &Plan, profile: &Profile) {
         assert_eq!(interpreted(&raised).heights, heights(700));
     }
 }
+
+/// What LinuxCNC's HAL does with the lines of `examples/cells/linuxcnc-arc.hal`; `BEADWRIGHT_HALRUN` is the path of halrun.
+#[test]
+#[ignore = "needs LinuxCNC's halrun: run benches/linuxcnc.sh where it is installed"]
+fn hal_ends_the_arc_where_it_is_lost_and_where_no_program_runs() {
+    let command = std::env::var("BEADWRIGHT_HALRUN").expect("BEADWRIGHT_HALRUN is the path of halrun");
+    let lines = std::fs::read_to_string(common::docs().join("../examples/cells/linuxcnc-arc.hal")).unwrap();
+    // Signals stand in for motion, the interpreter and the cell.
+    let own = |line: &&str| !["spindle.", "motion.", "halui."].iter().any(|pin| line.contains(pin));
+    let head = "loadrt threads name1=servo-thread period1=1000000 fp1=1".to_owned();
+    let outputs = ["arc-output", "wire-output", "gas-output", "arc-lost"];
+    // What is set, after how long it is looked, and what is then on of arc, wire and gas, and whether the feed is held.
+    let steps: [(&[&str], f64, [bool; 4]); 9] = [
+        (&["program-runs 1", "gas-commanded 1"], 0.1, [false, false, true, false]),
+        (&["wire-commanded 1", "arc-commanded 1"], 0.1, [true, true, true, false]),
+        (&["arc-current 1"], 0.1, [true, true, true, false]),
+        // A flicker is no lost arc; a lost arc ends all, gas 5 s later, and does not come back by itself.
+        (&["arc-current 0"], 0.04, [true, true, true, false]),
+        (&[], 0.3, [false, false, true, true]),
+        (&["arc-current 1"], 5.5, [false, false, false, true]),
+        // An abort ends the spindle, and leaves the outputs; the next program strikes anew.
+        (&["arc-current 0", "arc-commanded 0", "program-runs 0"], 0.2, [false, false, false, false]),
+        (&["program-runs 1", "arc-commanded 1", "arc-current 1"], 0.2, [true, true, true, false]),
+        // A pause: arc and wire end, gas later.
+        (&["program-runs 0"], 0.1, [false, false, true, false]),
+    ];
+    let mut script = vec![head];
+    script.extend(lines.lines().filter(own).map(str::to_owned));
+    script.push("start".to_owned());
+    for (set, seconds, _) in &steps {
+        script.extend(set.iter().map(|set| format!("sets {set}")));
+        script.push(format!("loadusr -w sleep {seconds}"));
+        script.extend(outputs.iter().map(|output| format!("gets {output}")));
+    }
+    let file = std::env::temp_dir().join(format!("beadwright-{}.hal", std::process::id()));
+    std::fs::write(&file, script.join("\n") + "\n").unwrap();
+    let output = std::process::Command::new(&command).arg("-f").arg(&file).output().unwrap();
+    std::fs::remove_file(&file).unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    let values: Vec<bool> = said.lines().filter_map(|line| line.trim().to_lowercase().parse().ok()).collect();
+    assert_eq!(values.len(), steps.len() * outputs.len(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    for ((set, _, wanted), found) in steps.iter().zip(values.chunks(outputs.len())) {
+        println!("{set:?}: arc, wire, gas, held: {found:?}");
+        assert_eq!(found, wanted, "after {set:?}");
+    }
+}
