@@ -6,10 +6,12 @@ mod common;
 mod readers;
 
 use beadwright::layer::Layer;
+use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::Plan;
 use beadwright::profile::Profile;
 use beadwright::program::Weave;
 use common::{planned, profile};
+use glam::DVec3;
 use readers::cnc::{Control, Run, run};
 use std::collections::BTreeMap;
 
@@ -198,4 +200,19 @@ fn hal_ends_the_arc_where_it_is_lost_and_where_no_program_runs() {
         println!("{set:?}: arc, wire, gas, held: {found:?}");
         assert_eq!(found, wanted, "after {set:?}");
     }
+}
+
+/// A jump of Fanuc's macros finds no block behind N99999.
+#[test]
+fn restart_with_too_many_passes_is_refused() {
+    let mut profile = profile("plasma-304-fanuc");
+    profile.program.restart = true;
+    let points = vec![DVec3::ZERO, DVec3::new(40.0, 0.0, 0.0)];
+    let (width, pace) = (Along::Same(5.0), Along::Same(4.0));
+    let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace, wait: 0.0 };
+    let layer = |index| Layer { index, passes: vec![pass.clone(); 500], ..Layer::default() };
+    let layers: Vec<Layer> = (0..70).map(layer).collect();
+    assert!(beadwright::dialect::write("gcode", &layers[..60], &profile.job("part")).is_ok());
+    let error = beadwright::dialect::write("gcode", &layers, &profile.job("part")).unwrap_err().to_string();
+    assert!(error.contains("program.restart") && error.contains("N99999") && error.contains("--from-layer"), "{error}");
 }

@@ -3,12 +3,12 @@
 //! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
 //! them, on lines of their own or after a motion, or by the codes in the options.
 
-use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
 use crate::dialect::reading::fault::{
     BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON, WEAVE_PITCH,
 };
+use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
-use crate::dialect::reading::words::{begins_with, Patterns, compact, name, number};
+use crate::dialect::reading::words::{Patterns, begins_with, compact, name, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
 use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashMap;
@@ -146,7 +146,9 @@ impl Reader<'_> {
         let legal = |b: u8| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_';
         let begins = name.starts_with(|c: char| c.is_ascii_uppercase());
         if name.len() > MAX_NAME || !begins || !name.bytes().all(legal) {
-            let text = format!("\"{name}\" is no name of a program: at most {MAX_NAME} letters, digits and _, a letter first.");
+            let text = format!(
+                "\"{name}\" is no name of a program: at most {MAX_NAME} letters, digits and _, a letter first."
+            );
             self.trace.faults.add(&BAD_NAME, None, text);
         }
         self.trace.module = caller;
@@ -156,24 +158,28 @@ impl Reader<'_> {
     fn run(&mut self, listing: &Rc<Listing>, depth: usize) -> Result<(), ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, listing.module.clone());
         let statements = &listing.statements;
-        unrolled(statements.len(), |i| mark(&statements[i].1), |i| {
-            let (line, text) = &statements[i];
-            match mark(text) {
-                Some(Mark::Begin) => Ok(turns(text, "=", Counting::Up).map_or_else(
-                    || {
-                        self.trace.note("FOR", "is not followed: its lines were read once", *line);
-                        Next::On
+        unrolled(
+            statements.len(),
+            |i| mark(&statements[i].1),
+            |i| {
+                let (line, text) = &statements[i];
+                match mark(text) {
+                    Some(Mark::Begin) => Ok(turns(text, "=", Counting::Up).map_or_else(
+                        || {
+                            self.trace.note("FOR", "is not followed: its lines were read once", *line);
+                            Next::On
+                        },
+                        Next::Turns,
+                    )),
+                    Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
+                    Some(Mark::Else) => Ok(Next::On),
+                    None => match self.jump(text, &statements[i + 1..]) {
+                        Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
+                        None => self.statement(text, *line, listing, depth).map(|()| Next::On),
                     },
-                    Next::Turns,
-                )),
-                Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
-                Some(Mark::Else) => Ok(Next::On),
-                None => match self.jump(text, &statements[i + 1..]) {
-                    Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
-                    None => self.statement(text, *line, listing, depth).map(|()| Next::On),
-                },
-            }
-        })?;
+                }
+            },
+        )?;
         self.trace.module = caller;
         Ok(())
     }
@@ -279,7 +285,9 @@ impl Reader<'_> {
         let first = *self.pitch.get_or_insert(pitch);
         if (pitch / first - 1.0).abs() > 0.1 {
             let place = Some(self.trace.place(line));
-            let text = format!("the weave has {first:.1} mm a swing at first and {pitch:.1} mm here: its frequency stays as it was.");
+            let text = format!(
+                "the weave has {first:.1} mm a swing at first and {pitch:.1} mm here: its frequency stays as it was."
+            );
             self.trace.faults.add(&WEAVE_PITCH, place, text);
         }
     }
@@ -336,8 +344,11 @@ impl Reader<'_> {
             self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
         }
         self.pitch(speed.unwrap_or(0.0), line);
-        self.blended = rest.split_whitespace().find(|word| word.starts_with("CNT") && *word != "CNT0").map(str::to_owned);
-        if let Some(Position::Place(_, to, stated)) = targets.last().and_then(|n| listing.positions.get(&(*n)?)).copied() {
+        self.blended =
+            rest.split_whitespace().find(|word| word.starts_with("CNT") && *word != "CNT0").map(str::to_owned);
+        if let Some(Position::Place(_, to, stated)) =
+            targets.last().and_then(|n| listing.positions.get(&(*n)?)).copied()
+        {
             self.trace.stand(&stated, to, "a position", line);
         }
         let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };

@@ -1,11 +1,11 @@
 //! The section `[fanuc]`: a FANUC cell (R-30iB, ArcTool), and the limits of its values.
 
 use super::write::FanucTp;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
-use crate::program::ProgramSettings;
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::program::ProgramSettings;
 use serde::{Deserialize, Serialize};
 
 /// How welding speeds are written.
@@ -94,7 +94,8 @@ impl Section for Fanuc {
                 "larger programs do not load into the controller";
         };
         limits.extend(self.home.map(|axis| limit("fanuc.home", axis, (-720.0, 720.0), "°", CONTROLLER)));
-        limits.extend(self.orientation.map(|angle| limit("fanuc.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
+        limits
+            .extend(self.orientation.map(|angle| limit("fanuc.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
         limits
     }
 

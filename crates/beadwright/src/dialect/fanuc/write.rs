@@ -4,10 +4,10 @@
 //! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
 //! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
+use super::section::{Fanuc, FanucSpeed};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
-use super::section::{Fanuc, FanucSpeed};
 use crate::process::Process;
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
@@ -106,7 +106,24 @@ impl FanucTp {
         let comment = ascii(&job.part).replace('"', "_");
         let main = Program::default();
         let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave());
-        Self { name, comment, supplies, fanuc, program, weave, values, orientation, travel_speed, nominal_speed, wire_feed_speed, digits: 3, main, skip: None, way: None, weaving: None }
+        Self {
+            name,
+            comment,
+            supplies,
+            fanuc,
+            program,
+            weave,
+            values,
+            orientation,
+            travel_speed,
+            nominal_speed,
+            wire_feed_speed,
+            digits: 3,
+            main,
+            skip: None,
+            way: None,
+            weaving: None,
+        }
     }
 
     fn lines(&self, program: &mut Program, template: &[String]) {
@@ -228,7 +245,11 @@ impl FanucTp {
             Instruction::Travel { to } | Instruction::Retract { to } => {
                 let number = self.pose(program, to);
                 // L takes at most 2000 mm/sec.
-                program.line(&format!("L P[{number}] {}mm/sec FINE{}", fixed(self.travel_speed.clamp(0.1, 2000.0), 1), self.offset_word()));
+                program.line(&format!(
+                    "L P[{number}] {}mm/sec FINE{}",
+                    fixed(self.travel_speed.clamp(0.1, 2000.0), 1),
+                    self.offset_word()
+                ));
             }
             Instruction::ArcOn { pass, kind } => {
                 program.line(&format!("  !pass {pass} {}", kind.name()));

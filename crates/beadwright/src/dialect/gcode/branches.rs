@@ -157,7 +157,8 @@ impl Branches {
     }
 
     fn word(&mut self, word: &str, rest: &str) -> Seen {
-        let keyword: String = rest.chars().take_while(char::is_ascii_alphabetic).collect::<String>().to_ascii_lowercase();
+        let keyword: String =
+            rest.chars().take_while(char::is_ascii_alphabetic).collect::<String>().to_ascii_lowercase();
         if let Some(open) = &self.skipping {
             if open == word && ["endif", "endwhile", "else"].contains(&keyword.as_str()) {
                 self.skipping = None;

@@ -5,11 +5,11 @@
 //! options).
 
 use super::block::{Block, Code, Line, begins_block};
+use super::branches::{Branches, Seen, without_number};
+use super::hints;
 use super::review;
 use crate::dialect::reading::fault::{NO_OUTPUT, RAPID_WITH_ARC};
 use crate::dialect::reading::trace::{Curve, Step, Trace};
-use super::hints;
-use super::branches::{Branches, Seen, without_number};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram, words};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -26,8 +26,8 @@ const HARMLESS_G: [i32; 21] =
 
 /// Codes in tenths whose axis words do not end a motion: offsets, levelling, probing, cycles, turned coordinates.
 const AXES_OF_THEIR_OWN: [i32; 28] = [
-    100, 110, 290, 300, 310, 382, 383, 384, 385, 500, 510, 520, 580, 590, 680, 730, 740, 760, 810, 820, 830, 840, 850, 860, 870,
-    880, 890, 921,
+    100, 110, 290, 300, 310, 382, 383, 384, 385, 500, 510, 520, 580, 590, 680, 730, 740, 760, 810, 820, 830, 840, 850,
+    860, 870, 880, 890, 921,
 ];
 
 /// M codes that affect neither position nor metal: stops, temperatures, fans, messages, limits of acceleration, gas.
@@ -75,7 +75,8 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     }
     if let Some(line) = reader.lit_without_speed.filter(|_| review::is_linuxcnc(text)) {
         let place = Some(reader.trace.place(line));
-        let text = "M3 without S: a spindle without a speed does not turn, so its output stays off and the arc is never lit.";
+        let text =
+            "M3 without S: a spindle without a speed does not turn, so its output stays off and the arc is never lit.";
         reader.trace.faults.add(&NO_OUTPUT, place, text);
     }
     if !hints.printer {

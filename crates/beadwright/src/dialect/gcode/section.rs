@@ -2,10 +2,10 @@
 
 use super::control::GcodeControl;
 use super::write::CncGcode;
+use crate::dialect::writing::{is_extension, needs};
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::{needs, is_extension};
-use crate::program::ProgramSettings;
 use crate::limit::{Broken, CONTROLLER, Limit, limits};
+use crate::program::ProgramSettings;
 use serde::{Deserialize, Serialize};
 
 /// CNC G-code. These keys and the templates cover the differences between controllers: a dwell of `{{gas_preflow}}` s

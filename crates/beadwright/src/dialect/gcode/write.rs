@@ -1,12 +1,16 @@
 //! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
 //! set by keys and templates in the profile.
 
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart};
-use crate::number::push_fixed;
 use super::control::GcodeControl;
 use super::section::{Gcode, GcodeComments};
+use crate::dialect::DialectError;
+use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart};
+use crate::number::push_fixed;
 use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
+
+/// Highest number of a block that a jump finds.
+const MAX_LABEL: usize = 99_999;
 
 /// Block numbers start again after this one.
 const MAX_BLOCK: usize = 99_990;
@@ -50,7 +54,23 @@ impl CncGcode {
         let comment = job.comment();
         let wire_feed_speed = job.weld.process.wire_feed_speed;
         let (supplies, program) = (job.supplies(MAX_COMMENT), job.program.clone());
-        Self { file, comment, supplies, gcode, program, values, wire_feed_speed, block: 0, feed: 0.0, feed_ratio: 1.0, wire: 0.0, at: None, numbered, labels: 0, open: Vec::new() }
+        Self {
+            file,
+            comment,
+            supplies,
+            gcode,
+            program,
+            values,
+            wire_feed_speed,
+            block: 0,
+            feed: 0.0,
+            feed_ratio: 1.0,
+            wire: 0.0,
+            at: None,
+            numbered,
+            labels: 0,
+            open: Vec::new(),
+        }
     }
 
     fn begin_block(&mut self, text: &mut String) {
@@ -365,5 +385,14 @@ impl Writer for CncGcode {
             text.push_str("%\n");
         }
         self.chunk(text)
+    }
+
+    fn failure(&self) -> Option<DialectError> {
+        let control = self.restarts().filter(|control| control.jumps_to_numbers());
+        control.filter(|_| self.labels > MAX_LABEL).map(|_| DialectError::Cannot {
+            dialect: "gcode",
+            what: "program.restart for so many passes, as jumps of this control find blocks up to N99999 only",
+            remedy: "Set program.restart = false; --from-layer and --from-pass go on after a stop.",
+        })
     }
 }

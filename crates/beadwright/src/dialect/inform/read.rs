@@ -6,8 +6,8 @@
 //! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
 //! circle, so a chain that leaves its circle is noted).
 
-use crate::dialect::reading::loops::{Next, holds, unrolled};
 use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON};
+use crate::dialect::reading::loops::{Next, holds, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -158,10 +158,14 @@ impl Reader<'_> {
     fn run(&mut self, job: &Rc<Job>, depth: usize) -> Result<(), ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, job.module.clone());
         let all = &job.instructions;
-        unrolled(all.len(), |_| None, |i| match self.jump(&all[i].1, &all[i + 1..]) {
-            Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
-            None => self.instruction(&all[i].1, all[i].0, job, depth).map(|()| Next::On),
-        })?;
+        unrolled(
+            all.len(),
+            |_| None,
+            |i| match self.jump(&all[i].1, &all[i + 1..]) {
+                Some(by) => Ok(if by > 0 { Next::To(i + by) } else { Next::On }),
+                None => self.instruction(&all[i].1, all[i].0, job, depth).map(|()| Next::On),
+            },
+        )?;
         self.trace.module = caller;
         Ok(())
     }
@@ -191,7 +195,11 @@ impl Reader<'_> {
             let place = Some(self.trace.place(line));
             if let Some(level) = self.blended.as_ref().filter(|_| on != self.trace.arc) {
                 let what = if on { "struck" } else { "ended" };
-                self.trace.faults.add(&BLENDED_SWITCH, place.clone(), format!("the arc is {what} behind a move with {level}."));
+                self.trace.faults.add(
+                    &BLENDED_SWITCH,
+                    place.clone(),
+                    format!("the arc is {what} behind a move with {level}."),
+                );
             }
             if off && self.weaves && self.trace.arc {
                 self.trace.faults.add(&WEAVE_LEFT_ON, place, "the arc ends while the torch still weaves.");
@@ -268,7 +276,8 @@ impl Reader<'_> {
         if self.weaves && !self.trace.arc {
             self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
         }
-        self.blended = words.iter().find(|word| word.starts_with("PL=") && **word != "PL=0").map(|word| (*word).to_owned());
+        self.blended =
+            words.iter().find(|word| word.starts_with("PL=") && **word != "PL=0").map(|word| (*word).to_owned());
         if let Some(Some((to, stated))) = position {
             self.trace.stand(&stated, to, "a position", line);
         }

@@ -1,11 +1,11 @@
 //! The section `[inform]`: a Yaskawa cell (DX200, YRC1000), and the limits of its values.
 
 use super::write::YaskawaInform;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
-use crate::program::ProgramSettings;
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::program::ProgramSettings;
 use serde::{Deserialize, Serialize};
 
 /// Unit of `V=`, as set in the controller's parameters.
@@ -98,7 +98,8 @@ impl Section for Inform {
                 "larger programs do not load into the controller";
         };
         limits.extend(self.home.map(|axis| limit("inform.home", axis as f64, (-1e7, 1e7), "pulses", CONTROLLER)));
-        limits.extend(self.orientation.map(|angle| limit("inform.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
+        limits
+            .extend(self.orientation.map(|angle| limit("inform.orientation", angle, (-360.0, 360.0), "°", CONTROLLER)));
         limits
     }
 

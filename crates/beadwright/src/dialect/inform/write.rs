@@ -5,10 +5,10 @@
 //! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
 //! point separates an arc from the next.
 
+use super::section::{Inform, InformSpeed};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
 use crate::number::fixed;
-use super::section::{Inform, InformSpeed};
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
 use std::fmt::Write as _;

@@ -7,12 +7,12 @@
 //! each form, and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, and the
 //! package ArcTech Advanced.
 
-use crate::number::{fixed, push_fixed};
 use super::arctech_section::ArcTech;
 use super::section::{Krl, KrlMotion};
 use crate::dialect::{DialectError, Job};
-use crate::program::Weave;
+use crate::number::{fixed, push_fixed};
 use crate::process::{Follow, Process};
+use crate::program::Weave;
 use std::fmt::Write as _;
 
 /// What a form does at its point.
@@ -113,7 +113,10 @@ pub(super) struct Forms {
 pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), DialectError> {
     let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "krl", what, remedy });
     if krl.motion == KrlMotion::Slin {
-        return cannot("krl.motion = \"slin\" with arc = \"arctech\"", "Take motion = \"lin\": the forms move by LIN and CIRC.");
+        return cannot(
+            "krl.motion = \"slin\" with arc = \"arctech\"",
+            "Take motion = \"lin\": the forms move by LIN and CIRC.",
+        );
     }
     if job.weld.ends.wire_retract > 0.0 {
         let remedy = "Take krl.arctech.crater.burnback_time instead.";
@@ -149,7 +152,13 @@ pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), D
 
 impl Forms {
     /// Forms of a module; `travel_speed` in mm/s.
-    pub(super) fn new(arctech: &ArcTech, krl: &Krl, process: &Process, weave: Option<&Weave>, travel_speed: f64) -> Self {
+    pub(super) fn new(
+        arctech: &ArcTech,
+        krl: &Krl,
+        process: &Process,
+        weave: Option<&Weave>,
+        travel_speed: f64,
+    ) -> Self {
         Self {
             version: arctech.number().unwrap_or_default(),
             arctech: arctech.clone(),
@@ -293,7 +302,11 @@ impl Forms {
         let parameter = via.map_or(String::new(), |via| format!(" Kuka.HelpPointName=P{via};"));
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
         // The way to the start has a speed of its own; the seam has that of its data.
-        let speed = if form == Form::On { format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.')) } else { String::new() };
+        let speed = if form == Form::On {
+            format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.'))
+        } else {
+            String::new()
+        };
         let (blend, blends) = if form == Form::Switch { ("CONT ", "True") } else { ("", "False") };
         let _ = write!(
             text,

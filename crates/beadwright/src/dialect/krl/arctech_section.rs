@@ -116,7 +116,15 @@ impl ArcTech {
             ("krl.arctech.weld.channels", self.weld.channels),
             ("krl.arctech.crater.channels", self.crater.channels),
         ] {
-            limits.extend(channels.map(|value| limit(key, value, (-1e5, 1e5), "(as the channel is configured)", "the welding package takes no other values")));
+            limits.extend(channels.map(|value| {
+                limit(
+                    key,
+                    value,
+                    (-1e5, 1e5),
+                    "(as the channel is configured)",
+                    "the welding package takes no other values",
+                )
+            }));
         }
         limits
     }
@@ -127,7 +135,8 @@ impl ArcTech {
             return Some(Broken::text("krl.arctech.version", &self.version, "four numbers such as \"3.3.3.366\"."));
         }
         if !WRITTEN.iter().any(|version| self.version.starts_with(version)) {
-            let reason = "forms of 3.3 and 3.4 are written, and this version may run others (3.6 does). Take arc = \"outputs\".";
+            let reason =
+                "forms of 3.3 and 3.4 are written, and this version may run others (3.6 does). Take arc = \"outputs\".";
             return Some(Broken::text("krl.arctech.version", &self.version, reason));
         }
         let texts = [

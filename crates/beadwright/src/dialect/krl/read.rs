@@ -4,11 +4,13 @@
 //! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read as
 //! they are; how SPL curves only the controller knows, so it is refused where it welds.
 
-use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use super::review;
 use crate::dialect::reading::fault::{RAPID_WITH_ARC, TURNING_TORCH, TWO_SWITCHES};
+use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
-use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, before_comment, compact, name, number, strip_word};
+use crate::dialect::reading::words::{
+    Patterns, arguments, before_comment, begins_with, compact, name, number, strip_word, unscoped,
+};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
 use glam::{DQuat, DVec3, EulerRot};
 use std::collections::{BTreeSet, HashMap};
@@ -251,11 +253,15 @@ impl Reader<'_> {
         let lines = text[start.0..].lines().map(|raw| before_comment(raw, ';').trim());
         let ends = |line: &&str| strip_word(line, "END").is_some() || is_head(line).is_some();
         let lines: Vec<&str> = lines.take_while(|line| !ends(line)).collect();
-        unrolled(lines.len(), |i| mark(lines[i]), |i| match lines[i] {
-            "" => Ok(Next::On),
-            line if line.starts_with('&') => Ok(Next::On),
-            _ => self.line(&lines, i, start.1 + i, source, depth),
-        })?;
+        unrolled(
+            lines.len(),
+            |i| mark(lines[i]),
+            |i| match lines[i] {
+                "" => Ok(Next::On),
+                line if line.starts_with('&') => Ok(Next::On),
+                _ => self.line(&lines, i, start.1 + i, source, depth),
+            },
+        )?;
         self.trace.module = caller;
         Ok(())
     }
@@ -292,7 +298,8 @@ impl Reader<'_> {
             let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
             let loops = word.eq_ignore_ascii_case("WHILE");
             let taken = holds(condition, |name| self.values.get(name).copied()).filter(|_| !loops);
-            let waits = lines[i + 1..until].iter().all(|line| WAITING.iter().any(|word| strip_word(line, word).is_some()));
+            let waits =
+                lines[i + 1..until].iter().all(|line| WAITING.iter().any(|word| strip_word(line, word).is_some()));
             taken.or_else(|| input(condition).filter(|_| !moves)).or(waits.then_some(false)).map(u64::from)
         };
         known.map_or_else(
@@ -478,7 +485,11 @@ impl Reader<'_> {
             return Err(ReadError::UnknownCurve { place, word: "SPL", instead: "SLIN and SCIRC" });
         }
         if motion.free {
-            self.trace.note("SPL", "runs on a curve that only the controller knows and was read as a straight move", number);
+            self.trace.note(
+                "SPL",
+                "runs on a curve that only the controller knows and was read as a straight move",
+                number,
+            );
         }
         let mut targets = [None; 2];
         for (i, target) in targets.iter_mut().enumerate().take(if motion.circular { 2 } else { 1 }) {
@@ -489,7 +500,8 @@ impl Reader<'_> {
             };
             *target = Some(found);
         }
-        let blend = ["C_DIS", "C_SPL", "C_VEL", "C_ORI", "C_PTP"].into_iter().find(|word| rest.to_uppercase().ends_with(word));
+        let blend =
+            ["C_DIS", "C_SPL", "C_VEL", "C_ORI", "C_PTP"].into_iter().find(|word| rest.to_uppercase().ends_with(word));
         let place = self.trace.place(number);
         if self.forms {
             self.trace.watch.wait();
@@ -534,7 +546,13 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn circle(&mut self, motion: Motion, ends: [[Option<f64>; 3]; 2], pieces: &[&str], step: Step) -> Result<(), ReadError> {
+    fn circle(
+        &mut self,
+        motion: Motion,
+        ends: [[Option<f64>; 3]; 2],
+        pieces: &[&str],
+        step: Step,
+    ) -> Result<(), ReadError> {
         let [aux, end] = ends.map(|target| self.whole(motion, target));
         let angle = pieces.iter().find_map(|p| strip_word(p, "CA"));
         let angle = match angle {
@@ -578,7 +596,8 @@ impl Reader<'_> {
         for field in inside.split(',') {
             let (axis, value) = name(field.trim());
             let letter = |letters: [&str; 3]| letters.iter().position(|a| a.eq_ignore_ascii_case(axis));
-            let external = axis.strip_prefix(['E', 'e']).and_then(|n| n.parse::<usize>().ok()).filter(|n| (1..=6).contains(n));
+            let external =
+                axis.strip_prefix(['E', 'e']).and_then(|n| n.parse::<usize>().ok()).filter(|n| (1..=6).contains(n));
             if let Some(i) = letter(["X", "Y", "Z"]) {
                 let value = words::number(value).ok_or_else(|| self.trace.number_error(number, field));
                 place[i] = Some(value?);

@@ -42,7 +42,10 @@ pub(super) fn program(
         trace.faults.add(&STOP_LEAVES_ON, None, text);
     }
     if let Some(most) = options.max_megabytes.filter(|most| trace.bytes as f64 > most * 1e6) {
-        let text = format!("the program has {:.1} MB with its modules; the controller takes {most:.1} MB.", trace.bytes as f64 / 1e6);
+        let text = format!(
+            "the program has {:.1} MB with its modules; the controller takes {most:.1} MB.",
+            trace.bytes as f64 / 1e6
+        );
         trace.faults.add(&TOO_LARGE, None, text);
     }
     let stem = options.file.as_deref().map(|file| file.split('.').next().unwrap_or(file));
@@ -62,9 +65,14 @@ fn routine(trace: &mut Trace, text: &str, first: usize, before: BTreeSet<u32>, l
         }
         let (flat, place) = (compact(line), Some(trace.place(first + i)));
         if let Some((output, state)) = output(&flat) {
-            if state { on.insert(output) } else { on.remove(&output) };
+            if state {
+                on.insert(output)
+            } else {
+                on.remove(&output)
+            };
         }
-        let burning = on.intersection(lit_with).map(|output| format!("$OUT[{output}]")).collect::<Vec<_>>().join(" and ");
+        let burning =
+            on.intersection(lit_with).map(|output| format!("$OUT[{output}]")).collect::<Vec<_>>().join(" and ");
         if burning.is_empty() {
             continue;
         }

@@ -1,14 +1,14 @@
 //! KUKA KRL in profiles: the keys, and the limits of their values.
 
-use super::write::KukaKrl;
 use super::arctech;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
-use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::needs;
-use crate::dialect::writing::volumes::MEGABYTE;
-use crate::program::ProgramSettings;
 use super::arctech_section::{ArcTech, KrlArc};
+use super::write::KukaKrl;
+use crate::dialect::writing::needs;
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::volumes::MEGABYTE;
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::program::ProgramSettings;
 use crate::weld::WeldSettings;
 use serde::{Deserialize, Serialize};
 
@@ -98,8 +98,7 @@ fn four() -> f64 {
 }
 
 /// How the controller knows the turn table.
-const TABLE: &str =
-    "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine beside the robot: the base must turn with it.";
+const TABLE: &str = "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine beside the robot: the base must turn with it.";
 
 fn two_thousand() -> usize {
     2000

@@ -5,12 +5,12 @@
 //! forms of ArcTech Basic switch the arc; their data are in a `.dat` beside each layer's module.
 
 use super::arctech::{Filling, Forms, Seam, Target};
-use crate::dialect::writing::volumes::{Volumes, from_anywhere};
-use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
-use crate::number::{fixed, push_fixed};
 use super::arctech_section::KrlArc;
 use super::section::{Krl, KrlMotion};
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::writing::volumes::{Volumes, from_anywhere};
+use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
+use crate::number::{fixed, push_fixed};
 use crate::process::Process;
 use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
@@ -63,7 +63,26 @@ impl KukaKrl {
         let orientation = krl.orientation;
         let (volumes, main) = (Volumes::new(krl.max_megabytes), String::new());
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, krl, program, weave, process, values, travel_speed, table, orientation, feed: 1.0, layer: 0, digits: 3, layers: 0, speed: 0.0, volumes, main }
+        Self {
+            name,
+            comment,
+            supplies,
+            krl,
+            program,
+            weave,
+            process,
+            values,
+            travel_speed,
+            table,
+            orientation,
+            feed: 1.0,
+            layer: 0,
+            digits: 3,
+            layers: 0,
+            speed: 0.0,
+            volumes,
+            main,
+        }
     }
 
     fn layer_name(&self, index: usize) -> String {
@@ -416,7 +435,8 @@ impl KukaKrl {
     /// The heights to be added to the layers.
     fn offsets(&self) -> String {
         let main = &self.main;
-        let mut text = format!("; mm to be added to the height of each layer\r\nDECL GLOBAL REAL {main}_DZ[{}]\r\n", self.layers);
+        let mut text =
+            format!("; mm to be added to the height of each layer\r\nDECL GLOBAL REAL {main}_DZ[{}]\r\n", self.layers);
         (1..=self.layers).for_each(|layer| text.push_str(&format!("{main}_DZ[{layer}]=0.0\r\n")));
         text + &format!("DECL GLOBAL FRAME {main}_SHIFT={{X 0.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}}\r\n")
     }

@@ -1,10 +1,10 @@
 //! Printers' G-code in profiles: the keys, and the limits of their values.
 
 use super::write::MarlinGcode;
-use crate::dialect::{DialectError, Job, Section, Templates, Writer};
 use crate::dialect::writing::is_extension;
-use crate::program::ProgramSettings;
+use crate::dialect::{DialectError, Job, Section, Templates, Writer};
 use crate::limit::{Broken, Limit, limits};
+use crate::program::ProgramSettings;
 use serde::{Deserialize, Serialize};
 
 /// Printers' G-code (Marlin, Klipper). Templates are lines with `{{placeholders}}`.

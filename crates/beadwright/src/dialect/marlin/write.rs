@@ -3,12 +3,12 @@
 //! Comments name layers, kinds of pass and widths as G-code viewers expect them. Filament is retracted before long
 //! travels.
 
+use super::section::Marlin;
+use crate::bead::wire_area;
 use crate::dialect::gcode::write::push_centre;
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii};
-use crate::bead::wire_area;
-use crate::pass::PassKind;
 use crate::number::{fixed, push_fixed};
-use super::section::Marlin;
+use crate::pass::PassKind;
 use crate::program::{Circle, Instruction, LayerProgram};
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
 //! Data of RAPID as literals: frames, speeds, zones, seams and welds.
 
-use crate::number::{fixed, push_fixed};
 use super::section::{Rapid, WireFeedUnit};
-use crate::program::{ProgramSettings, Weave};
+use crate::number::{fixed, push_fixed};
 use crate::process::Process;
+use crate::program::{ProgramSettings, Weave};
 use glam::DVec3;
 
 /// The external axes of a target: a linear axis (mm), and a turn table (°) in its place, as far as they are there.

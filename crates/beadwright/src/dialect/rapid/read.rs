@@ -4,11 +4,11 @@
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Target, Value};
-use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
-use crate::dialect::reading::trace::{Step, Trace};
-use crate::dialect::reading::words::{begins_with, unscoped, Patterns, arguments, compact, name, number, strip_word};
 use super::{module, review};
 use crate::dialect::reading::fault::{CONFIGURATION, RAPID_WITH_ARC, TWO_SWITCHES, WEAVE_PITCH};
+use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
+use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::words::{Patterns, arguments, begins_with, compact, name, number, strip_word, unscoped};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -114,8 +114,7 @@ const MOTIONS: [(&str, bool, Weld); 10] = [
 
 /// Whether a line can occur only in RAPID.
 pub(super) fn typical(line: &str) -> bool {
-    const FIRST: [&str; 9] =
-        ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
+    const FIRST: [&str; 9] = ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
     // In URScript a bracket follows the word.
     let called = line.trim_start_matches(|c: char| c.is_ascii_alphanumeric()).starts_with('(');
     begins_with(unscoped(line), &FIRST) && !called
@@ -211,13 +210,7 @@ impl Reader<'_> {
     }
 
     /// A statement, and what comes after it.
-    fn line(
-        &mut self,
-        body: &[(&str, usize)],
-        i: usize,
-        module: &Rc<Module>,
-        depth: usize,
-    ) -> Result<Next, ReadError> {
+    fn line(&mut self, body: &[(&str, usize)], i: usize, module: &Rc<Module>, depth: usize) -> Result<Next, ReadError> {
         let (text, line) = body[i];
         match mark(text) {
             Some(Mark::Begin) => {
@@ -558,7 +551,10 @@ impl Reader<'_> {
         let times = self.weaves.entry(format!("{length}")).or_insert([time, time]);
         *times = [times[0].min(time), times[1].max(time)];
         if times[1] > 1.1 * times[0] {
-            let text = format!("the weave stays at its sides for {:.3} to {:.3} s: a way of its data, not a time.", times[0], times[1]);
+            let text = format!(
+                "the weave stays at its sides for {:.3} to {:.3} s: a way of its data, not a time.",
+                times[0], times[1]
+            );
             let place = Some(self.trace.place(line));
             self.trace.faults.add(&WEAVE_PITCH, place, text);
         }
@@ -609,7 +605,8 @@ impl Reader<'_> {
 /// Where a block begins or ends. An `IF` with a statement behind its condition is no block.
 fn mark(text: &str) -> Option<Mark> {
     let is = |word: &str| strip_word(text, word).is_some();
-    let ends = |last: &str| text.get(text.len().saturating_sub(last.len())..).is_some_and(|t| t.eq_ignore_ascii_case(last));
+    let ends =
+        |last: &str| text.get(text.len().saturating_sub(last.len())..).is_some_and(|t| t.eq_ignore_ascii_case(last));
     if is("FOR") || (is("IF") && ends("THEN")) || (is("WHILE") && ends("DO")) {
         Some(Mark::Begin)
     } else if is("ELSE") || is("ELSEIF") {

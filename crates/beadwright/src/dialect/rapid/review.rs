@@ -34,7 +34,11 @@ pub(super) fn program(trace: &mut Trace, main: &Module, stops: bool, lit_with: &
         if is("Stop") || is("EXIT") || strip_word(line, "UIMsgBox").is_some() {
             trace.faults.add(&LEFT_ON, place, format!("the program stops with {burning} on."));
         } else if (is("WaitDI") || is("WaitUntil")) && !flat.contains("\\MAXTIME") {
-            trace.faults.add(&ENDLESS_WAIT, place, format!("{} waits for ever, with {burning} on.", line.trim_end_matches(';')));
+            trace.faults.add(
+                &ENDLESS_WAIT,
+                place,
+                format!("{} waits for ever, with {burning} on.", line.trim_end_matches(';')),
+            );
         }
     }
     if !stops {

@@ -1,12 +1,12 @@
 //! The section `[rapid]`: an ABB cell (IRC5, RobotWare 6), and the limits of its values.
 
-use super::write::AbbRapid;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
-use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::needs;
-use crate::program::ProgramSettings;
-use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use super::names;
+use super::write::AbbRapid;
+use crate::dialect::writing::needs;
+use crate::dialect::writing::orientation::{self, Turn};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
+use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::program::ProgramSettings;
 use crate::weld::{WeldSettings, retract_time};
 use serde::{Deserialize, Serialize};
 
@@ -163,7 +163,8 @@ pub struct RapidSeam {
 }
 
 /// How the controller knows the turn table.
-const TABLE: &str = "It is the name of the turn table's mechanical unit, such as \"STN1\": the work object must turn with it.";
+const TABLE: &str =
+    "It is the name of the turn table's mechanical unit, such as \"STN1\": the work object must turn with it.";
 
 fn ten_thousand() -> usize {
     10_000
@@ -191,7 +192,13 @@ impl Section for Rapid {
             limits.extend(frame[..3].iter().map(|&v| limit(key, v, (-1e5, 1e5), "mm", CONTROLLER)));
             limits.push(limit(key, norm(&frame[3..]), (0.999, 1.001), "(length of its quaternion)", CONTROLLER));
         }
-        limits.push(limit("rapid.orientation", norm(&self.orientation), (0.999, 1.001), "(length of the quaternion)", CONTROLLER));
+        limits.push(limit(
+            "rapid.orientation",
+            norm(&self.orientation),
+            (0.999, 1.001),
+            "(length of the quaternion)",
+            CONTROLLER,
+        ));
         limits.extend(self.home.map(|axis| limit("rapid.home", axis, (-720.0, 720.0), "°", CONTROLLER)));
         limits.extend(self.tool_load[1..].iter().map(|&v| limit("rapid.tool_load", v, (-1e4, 1e4), "mm", CONTROLLER)));
         limits.extend(self.seam.limits());
@@ -203,11 +210,16 @@ impl Section for Rapid {
             Some(Broken { key: key.to_owned(), value, reason: reason.to_owned() })
         };
         if let Some(axis) = self.table_axis.filter(|axis| *axis == 1 && program.linear_axis.is_some()) {
-            return broken("rapid.table_axis", axis.to_string(), "the linear axis (program.linear_axis) is eax_a, the first.");
+            return broken(
+                "rapid.table_axis",
+                axis.to_string(),
+                "the linear axis (program.linear_axis) is eax_a, the first.",
+            );
         }
         for (key, unit) in [("rapid.table_unit", &self.table_unit), ("rapid.track_unit", &self.track_unit)] {
             if let Some(unit) = unit.as_ref().filter(|unit| !names::is_identifier(unit)) {
-                let reason = "at most 32 letters, digits and _, a letter first: the name of the unit on the controller.";
+                let reason =
+                    "at most 32 letters, digits and _, a letter first: the name of the unit on the controller.";
                 return broken(key, format!("\"{unit}\""), reason);
             }
         }

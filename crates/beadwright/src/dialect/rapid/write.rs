@@ -5,12 +5,11 @@
 //! lines that the profile gives. While welding, the welddata set the speed: speeds are rounded to the nominal one plus
 //! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
-
+use super::section::{Rapid, RapidArc, RapidModules};
+use super::{data, names};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split};
 use crate::number::fixed;
-use super::{data, names};
-use super::section::{Rapid, RapidArc, RapidModules};
 use crate::process::Process;
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use crate::weld::retract_time;
@@ -60,7 +59,20 @@ impl AbbRapid {
         let axes = data::external_axes(job.program, job.program.table_angle, &rapid);
         let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
         let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
-        Self { name, comment, supplies, rapid, program, weave, process, values, travel_speed, orientation, axes, digits: 3 }
+        Self {
+            name,
+            comment,
+            supplies,
+            rapid,
+            program,
+            weave,
+            process,
+            values,
+            travel_speed,
+            orientation,
+            axes,
+            digits: 3,
+        }
     }
 
     fn numbered(&self, prefix: &str, index: usize) -> String {
@@ -171,7 +183,10 @@ impl AbbRapid {
         if let Some(unit) = self.table().filter(|_| self.rapid.part_frame.is_none()) {
             let wobj = &self.rapid.wobj;
             statement(text, &format!("IF {wobj}.ufprog OR {wobj}.ufmec<>\"{unit}\" THEN"));
-            statement(text, &format!("ErrWrite \"{wobj} does not turn with {unit}\",\"The path would not follow the part.\";"));
+            statement(
+                text,
+                &format!("ErrWrite \"{wobj} does not turn with {unit}\",\"The path would not follow the part.\";"),
+            );
             statement(text, "EXIT;");
             statement(text, "ENDIF");
         }
@@ -221,7 +236,11 @@ impl AbbRapid {
             let speed = speed as f64 / 1000.0;
             let declaration = if self.with_arc() {
                 let feed = pace.map_or(1.0, |pace| self.process.deposition_speed * 1000.0 / pace as f64);
-                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &process, &self.process, &self.rapid))
+                format!(
+                    "LOCAL PERS welddata wd{}:={};",
+                    i + 1,
+                    data::weld(speed, feed, &process, &self.process, &self.rapid)
+                )
             } else {
                 format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
             };
@@ -264,16 +283,11 @@ impl AbbRapid {
     }
 
     /// `feed` is the fraction of the nominal wire feed that was set last.
-    fn instructions(
-        &mut self,
-        text: &mut String,
-        all: &[Instruction],
-        speeds: &Speeds,
-        feed: &mut f64,
-    ) {
+    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
         for (i, &instruction) in all.iter().enumerate() {
             if let Some(attitude) = instruction.attitude() {
-                self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
+                self.orientation =
+                    data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
                 if attitude.table.is_some() {
                     self.axes = data::external_axes(&self.program, attitude.table, &self.rapid);
                 }
@@ -282,7 +296,9 @@ impl AbbRapid {
                 // ArcLStart itself moves there.
                 (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
                 (Instruction::Approach { to }, _) => self.motion(text, "MoveJ", to, "vHome", false),
-                (Instruction::Travel { to } | Instruction::Retract { to }, _) => self.motion(text, "MoveL", to, "vTravel", false),
+                (Instruction::Travel { to } | Instruction::Retract { to }, _) => {
+                    self.motion(text, "MoveL", to, "vTravel", false)
+                }
                 (Instruction::ArcOn { pass, kind }, next) => {
                     statement(text, &format!("! pass {pass} {}", kind.name()));
                     let before = i.checked_sub(1).and_then(|before| all.get(before));

@@ -4,8 +4,8 @@
 //! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; if a file only defines a
 //! program, that program runs.
 
-use crate::dialect::reading::loops::{Mark, Next, behind, holds, stepped, unrolled};
 use crate::dialect::reading::fault::{ENDLESS_WAIT, LEFT_ON, RAPID_WITH_ARC, STOP_LEAVES_ON, TOO_LARGE, TURNING_TORCH};
+use crate::dialect::reading::loops::{Mark, Next, behind, holds, stepped, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
@@ -158,10 +158,18 @@ impl Reader {
         let mut functions: Vec<(String, Rc<Body>)> = self.functions.clone().into_iter().collect();
         functions.sort_by(|a, b| a.0.cmp(&b.0));
         for (name, body) in functions {
-            let mut on = if body.iter().any(|(_, line)| line.starts_with("move")) { BTreeSet::new() } else { self.lit_with.clone() };
+            let mut on = if body.iter().any(|(_, line)| line.starts_with("move")) {
+                BTreeSet::new()
+            } else {
+                self.lit_with.clone()
+            };
             for (i, (line, text)) in body.iter().enumerate() {
                 if let Some((output, state)) = output(&compact(text)) {
-                    if state { on.insert(output) } else { on.remove(&output) };
+                    if state {
+                        on.insert(output)
+                    } else {
+                        on.remove(&output)
+                    };
                 }
                 let burning = on.intersection(&self.lit_with).map(u32::to_string).collect::<Vec<_>>().join(" and ");
                 if burning.is_empty() {
@@ -172,13 +180,19 @@ impl Reader {
                 if text.starts_with("popup(") || text == "pause" {
                     self.trace.faults.add(&LEFT_ON, place, format!("{name} asks with output {burning} on."));
                 } else if waits && !counts(&body[i..]) {
-                    self.trace.faults.add(&ENDLESS_WAIT, place, format!("{name} waits for ever, with output {burning} on."));
+                    self.trace.faults.add(
+                        &ENDLESS_WAIT,
+                        place,
+                        format!("{name} waits for ever, with output {burning} on."),
+                    );
                 }
             }
         }
-        let left = self.lit_with.difference(&self.low_when_stopped).map(u32::to_string).collect::<Vec<_>>().join(" and ");
+        let left =
+            self.lit_with.difference(&self.low_when_stopped).map(u32::to_string).collect::<Vec<_>>().join(" and ");
         if !left.is_empty() {
-            let text = format!("output {left} is on with the arc, and stays as it is where the program stops or pauses.");
+            let text =
+                format!("output {left} is on with the arc, and stays as it is where the program stops or pauses.");
             self.trace.faults.add(&STOP_LEAVES_ON, None, text);
         }
         if let Some(most) = options.max_megabytes.filter(|most| self.trace.bytes as f64 > most * 1e6) {
@@ -189,21 +203,25 @@ impl Reader {
     }
 
     fn run(&mut self, body: &Body, depth: usize) -> Result<(), ReadError> {
-        unrolled(body.len(), |i| mark(&body[i].1), |i| {
-            let (line, text) = &body[i];
-            match mark(text) {
-                Some(Mark::Begin) => Ok(self.turns(&body[i..]).map_or_else(
-                    || {
-                        self.trace.note(name(text).0, "is not followed: its lines were read once", *line);
-                        Next::On
-                    },
-                    Next::Turns,
-                )),
-                Some(Mark::Else) => Ok(Next::On),
-                Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
-                None => self.statement(text, *line, depth).map(|()| Next::On),
-            }
-        })
+        unrolled(
+            body.len(),
+            |i| mark(&body[i].1),
+            |i| {
+                let (line, text) = &body[i];
+                match mark(text) {
+                    Some(Mark::Begin) => Ok(self.turns(&body[i..]).map_or_else(
+                        || {
+                            self.trace.note(name(text).0, "is not followed: its lines were read once", *line);
+                            Next::On
+                        },
+                        Next::Turns,
+                    )),
+                    Some(Mark::Else) => Ok(Next::On),
+                    Some(Mark::End) => self.trace.turn(*line).map(|()| Next::On),
+                    None => self.statement(text, *line, depth).map(|()| Next::On),
+                }
+            },
+        )
     }
 
     /// How often the block at the start of these lines turns: a branch whose condition is known, or that only asks an input
@@ -252,7 +270,11 @@ impl Reader {
         }
         let flat = compact(text);
         if let Some((output, on)) = output(&flat) {
-            if on { self.outputs.insert(output) } else { self.outputs.remove(&output) };
+            if on {
+                self.outputs.insert(output)
+            } else {
+                self.outputs.remove(&output)
+            };
         }
         let (lit, ended) = (self.on.matches(&flat), self.off.matches(&flat));
         if lit || ended {
@@ -283,7 +305,8 @@ impl Reader {
                 self.trace.note(thread, "runs beside the program and was left out", line);
             }
             let watches = |body: &Rc<Body>| {
-                body.iter().any(|(_, line)| line.contains("digital_in(")) && body.iter().any(|(_, line)| self.off.matches(&compact(line)))
+                body.iter().any(|(_, line)| line.contains("digital_in("))
+                    && body.iter().any(|(_, line)| self.off.matches(&compact(line)))
             };
             if self.functions.get(thread).is_some_and(watches) {
                 self.thread = text.split_once('=').map(|(handle, _)| handle.trim().to_owned());
@@ -329,7 +352,8 @@ impl Reader {
                 *axis = 1e3 * number(field).ok_or_else(|| self.trace.number_error(line, wrong))?;
             }
             let turns: Vec<f64> = numbers.split(',').skip(3).filter_map(number).collect();
-            let tool = <[f64; 3]>::try_from(turns).ok().map(|vector| DQuat::from_scaled_axis(DVec3::from_array(vector)));
+            let tool =
+                <[f64; 3]>::try_from(turns).ok().map(|vector| DQuat::from_scaled_axis(DVec3::from_array(vector)));
             return Ok(Some(Pose { frame: String::new(), at: DVec3::from_array(place), tool }));
         }
         if let Some(rest) = strip_word(text, "pose_trans") {

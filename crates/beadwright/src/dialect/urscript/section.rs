@@ -1,12 +1,12 @@
 //! The section `[urscript]`: a Universal Robots cell, and the limits of its values.
 
 use super::write::UniversalScript;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::needs;
+use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::MEGABYTE;
-use crate::program::ProgramSettings;
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
+use crate::program::ProgramSettings;
 use serde::{Deserialize, Serialize};
 
 /// URScript. Templates are statements with `{{placeholders}}`.
@@ -83,7 +83,9 @@ impl Section for Urscript {
             "urscript.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
         };
         limits.extend(self.home.map(|axis| limit("urscript.home", axis, (-363.0, 363.0), "°", CONTROLLER)));
-        limits.extend(self.orientation.map(|angle| limit("urscript.orientation", angle, (-6.284, 6.284), "rad", CONTROLLER)));
+        limits.extend(
+            self.orientation.map(|angle| limit("urscript.orientation", angle, (-6.284, 6.284), "rad", CONTROLLER)),
+        );
         let frames = [("urscript.tool_frame", self.tool_frame), ("urscript.part_frame", Some(self.part_frame))];
         for (key, frame) in frames.iter().filter_map(|(key, frame)| Some((*key, (*frame)?))) {
             limits.extend(frame[..3].iter().map(|&v| limit(key, v, (-1e4, 1e4), "mm", CONTROLLER)));

@@ -4,11 +4,11 @@
 //! robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but not
 //! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
+use super::section::Urscript;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
 use crate::number::{fixed, push_fixed};
-use super::section::Urscript;
 use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
 
@@ -69,7 +69,23 @@ impl UniversalScript {
         let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
         let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
         let (supplies, program, orientation) = (job.supplies(MAX_COMMENT), job.program.clone(), urscript.orientation);
-        Self { name, comment, supplies, urscript, program, values, orientation, travel_speed, wire_feed_speed, digits: 3, count: 0, layers, at: None, volumes, main }
+        Self {
+            name,
+            comment,
+            supplies,
+            urscript,
+            program,
+            values,
+            orientation,
+            travel_speed,
+            wire_feed_speed,
+            digits: 3,
+            count: 0,
+            layers,
+            at: None,
+            volumes,
+            main,
+        }
     }
 
     fn lines(&self, text: &mut String, indent: &str, template: &[String]) {

@@ -64,8 +64,8 @@ pub trait Writer: Send {
         Vec::new()
     }
 
-    /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used. Only
-    /// [dialects of one's own](crate::dialect::own) can fail once they have begun.
+    /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used.
+    /// [Dialects of one's own](crate::dialect::own) can fail once they have begun, and controls that jump no further.
     fn failure(&self) -> Option<DialectError> {
         None
     }
