@@ -26,7 +26,7 @@ PY
 
 for model in "$@"; do
     echo "$model"
-    $bw plan "$models/$model" --profile fdm-abs-0.4 --no-deposit --json -o "$work/ours" > "$work/plan.json"
+    $bw plan "$models/$model" --profile fdm-abs-0.4 --set marlin.bed.size=[600,600,600] --no-deposit --json -o "$work/ours" > "$work/plan.json"
     python3 -c "import json; print(f\"  part           {json.load(open('$work/plan.json'))['part_volume_mm3']/1e3:62.3f} cm³\")"
     row beadwright "$work/ours/${model%.stl}.gcode"
     prusa-slicer --export-gcode "$models/$model" -o "$work/prusa.gcode" --layer-height 0.2 --first-layer-height 0.2 \

@@ -5,7 +5,7 @@ use anyhow::Context;
 use beadwright::adapt::scan::{self, Scan};
 use beadwright::adapt::{self, Align, Aligned, Followed, Rules, Seen, Spread};
 use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::metrics::Metrics;
 use beadwright::model::RepairReport;
 use beadwright::plan::{self, Header, Summary};
@@ -191,7 +191,8 @@ struct Adapted<'a> {
 impl Adapted<'_> {
     /// Writes the programs of the layers that follow, the whole plan with them, and the page.
     fn write(&self, arguments: &Arguments) -> anyhow::Result<Written> {
-        let header = Header { layers: self.layers().count(), ..self.plan.header.clone() };
+        let extent = Extent { layers: self.layers().count(), ..self.plan.header.extent };
+        let header = Header { extent, ..self.plan.header.clone() };
         let z = self.plan.layers[self.number - 1].z;
         let page = adapt::page::page(&header.part, self.number, z, self.seen, self.sentences);
         let mut folder = Folder::new(&arguments.output)?;
@@ -204,7 +205,7 @@ impl Adapted<'_> {
             self.profile,
             self.programs(arguments)?,
             Start { layer: self.number, ..Start::default() },
-        );
+        )?;
         folder.extend(chunks)?;
         let mut metrics = Metrics::new(self.profile);
         for layer in self.layers() {

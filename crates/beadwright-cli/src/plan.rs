@@ -312,7 +312,7 @@ impl Sink for Files<'_> {
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
-        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.start);
+        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.start)?;
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }

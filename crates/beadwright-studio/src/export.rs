@@ -71,7 +71,10 @@ fn program(state: &PlanState, name: &str) -> Result<Vec<Chunk>, String> {
         return Err(NOT_YET.to_owned());
     };
     allowed(summary)?;
-    let files = dialect::write(name, &state.layers, &profile.job(&header.part)).map_err(|error| error.to_string())?;
+    let job = profile.job(&header.part);
+    let written =
+        dialect::writer(name, &job).and_then(|writer| dialect::write_with(writer, &header.extent, &state.layers, &job));
+    let files = written.map_err(|error| error.to_string())?;
     Ok(files.into_iter().map(|(file, text)| Chunk { file, text }).collect())
 }
 
@@ -89,7 +92,8 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     }
     let posts = disk::posts(dialects)?;
     let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
-    let (mut files, mut chunks) = PlanFiles::begin(header, profile, programs, Start::default());
+    let (mut files, mut chunks) =
+        PlanFiles::begin(header, profile, programs, Start::default()).map_err(|error| error.to_string())?;
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }

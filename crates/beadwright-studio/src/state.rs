@@ -146,7 +146,7 @@ impl PlanState {
     /// Number of layers, as far as known.
     pub fn layer_count(&self) -> usize {
         let preview = self.preview.as_ref().map_or(0, |layer| layer.index + 1);
-        self.header.as_ref().map_or(preview, |header| header.layers).max(self.layers.len())
+        self.header.as_ref().map_or(preview, |header| header.extent.layers).max(self.layers.len())
     }
 
     /// A layer if it is planned, or else its preview.

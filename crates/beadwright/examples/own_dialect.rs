@@ -11,7 +11,7 @@ type Failure = Box<dyn std::error::Error>;
 struct Table;
 
 impl Writer for Table {
-    fn begin(&mut self, _layers: usize) -> Vec<Chunk> {
+    fn begin(&mut self, _extent: &beadwright::layer::Extent) -> Vec<Chunk> {
         vec![Chunk::new("moves.csv", "layer,x,y,z,speed\n")]
     }
 
@@ -37,7 +37,7 @@ fn main() -> Result<(), Failure> {
     let mesh = example::find("star").ok_or("no such example")?.mesh();
     let plan = plan("star", &mesh, &profile, &Task::new())?;
     let (mut programmer, mut table) = (profile.programmer(), Table);
-    let mut text: String = table.begin(plan.layers.len()).into_iter().map(|chunk| chunk.text).collect();
+    let mut text: String = table.begin(&plan.header.extent).into_iter().map(|chunk| chunk.text).collect();
     for layer in &plan.layers {
         text.extend(table.layer(&programmer.layer(layer)).into_iter().map(|chunk| chunk.text));
     }

@@ -2,9 +2,10 @@
 
 use crate::pass::Pass;
 use crate::warning::Warning;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use planar::{Join, Polygon, Region};
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
 
 /// How warm the metal is on which a pass is laid, °C.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,34 @@ pub struct Layer {
     pub planned_area: f64,
     /// What was lost or mended here.
     pub warnings: Vec<Warning>,
+}
+
+/// How many layers a part has, and where it lies.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Extent {
+    /// Number of layers.
+    pub layers: usize,
+    /// Lowest coordinates, mm.
+    pub low: DVec3,
+    /// Highest coordinates, mm.
+    pub high: DVec3,
+}
+
+impl Extent {
+    /// That of passes alone, without what their beads take beside and below them.
+    pub fn of<L: Borrow<Layer>>(layers: &[L]) -> Self {
+        let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
+        let bounds = points.fold(None, |bounds: Option<(DVec3, DVec3)>, &p| {
+            Some(bounds.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
+        });
+        let (low, high) = bounds.unwrap_or_default();
+        Self { layers: layers.len(), low, high }
+    }
+
+    /// Length, width and height, mm.
+    pub fn size(&self) -> DVec3 {
+        self.high - self.low
+    }
 }
 
 /// Where islands hang farther than `reach` (mm) beyond those below: area (mm²) and a place; smaller areas than half a bead's

@@ -6,7 +6,7 @@
 use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
 use crate::heat::LONGEST_WAIT;
-use crate::layer::Layer;
+use crate::layer::{Extent, Layer};
 use crate::model::MAX_REACH_MM;
 use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
@@ -25,8 +25,9 @@ const DECIMALS: usize = 4;
 
 /// The text before the first layer.
 pub fn head(header: &Header, profile: &Profile) -> String {
-    let Header { part, strategy, .. } = header;
-    let fields = json!({ "part": part, "strategy": strategy, "profile": profile }).to_string();
+    let Header { part, strategy, extent, .. } = header;
+    let bounds = [extent.low, extent.high];
+    let fields = json!({ "part": part, "strategy": strategy, "profile": profile, "bounds": bounds }).to_string();
     format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
@@ -192,7 +193,11 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     if layers.is_empty() {
         return Err(PlanFileError::Empty);
     }
-    let header = Header { part: file.part, profile: name, strategy: file.strategy, layers: layers.len() };
+    let extent = match file.bounds {
+        Some([low, high]) => Extent { layers: layers.len(), low, high },
+        None => Extent::of(&layers),
+    };
+    let header = Header { part: file.part, profile: name, strategy: file.strategy, extent };
     Ok(PlanFile { header, profile, settings, layers })
 }
 
@@ -210,6 +215,8 @@ struct File {
     bead: Option<FileBead>,
     #[serde(default)]
     machining_allowance: f64,
+    /// Where the part lies, mm.
+    bounds: Option<[DVec3; 2]>,
     layers: Vec<FileLayer>,
 }
 

@@ -5,7 +5,7 @@ mod common;
 
 use beadwright::export::{self, Beads};
 use beadwright::glam::{DVec3, Vec3};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::Header;
 use beadwright::profile::Profile;
@@ -101,7 +101,12 @@ fn a_square_has_the_volume_of_its_prisms() {
         };
         for (closed, length) in [(true, 320.0), (false, 240.0)] {
             let layer = Layer { z: 2.0, height: 2.0, passes: vec![pass(closed)], ..Layer::default() };
-            let header = Header { part: "square".into(), profile: String::new(), strategy: String::new(), layers: 1 };
+            let header = Header {
+                part: "square".into(),
+                profile: String::new(),
+                strategy: String::new(),
+                extent: Extent { layers: 1, ..Extent::default() },
+            };
             let facets = facets(&written("stl", &header, std::slice::from_ref(&layer), &profile));
             assert_closed(&facets);
             let (built, expected) = (volume(&facets), length * profile.bead().area());

@@ -6,7 +6,7 @@ mod common;
 
 use beadwright::dialect::own::Own;
 use beadwright::dialect::{self, DialectError};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::profile::Profile;
 use common::profile;
@@ -78,7 +78,7 @@ fn write(page: &str, layers: &[Layer], profile: &Profile) -> Result<Files, Diale
     let texts = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let named =
         texts.map(|p| (p.file_name().unwrap().to_str().unwrap().to_owned(), std::fs::read_to_string(&p).unwrap()));
-    dialect::write_with(Own::new("gantry", named.collect())?.writer(&job)?, layers, &job)
+    dialect::write_with(Own::new("gantry", named.collect())?.writer(&job)?, &Extent::of(layers), layers, &job)
 }
 
 /// Bytes that one more straight move of a pass takes.

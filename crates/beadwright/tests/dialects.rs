@@ -12,7 +12,7 @@ use beadwright::dialect::inform::InformSpeed;
 use beadwright::dialect::krl::KrlArc;
 use beadwright::dialect::rapid::RapidArc;
 use beadwright::dialect::reading::{ArcCodes, Options, read};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::plan;
@@ -362,7 +362,7 @@ fn large_programs_come_in_volumes() {
         let mut writer = dialect::writer(name, &job_settings).unwrap();
         let mut programmer = job_settings.programmer(false);
         let mut files = Files::new();
-        let mut chunks = writer.begin(2);
+        let mut chunks = writer.begin(&Extent { layers: 2, ..Extent::default() });
         job().iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
         chunks.extend(writer.end());
         chunks.into_iter().for_each(|chunk| files.entry(chunk.file).or_default().push_str(&chunk.text));
@@ -479,7 +479,7 @@ fn a_stopped_build_goes_on_at_its_pass() {
         let job = profile.job("demo");
         let (mut writer, mut programmer, mut files) =
             (dialect::writer(post, &job).unwrap(), job.programmer(false), Files::new());
-        let mut chunks = writer.begin(plan.layers.len());
+        let mut chunks = writer.begin(&plan.header.extent);
         for at in &plan.layers[layer..] {
             chunks.extend(writer.layer(&programmer.layer_from(at, if at.index == layer { pass } else { 0 })));
         }

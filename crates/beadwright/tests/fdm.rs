@@ -8,12 +8,13 @@ mod readers;
 mod solids;
 
 use beadwright::dialect;
+use beadwright::dialect::marlin::BedOrigin;
 use beadwright::dialect::reading::{self, Options};
 use beadwright::example;
 use beadwright::fill::compound::Compound;
 use beadwright::fill::zigzag::regions::Weave;
 use beadwright::fill::{FillSettings, Strategy as _, angle};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::model::import;
 use beadwright::order::Method;
 use beadwright::pass::{Pass, PassKind};
@@ -71,6 +72,49 @@ fn our_own_reader_reads_the_same() {
     assert!((totals.volume_mm3.unwrap() / metrics.deposited_volume_mm3 - 1.0).abs() < 2e-3);
     let time = program.seconds(&profile.motion.unwrap());
     assert!((time / metrics.total_time_s - 1.0).abs() < 0.01, "{time} s for {} s", metrics.total_time_s);
+}
+
+/// Wherever a part lies, its middle is that of the bed; coordinates start at the corner or in the middle.
+#[test]
+fn parts_come_to_the_middle_of_the_bed() {
+    let mut mesh = example::find("plate").unwrap().mesh();
+    mesh.place(0.3, glam::DVec3::ZERO);
+    let mut profile = profile("fdm-abs-0.4");
+    for (shift, origin, middle) in [
+        (DVec2::ZERO, BedOrigin::Corner, DVec2::splat(110.0)),
+        (DVec2::new(-712.5, 3000.0), BedOrigin::Corner, DVec2::splat(110.0)),
+        (DVec2::new(40.0, 40.0), BedOrigin::Centre, DVec2::ZERO),
+    ] {
+        let mut moved = mesh.clone();
+        moved.vertices.iter_mut().for_each(|vertex| *vertex += shift.extend(0.0));
+        profile.dialects.marlin.as_mut().unwrap().bed.as_mut().unwrap().origin = origin;
+        let plan = plan::plan("plate", &moved, &profile, &Task::new()).unwrap();
+        let program = reading::read(&gcode(&plan, &profile), &mut |_| None, &Options::default()).unwrap();
+        let laid = program.moves.iter().filter(|step| step.metal.is_laid());
+        let (low, high) = laid.fold((glam::DVec3::INFINITY, glam::DVec3::NEG_INFINITY), |(low, high), step| {
+            (low.min(step.to), high.max(step.to))
+        });
+        let found = ((low + high) / 2.0).truncate();
+        assert!(found.distance(middle) < 0.3, "{shift}, {origin:?}: {found}");
+    }
+}
+
+#[test]
+fn parts_that_do_not_fit_on_the_bed_are_refused() {
+    let plan = plan_of("plate", &profile("fdm-abs-0.4"));
+    let refused = |size: [f64; 3]| {
+        let mut profile = profile("fdm-abs-0.4");
+        profile.dialects.marlin.as_mut().unwrap().bed.as_mut().unwrap().size = size;
+        dialect::write("marlin", &plan.layers, &profile.job("plate")).err().map(|error| error.to_string())
+    };
+    let size = Extent::of(&plan.layers).size();
+    assert_eq!(refused([size.x + 0.1, size.y + 0.1, size.z + 0.1]), None);
+    for axis in 0..3 {
+        let mut small = [300.0; 3];
+        small[axis] = size[axis] - 0.1;
+        let said = refused(small).unwrap();
+        assert!(said.contains("marlin.bed") && said.contains(&format!("{:.1}", size.x)), "{said}");
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod common;
 
 use beadwright::dialect::own::Own;
 use beadwright::dialect::{self, DialectError};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::plan::Plan;
 use beadwright::process::Follow;
 use beadwright::profile::Profile;
@@ -44,7 +44,7 @@ fn welder() -> Profile {
 
 fn write(files: Files, layers: &[Layer], profile: &Profile) -> Result<Files, DialectError> {
     let job = profile.job("cross");
-    dialect::write_with(Own::new("./gantry", files)?.writer(&job)?, layers, &job)
+    dialect::write_with(Own::new("./gantry", files)?.writer(&job)?, &Extent::of(layers), layers, &job)
 }
 
 fn refused(files: Files, profile: &Profile, expect: &[&str]) {
@@ -217,7 +217,7 @@ fn layers_are_written_as_they_come() {
     let own = Own::new("g", gantry()).unwrap();
     let job = profile.job("cross");
     let (mut writer, mut programmer) = (own.writer(&job).unwrap(), job.programmer(false));
-    writer.begin(plan.layers.len());
+    writer.begin(&plan.header.extent);
     for layer in &plan.layers {
         let chunks = writer.layer(&programmer.layer(layer));
         assert_eq!(chunks.len(), 1);

@@ -51,7 +51,7 @@ fn each_part_is_finished_before_the_next() {
     });
     let (parts, places) = arrange(imports.to_vec(), Arrangement::Rows { gap: 60.0 }).unwrap();
     let (build, summary) = planned(&parts, &profile);
-    assert_eq!(build.header.unwrap().layers, build.layers.len());
+    assert_eq!(build.header.unwrap().extent.layers, build.layers.len());
     assert!(build.layers.iter().enumerate().all(|(k, layer)| layer.index == k));
     let mut first = 0;
     let mut length = 0.0;

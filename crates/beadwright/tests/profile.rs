@@ -220,6 +220,7 @@ fn only_optional_keys_may_be_missing() {
         "safety.gas_halt",
         "rapid.hooks",
         "gcode.control",
+        "marlin.bed",
         "rapid.tool_frame",
         "rapid.part_frame",
         "start_stop.crater_fill_time",

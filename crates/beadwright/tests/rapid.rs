@@ -9,7 +9,7 @@ mod readers;
 use beadwright::dialect;
 use beadwright::dialect::rapid::{RapidArc, RapidModules, WireFeedUnit};
 use beadwright::dialect::reading::{ArcCodes, Options, ReadProgram, read};
-use beadwright::layer::Layer;
+use beadwright::layer::{Extent, Layer};
 use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::profile::Profile;
@@ -57,7 +57,7 @@ fn written(part: &str, layers: &[Layer], count: usize, profile: &Profile) -> Fil
     let mut files = Files::new();
     let mut post = dialect::writer("rapid", &profile.job(part)).unwrap();
     let mut programmer = Programmer::new(profile.travel.clearance);
-    let mut chunks = post.begin(count);
+    let mut chunks = post.begin(&Extent { layers: count, ..Extent::default() });
     for layer in layers {
         chunks.extend(post.layer(&programmer.layer(layer)));
     }

@@ -69,7 +69,7 @@ fn written(post: &str, plan: &Plan, profile: &Profile) -> Files {
 fn resumed(post: &str, plan: &Plan, profile: &Profile, (layer, pass): (usize, usize)) -> Files {
     let job = profile.job("demo");
     let (mut writer, mut programmer) = (dialect::writer(post, &job).unwrap(), job.programmer(false));
-    let mut chunks = writer.begin(plan.layers.len());
+    let mut chunks = writer.begin(&plan.header.extent);
     for at in &plan.layers[layer..] {
         chunks.extend(writer.layer(&programmer.layer_from(at, if at.index == layer { pass } else { 0 })));
     }

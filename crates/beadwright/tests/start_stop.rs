@@ -39,6 +39,7 @@ fn plain() -> Profile {
     profile.dialects.gcode = built_in("plasma-304-cnc").dialects.gcode;
     profile.dialects.gcode.as_mut().unwrap().safe_z = 0.0;
     profile.dialects.marlin = built_in("fdm-abs-0.4").dialects.marlin;
+    profile.dialects.marlin.as_mut().unwrap().bed = None;
     profile
 }
 

@@ -89,7 +89,7 @@ impl Sink for Kept<'_> {
     type Error = anyhow::Error;
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
-        self.middle = header.layers / 2;
+        self.middle = header.extent.layers / 2;
         Ok(())
     }
 

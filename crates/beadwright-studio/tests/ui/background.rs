@@ -66,7 +66,7 @@ fn a_plan_that_is_no_longer_wanted_stops() {
         harness.run_steps(1);
         assert!(start.elapsed() < PATIENCE, "no layer comes");
     }
-    assert_eq!(harness.state().plan().header.as_ref().unwrap().layers, 240);
+    assert_eq!(harness.state().plan().header.as_ref().unwrap().extent.layers, 240);
     assert!(harness.state().plan().is_busy(), "all is planned already: take a larger part");
     harness.state_mut().set_value("layers.height", "3.0");
     wait(&mut harness);

@@ -19,7 +19,7 @@ pub use own_folder::posts;
 use crate::deposit::{Figures, Judgement};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
-use crate::layer::Layer;
+use crate::layer::{Extent, Layer};
 use crate::model::RepairReport;
 use crate::plan::{Header, Summary};
 use crate::plan_file;
@@ -84,7 +84,8 @@ impl Programs {
         let (mut writers, mut taken) = (Vec::new(), BTreeMap::new());
         for post in posts {
             // Asked of a writer of its own: the one that writes begins when the number of layers is known.
-            let files: BTreeSet<String> = post.writer(job)?.begin(1).into_iter().map(|chunk| chunk.file).collect();
+            let files: BTreeSet<String> =
+                post.writer(job)?.begin(&Extent::default()).into_iter().map(|chunk| chunk.file).collect();
             for file in files {
                 let second = post.name().to_owned();
                 if let Some(first) = taken.insert(file.clone(), second.clone()) {
@@ -105,8 +106,8 @@ impl Programs {
         self.writers.iter_mut().flat_map(write).collect()
     }
 
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.each(|writer| writer.begin(layers))
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.each(|writer| writer.begin(extent))
     }
 
     fn layer(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
@@ -159,13 +160,24 @@ pub struct PlanFiles {
 
 impl PlanFiles {
     /// Begins the files of a plan and returns their first text; the programs begin at `start`.
-    pub fn begin(header: &Header, profile: &Profile, mut programs: Programs, start: Start) -> (Self, Vec<Chunk>) {
+    ///
+    /// # Errors
+    /// [`DialectError`] where a post cannot write a part as large as this.
+    pub fn begin(
+        header: &Header,
+        profile: &Profile,
+        mut programs: Programs,
+        start: Start,
+    ) -> Result<(Self, Vec<Chunk>), DialectError> {
         let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, profile))];
-        chunks.extend(programs.begin(header.layers));
+        chunks.extend(programs.begin(&header.extent));
+        if let Some(failure) = programs.failure() {
+            return Err(failure);
+        }
         let report = Report::new(header, profile);
         let mut files = Self { programs, report, start, names: BTreeSet::new() };
         files.note(&chunks);
-        (files, chunks)
+        Ok((files, chunks))
     }
 
     /// Takes the next layer, and what the deposit model says of it; returns their text.

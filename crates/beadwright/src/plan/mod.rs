@@ -37,7 +37,7 @@ use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Fill, Path, Strategy, coverage};
 use crate::heat::{LONGEST_WAIT, PassHeat};
-use crate::layer::{Layer, Temperature, overhang};
+use crate::layer::{Extent, Layer, Temperature, overhang};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
@@ -91,8 +91,8 @@ pub struct Header {
     pub profile: String,
     /// Name of the strategy.
     pub strategy: String,
-    /// Number of layers.
-    pub layers: usize,
+    /// How many layers the part has, and where it lies.
+    pub extent: Extent,
 }
 
 /// A whole plan.
@@ -295,7 +295,9 @@ fn plan_mesh<S: Sink + Send>(
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
         filled::fill_batch(planned, strategy, profile, datum, task)
     };
-    let mut summary = run([name, strategy.name()], slicer.layer_count(), heat, profile, task, sink, fill_batch)?;
+    let (low, high) = mesh.bounds();
+    let extent = Extent { layers: slicer.layer_count(), low, high };
+    let mut summary = run([name, strategy.name()], extent, heat, profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
@@ -432,6 +434,8 @@ fn plan_curves<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let slabs = levels::of_curves(curves, height, &profile.single_wall()?, warmth);
     let bounds = curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+    let (low, high) = (bounds.min.extend(0.0), bounds.max.extend(height));
+    let extent = Extent { layers: slabs.len(), low, high };
     let heat = Heat::of(profile, &bounds, &slabs, warmth);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
@@ -441,7 +445,7 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let summary = run([name, &profile.fill.strategy], slabs.len(), heat, profile, task, sink, fill_batch)?;
+    let summary = run([name, &profile.fill.strategy], extent, heat, profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
             "each curve is shorter than fill.min_pass_length, or than the distance within which ends meet \
@@ -455,14 +459,15 @@ fn plan_curves<S: Sink + Send>(
 /// Fills batch after batch and hands their layers over in order.
 fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
-    layers: usize,
+    extent: Extent,
     heat: Heat,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
     fill_batch: impl Fn(usize) -> Result<Vec<Filled>, Cancelled> + Sync,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let header = Header { part: part.to_owned(), profile: profile.name.clone(), strategy: strategy.to_owned(), layers };
+    let [part, strategy] = [part, strategy].map(str::to_owned);
+    let header = Header { part, profile: profile.name.clone(), strategy, extent };
     sink.begin(&header).map_err(PlanError::Sink)?;
     let mut emitter = Emitter {
         profile,
@@ -476,7 +481,7 @@ fn run<S: Sink + Send>(
         metrics: Metrics::new(profile),
         warnings: Warnings::default(),
     };
-    let batches = layers.div_ceil(BATCH);
+    let batches = extent.layers.div_ceil(BATCH);
     // While one batch is handed over, the next is filled.
     let mut ready = fill_batch(0)?;
     for next in 1..=batches {

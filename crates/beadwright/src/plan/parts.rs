@@ -3,7 +3,7 @@
 use super::clearance::{Clearance, Close, Watch};
 use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, strategy_of, warm};
-use crate::layer::Layer;
+use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::{Mesh, PartRef};
 use crate::process::TorchShape;
@@ -37,8 +37,11 @@ pub fn parts_into<S: Sink + Send>(
     };
     let foretold = parts.iter().map(foretold).collect::<Result<Vec<_>, _>>()?;
     let (warmths, counts): (Vec<Warmth>, Vec<usize>) = foretold.into_iter().unzip();
-    let (layers, strategy) = (counts.iter().sum(), strategy_of(profile)?.name().to_owned());
-    let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, layers };
+    let bounds = parts.iter().map(|(_, mesh)| mesh.bounds());
+    let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
+    let extent = Extent { layers: counts.iter().sum(), low, high };
+    let strategy = strategy_of(profile)?.name().to_owned();
+    let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent };
     sink.begin(&header).map_err(PlanError::Sink)?;
     let (mut clearance, width) = (Clearance::default(), profile.bead.width);
     let mut row = Row { first: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };

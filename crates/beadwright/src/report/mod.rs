@@ -85,7 +85,7 @@ impl Report {
 
     /// Takes the next layer, and what the deposit model says of it.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) {
-        if layer.index == self.header.layers / 2 {
+        if layer.index == self.header.extent.layers / 2 {
             self.middle = layer.clone();
         }
         self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));

@@ -19,7 +19,7 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
     let m = &summary.metrics;
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
-        count(header.layers, "layer", "layers") + &empty(header, m),
+        count(header.extent.layers, "layer", "layers") + &empty(header, m),
         count(m.passes, "pass", "passes"),
         escape(&header.strategy),
         metres(m.deposited_length_mm),
@@ -37,7 +37,7 @@ fn duration(seconds: f64) -> String {
 
 /// How many of the layers hold nothing, in brackets.
 fn empty(header: &Header, m: &Metrics) -> String {
-    match header.layers.saturating_sub(m.layers) {
+    match header.extent.layers.saturating_sub(m.layers) {
         0 => String::new(),
         empty => format!(" ({empty} of them empty)"),
     }
@@ -57,7 +57,7 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
     let [starts, time, wire] =
         if profile.prints() { ["Starts", "Time extruding", "Filament"] } else { ["Arc starts", "Arc time", "Wire"] };
     let mut rows = vec![
-        ("Layers", header.layers.to_string() + &empty(header, m)),
+        ("Layers", header.extent.layers.to_string() + &empty(header, m)),
         ("Passes", m.passes.to_string()),
         (starts, m.arc_starts.to_string()),
         ("Deposited length", metres(m.deposited_length_mm)),

@@ -31,6 +31,8 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
     // The way in is as long as that of the robots.
     all.dialects.gcode.as_mut().expect("just set").safe_z = 0.0;
     all.dialects.marlin = profile("fdm-abs-0.4").dialects.marlin;
+    // Parts stay where they are, as with robots.
+    all.dialects.marlin.as_mut().expect("just set").bed = None;
     all.dialects.krl.as_mut().expect("just set").table_machine = Some(2);
     all.dialects.rapid.as_mut().expect("of the ABB cell").table_unit = Some("STN1".to_owned());
     (all.dialects.fanuc, all.dialects.inform, all.dialects.urscript) = (robots.fanuc, robots.inform, robots.urscript);

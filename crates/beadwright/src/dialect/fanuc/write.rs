@@ -7,6 +7,7 @@
 use super::section::{Fanuc, FanucSpeed};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::layer::Extent;
 use crate::number::fixed;
 use crate::process::Process;
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
@@ -303,10 +304,10 @@ impl Writer for FanucTp {
         self.weave.is_some()
     }
 
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.digits = extent.layers.to_string().len().max(3);
         self.name.truncate(MAX_NAME - SUFFIX - self.digits);
-        self.values.set("layers", layers);
+        self.values.set("layers", extent.layers);
         let mut main = Program::default();
         self.supplies.iter().for_each(|line| main.line(&format!("  !{line}")));
         if self.program.restart {

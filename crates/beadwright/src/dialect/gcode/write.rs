@@ -5,6 +5,7 @@ use super::control::GcodeControl;
 use super::section::{Gcode, GcodeComments};
 use crate::dialect::DialectError;
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, restart};
+use crate::layer::Extent;
 use crate::number::push_fixed;
 use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
@@ -335,7 +336,7 @@ pub(in crate::dialect) fn push_centre(text: &mut String, centre: DVec3, decimals
 }
 
 impl Writer for CncGcode {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
         let mut text = String::new();
         if self.gcode.percent_signs {
             text.push_str("%\n");
@@ -343,7 +344,7 @@ impl Writer for CncGcode {
         if let Some(number) = self.gcode.program_number {
             text.push_str(&format!("O{number:04}\n"));
         }
-        self.values.set("layers", layers);
+        self.values.set("layers", extent.layers);
         self.comment(&mut text, &self.comment);
         self.supplies.iter().for_each(|line| self.comment(&mut text, line));
         if let Some(control) = self.restarts() {

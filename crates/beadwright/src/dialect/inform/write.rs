@@ -8,6 +8,7 @@
 use super::section::{Inform, InformSpeed};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::layer::Extent;
 use crate::number::fixed;
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
 use glam::DVec3;
@@ -268,12 +269,12 @@ impl Writer for YaskawaInform {
         self.weave.is_some()
     }
 
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.digits = extent.layers.to_string().len().max(3);
         // Where names may be longer, those of split layers fit too: "-L001-2".
         let more = if self.inform.max_name > 16 { 4 } else { 2 };
         self.name.truncate((self.inform.max_name - SUFFIX - self.digits).saturating_sub(more).max(1));
-        self.values.set("layers", layers);
+        self.values.set("layers", extent.layers);
         let mut main = String::new();
         self.supplies.iter().for_each(|line| main.push_str(&format!("'{line}\r\n")));
         if self.program.restart {

@@ -10,6 +10,7 @@ use super::section::{Krl, KrlMotion};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
+use crate::layer::Extent;
 use crate::number::{fixed, push_fixed};
 use crate::process::Process;
 use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings, Weave};
@@ -481,10 +482,10 @@ impl Writer for KukaKrl {
         self.weave.is_some() && self.krl.arc == KrlArc::Arctech
     }
 
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
-        self.values.set("layers", layers);
-        self.layers = layers;
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.digits = extent.layers.to_string().len().max(3);
+        self.values.set("layers", extent.layers);
+        self.layers = extent.layers;
         // Room for "_L" and the number, and for that of a part.
         self.name.truncate(MAX_NAME - 2 - self.digits - PART);
         self.begin_volume()

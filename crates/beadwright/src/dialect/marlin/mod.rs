@@ -3,7 +3,7 @@
 mod section;
 mod write;
 
-pub use section::Marlin;
+pub use section::{Bed, BedOrigin, Marlin};
 
 use super::Dialect;
 

@@ -3,8 +3,10 @@
 use super::write::MarlinGcode;
 use crate::dialect::writing::is_extension;
 use crate::dialect::{DialectError, Job, Section, Templates, Writer};
+use crate::layer::Extent;
 use crate::limit::{Broken, Limit, limits};
 use crate::program::ProgramSettings;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// Printers' G-code (Marlin, Klipper). Templates are lines with `{{placeholders}}`.
@@ -23,6 +25,10 @@ pub struct Marlin {
     pub retract_speed: f64,
     /// Shortest travel for which the filament is drawn back, mm.
     pub retract_from: f64,
+    /// The printer's bed: parts are moved to its middle, and those that do not fit on it are refused. If absent, coordinates
+    /// are those of the part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bed: Option<Bed>,
     /// Lines at the beginning of the program: temperatures, homing.
     pub header: Vec<String>,
     /// Lines at the beginning of every layer: fan, temperatures.
@@ -31,11 +37,56 @@ pub struct Marlin {
     pub footer: Vec<String>,
 }
 
+/// The bed of a printer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Bed {
+    /// Length, width and height that the printer reaches, mm.
+    pub size: [f64; 3],
+    /// Where x = y = 0 lies.
+    pub origin: BedOrigin,
+}
+
+/// Where on a bed x = y = 0 lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum BedOrigin {
+    /// At the front left corner, as on most printers.
+    Corner,
+    /// In the middle, as on delta printers.
+    Centre,
+}
+
+impl Bed {
+    /// What moves a part to the middle of the bed, mm.
+    ///
+    /// # Errors
+    /// [`DialectError::OffBed`].
+    pub(super) fn offset(&self, part: &Extent) -> Result<DVec2, DialectError> {
+        let (size, bed) = (part.size(), DVec3::from_array(self.size));
+        if size.cmpgt(bed).any() {
+            return Err(DialectError::OffBed { part: size, bed: self.size });
+        }
+        let middle = match self.origin {
+            BedOrigin::Corner => bed.truncate() / 2.0,
+            BedOrigin::Centre => DVec2::ZERO,
+        };
+        // Whole micrometres, so that what is round in the part stays round.
+        Ok(((middle - (part.low + part.high).truncate() / 2.0) * 1e3).round() / 1e3)
+    }
+}
+
 impl Section for Marlin {
     fn limits(&self) -> Vec<Limit> {
         const PRINTER: &str = "no printer on the market goes beyond this";
         let hot_end = "drawing back more would pull the filament out of the hot end";
+        let [x, y, z] = self.bed.map_or([1.0; 3], |bed| bed.size);
         limits! {
+            "marlin.bed.size": x, 1.0, 10_000.0, "mm", PRINTER;
+            "marlin.bed.size": y, 1.0, 10_000.0, "mm", PRINTER;
+            "marlin.bed.size": z, 1.0, 10_000.0, "mm", PRINTER;
             "marlin.retract_length": self.retract_length, 0.0, 50.0, "mm of filament", hot_end;
             "marlin.retract_speed": self.retract_speed, 0.1, 500.0, "mm/s", PRINTER;
             "marlin.retract_from": self.retract_from, 0.0, 1000.0, "mm", PRINTER;

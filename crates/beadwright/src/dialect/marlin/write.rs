@@ -5,8 +5,10 @@
 
 use super::section::Marlin;
 use crate::bead::wire_area;
+use crate::dialect::DialectError;
 use crate::dialect::gcode::write::push_centre;
 use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii};
+use crate::layer::Extent;
 use crate::number::{fixed, push_fixed};
 use crate::pass::PassKind;
 use crate::program::{Circle, Instruction, LayerProgram};
@@ -40,6 +42,9 @@ pub(super) struct MarlinGcode {
     /// Feed written last, mm/s.
     feed: f64,
     kind: Option<PassKind>,
+    /// What moves the part to the middle of the bed, mm.
+    offset: DVec3,
+    failure: Option<DialectError>,
 }
 
 impl MarlinGcode {
@@ -65,6 +70,8 @@ impl MarlinGcode {
             retracted: false,
             feed: 0.0,
             kind: None,
+            offset: DVec3::ZERO,
+            failure: None,
         }
     }
 
@@ -110,7 +117,7 @@ impl MarlinGcode {
         text.push_str(word);
         for axis in axes {
             text.push_str([" X", " Y", " Z"][axis]);
-            push_fixed(text, to[axis], 3);
+            push_fixed(text, to[axis] + self.offset[axis], 3);
         }
         if let (Some(circle), Some(at)) = (circle, before) {
             push_centre(text, circle.centre - at, 3);
@@ -200,11 +207,16 @@ fn type_name(kind: PassKind) -> &'static str {
 }
 
 impl Writer for MarlinGcode {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        match self.marlin.bed.map(|bed| bed.offset(extent)) {
+            Some(Ok(offset)) => self.offset = offset.extend(0.0),
+            Some(Err(failure)) => self.failure = Some(failure),
+            None => {}
+        }
         let mut text = String::new();
         Self::comment(&mut text, "FLAVOR:Marlin");
         Self::comment(&mut text, &self.comment);
-        Self::comment(&mut text, &format!("LAYER_COUNT:{layers}"));
+        Self::comment(&mut text, &format!("LAYER_COUNT:{}", extent.layers));
         self.lines(&mut text, &self.marlin.header);
         text.push_str("G21\nG90\n");
         text.push_str(if self.marlin.relative_extrusion { "M83\n" } else { "M82\n" });
@@ -239,5 +251,9 @@ impl Writer for MarlinGcode {
         self.retract(&mut text, true);
         self.lines(&mut text, &self.marlin.footer);
         self.chunk(text)
+    }
+
+    fn failure(&self) -> Option<DialectError> {
+        self.failure.clone()
     }
 }

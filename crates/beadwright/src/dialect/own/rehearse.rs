@@ -4,6 +4,7 @@
 use super::write::OwnWriter;
 use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, SETTINGS, data};
 use crate::dialect::writing::{DialectError, Job, Writer};
+use crate::layer::Extent;
 use crate::pass::PassKind;
 use crate::process::Follow;
 use crate::program::{Attitude, Circle, Instruction, LayerProgram};
@@ -47,7 +48,7 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
 /// Runs the templates on layers; the text of all files.
 fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>]) -> Result<String, DialectError> {
     let mut writer = OwnWriter::new(own, job);
-    let mut chunks = writer.begin(layers.len());
+    let mut chunks = writer.begin(&Extent { layers: layers.len(), ..Extent::default() });
     for (index, instructions) in layers.iter().enumerate() {
         let (z, instructions) = (2.0 * (index + 1) as f64, instructions.clone());
         chunks.extend(writer.layer(&LayerProgram { index, z, instructions }));

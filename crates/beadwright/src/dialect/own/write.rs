@@ -5,6 +5,7 @@ use super::environment::{FUEL, FUEL_PER_STEP};
 use super::settings::{LineEnds, Settings};
 use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, data, told};
 use crate::dialect::writing::{Chunk, DialectError, Job, Writer};
+use crate::layer::Extent;
 use crate::program::LayerProgram;
 use minijinja::{Environment, Error, Value, context};
 use std::collections::BTreeSet;
@@ -156,8 +157,8 @@ fn innermost(fault: &Error) -> &Error {
 }
 
 impl Writer for OwnWriter {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.environment.add_global("layers", layers);
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.environment.add_global("layers", extent.layers);
         let written = self.main(BEGIN, context! {});
         self.keep(written)
     }

@@ -9,6 +9,7 @@ use super::section::{Rapid, RapidArc, RapidModules};
 use super::{data, names};
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split};
+use crate::layer::Extent;
 use crate::number::fixed;
 use crate::process::Process;
 use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
@@ -427,9 +428,9 @@ impl Writer for AbbRapid {
         self.weave.is_some() && self.with_arc()
     }
 
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
-        self.values.set("layers", layers);
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.digits = extent.layers.to_string().len().max(3);
+        self.values.set("layers", extent.layers);
         // Room for "_L" and the number, and for that of a part: "_999".
         self.name.truncate(names::MAX_NAME - 2 - self.digits - 4);
         let mut text = format!("MODULE {}\r\n", self.name);
@@ -439,9 +440,9 @@ impl Writer for AbbRapid {
             text.push_str(&format!("  ! {}\r\n  PERS num {START}:=0;\r\n", restart::comment(START)));
         }
         if self.program.layer_offsets {
-            let zeros = vec!["0"; layers].join(",");
+            let zeros = vec!["0"; extent.layers].join(",");
             text.push_str("  ! mm to be added to the height of each layer\r\n");
-            text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
+            text.push_str(&format!("  PERS num nDz{{{}}}:=[{zeros}];\r\n", extent.layers));
         }
         let standing = self.program.table_angle.or(self.program.table_side.map(|_| 0.0));
         let (arc, home) = (self.with_arc(), data::external_axes(&self.program, standing, &self.rapid));

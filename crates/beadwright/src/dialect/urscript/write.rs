@@ -8,6 +8,7 @@ use super::section::Urscript;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::{Volumes, from_anywhere};
 use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
+use crate::layer::Extent;
 use crate::number::{fixed, push_fixed};
 use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use glam::DVec3;
@@ -313,10 +314,10 @@ impl UniversalScript {
 }
 
 impl Writer for UniversalScript {
-    fn begin(&mut self, layers: usize) -> Vec<Chunk> {
-        self.digits = layers.to_string().len().max(3);
-        self.values.set("layers", layers);
-        self.count = layers;
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
+        self.digits = extent.layers.to_string().len().max(3);
+        self.values.set("layers", extent.layers);
+        self.count = extent.layers;
         self.begin_volume()
     }
 

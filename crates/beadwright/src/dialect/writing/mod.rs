@@ -21,9 +21,10 @@ pub(super) use placeholders::Values;
 use super::own::OwnError;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
-use crate::layer::Layer;
+use crate::layer::{Extent, Layer};
 use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Weave};
 use crate::weld::WeldSettings;
+use glam::DVec3;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
@@ -46,7 +47,7 @@ impl Chunk {
 /// Writes a program in one dialect.
 pub trait Writer: Send {
     /// What comes before the first layer; `layers` is their number.
-    fn begin(&mut self, layers: usize) -> Vec<Chunk>;
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk>;
 
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
@@ -170,6 +171,18 @@ pub enum DialectError {
         /// The other one, or the same again.
         second: String,
     },
+    /// The part does not fit on the printer's bed.
+    #[error(
+        "the part is {:.1} × {:.1} × {:.1} mm, and the bed has {:.0} × {:.0} × {:.0} mm (marlin.bed). Turn the part or make it \
+         smaller (--turn, --scale), or give the size of your printer.",
+        part.x, part.y, part.z, bed[0], bed[1], bed[2]
+    )]
+    OffBed {
+        /// Length, width and height of the part, mm.
+        part: DVec3,
+        /// Length, width and height that the printer reaches, mm.
+        bed: [f64; 3],
+    },
     /// The profile has external axes that the dialect does not write.
     #[error(
         "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. Take the key out, and move the axis by hand.",
@@ -216,20 +229,21 @@ pub fn write<L: Borrow<Layer>>(
     layers: &[L],
     job: &Job<'_>,
 ) -> Result<BTreeMap<String, String>, DialectError> {
-    write_with(writer(name, job)?, layers, job)
+    write_with(writer(name, job)?, &Extent::of(layers), layers, job)
 }
 
-/// The same with a writer that has been begun.
+/// The same with a writer, and with what is known of the part: [`write()`] knows its passes only.
 ///
 /// # Errors
 /// [`DialectError`] of the writer.
 pub fn write_with<L: Borrow<Layer>>(
     mut writer: Box<dyn Writer>,
+    extent: &Extent,
     layers: &[L],
     job: &Job<'_>,
 ) -> Result<BTreeMap<String, String>, DialectError> {
     let mut programmer = job.programmer(writer.weaves());
-    let mut chunks = writer.begin(layers.len());
+    let mut chunks = writer.begin(extent);
     layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
     chunks.extend(writer.end());
     let mut files = BTreeMap::<String, String>::new();

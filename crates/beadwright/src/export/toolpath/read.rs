@@ -5,6 +5,7 @@
 //! value that changes within a line, an unknown segment) is refused, as the extension demands.
 
 use super::read_layer;
+use crate::layer::{Extent, Layer};
 use crate::model::ImportError;
 use crate::model::package::{self, OLD_TOOLPATH, PRODUCTION, Package, TOOLPATH, broken, entry_name};
 use crate::model::xml::{Element, Step};
@@ -12,6 +13,7 @@ use crate::pass::PassKind;
 use crate::plan::{self, Header};
 use crate::plan_file::PlanFile;
 use crate::profile::Profile;
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Extensions that a file may require.
@@ -52,8 +54,8 @@ pub(super) struct Resource {
     layers: Vec<(String, Option<f64>)>,
     /// Bottom of the first layer, units.
     bottom: f64,
-    /// Part, strategy and profile, where Beadwright has written it.
-    pub(super) plan: Option<[String; 3]>,
+    /// Part, strategy, profile and bounds, where Beadwright has written it.
+    pub(super) plan: Option<[String; 4]>,
 }
 
 /// Whether the bytes are those of a 3MF file with toolpaths.
@@ -90,11 +92,20 @@ pub fn read(bytes: &[u8]) -> Result<PlanFile, ImportError> {
     if layers.is_empty() {
         return Err(broken("its toolpath has no layers"));
     }
-    let [part, strategy, profile] = resource.plan.unwrap_or_default();
+    let [part, strategy, profile, bounds] = resource.plan.unwrap_or_default();
     let profile = if profile.is_empty() { None } else { Some(profile_of(&profile)?) };
     let name = profile.as_ref().map_or_else(String::new, |profile| profile.name.clone());
-    let header = Header { part, profile: name, strategy, layers: layers.len() };
+    let header = Header { part, profile: name, strategy, extent: extent(&bounds, &layers) };
     Ok(PlanFile { header, settings: profile.as_ref().map(plan::deposit_settings), profile, layers })
+}
+
+/// Where the part lies: as the file says (six numbers, mm), or where its passes lie.
+fn extent(bounds: &str, layers: &[Layer]) -> Extent {
+    let numbers: Vec<f64> = bounds.split_whitespace().filter_map(|text| text.parse().ok()).collect();
+    match (&numbers[..], layers.len()) {
+        (&[a, b, c, d, e, f], layers) => Extent { layers, low: DVec3::new(a, b, c), high: DVec3::new(d, e, f) },
+        _ => Extent::of(layers),
+    }
 }
 
 fn profile_of(json: &str) -> Result<Profile, ImportError> {
@@ -136,7 +147,7 @@ fn model(package: &mut Package<'_>, path: &str) -> Result<Resource, ImportError>
             }
             ("plan", Some(resource)) => {
                 let text = |key| element.attribute(key).unwrap_or_default();
-                resource.plan = Some(["part", "strategy", "profile"].map(text));
+                resource.plan = Some(["part", "strategy", "profile", "bounds"].map(text));
             }
             _ => {}
         }

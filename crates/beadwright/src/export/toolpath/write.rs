@@ -102,8 +102,10 @@ fn model(beads: &Beads<'_>, styles: &Styles, ids: &Ids, around: (DVec3, DVec3)) 
         text.push_str(&format!("<tp:toolpathlayer path=\"{}\"/>\n", layer_path(index)));
     }
     let (strategy, profile) = (escape(&beads.header.strategy), escape(&serde_json::json!(beads.profile).to_string()));
+    let (low, high) = (beads.header.extent.low.to_array(), beads.header.extent.high.to_array());
+    let bounds = low.iter().chain(&high).map(f64::to_string).collect::<Vec<_>>().join(" ");
     text.push_str(&format!(
-        "</tp:toolpathlayers>\n<tp:toolpathdata><bw:plan part=\"{part}\" strategy=\"{strategy}\" profile=\"{profile}\"/>\
+        "</tp:toolpathlayers>\n<tp:toolpathdata><bw:plan part=\"{part}\" strategy=\"{strategy}\" profile=\"{profile}\" bounds=\"{bounds}\"/>\
          </tp:toolpathdata>\n</tp:toolpathresource>\n<object id=\"2\" p:UUID=\"{}\" type=\"model\" name=\"{part}: box around its \
          beads\">\n",
         ids.object
