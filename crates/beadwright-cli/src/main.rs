@@ -129,7 +129,7 @@ fn main() -> ExitCode {
         // Whatever reads our output may stop reading: that is not our failure.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            let error = memory::exceeded().map_or(error, anyhow::Error::msg);
+            let error = memory::exceeded(&error).map_or(error, anyhow::Error::msg);
             let remedy = remedy::of(&error).map_or(String::new(), |remedy| format!(" {remedy}"));
             eprintln!("error: {error:#}{remedy}");
             let doubtful = error.is::<plan::Refused>() || error.is::<say::Findings>() || error.is::<batch::Unfit>();

@@ -32,8 +32,10 @@ pub(crate) fn watch(most: Option<f64>) {
     if let Some(most) = most {
         _ = LIMIT.set((most * 1e9) as u64);
     }
+    #[cfg(unix)]
+    space::guard();
     let limit = limit();
-    std::thread::spawn(move || {
+    let watching = move || {
         let Ok(own) = sysinfo::get_current_pid() else { return };
         let (mut system, mut waited) = (System::new(), Duration::ZERO);
         loop {
@@ -51,18 +53,62 @@ pub(crate) fn watch(most: Option<f64>) {
                 std::process::exit(1);
             }
         }
-    });
+    };
+    if std::thread::Builder::new().spawn(watching).is_err() {
+        eprintln!("error: {}", sentence());
+        std::process::exit(1);
+    }
 }
 
-/// The sentence of a run that was stopped because of its memory.
-pub(crate) fn exceeded() -> Option<String> {
-    EXCEEDED.load(Ordering::Relaxed).then(sentence)
+/// The sentence of a run that was stopped because of its memory, or that got none where it asked for some.
+pub(crate) fn exceeded(error: &anyhow::Error) -> Option<String> {
+    let kind =
+        |cause: &(dyn std::error::Error + 'static)| cause.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
+    let refused = error.chain().any(|cause| kind(cause) == Some(std::io::ErrorKind::OutOfMemory));
+    #[cfg(unix)]
+    if let Some(limit) = space::limit().filter(|_| refused) {
+        return Some(told(limit, space::ULIMIT));
+    }
+    (refused || EXCEEDED.load(Ordering::Relaxed)).then(sentence)
 }
 
 fn sentence() -> String {
+    told(limit(), "--max-memory GB")
+}
+
+fn told(limit: u64, remedy: &str) -> String {
+    let digits = if limit < 100_000_000 { 2 } else { 1 };
     format!(
-        "more than {:.1} GB of memory would be needed, and nothing was written. Take a coarser model or --grid, or allow \
-         more with --max-memory GB.",
-        limit() as f64 / 1e9
+        "more than {:.digits$} GB of memory would be needed, and nothing was written. Take a coarser model or --grid, or allow \
+         more with {remedy}.",
+        limit as f64 / 1e9
     )
+}
+
+/// What the shell allows (`ulimit -v`): where an allocation fails, Rust aborts, and the sentence is said on the way out.
+#[cfg(unix)]
+mod space {
+    use rustix::process::{Resource, getrlimit};
+    use signal_hook::consts::SIGABRT;
+    use signal_hook::low_level;
+
+    pub(super) const ULIMIT: &str = "ulimit -v KB";
+
+    /// What the shell allows, bytes.
+    pub(super) fn limit() -> Option<u64> {
+        getrlimit(Resource::As).current
+    }
+
+    pub(super) fn guard() {
+        let Some(limit) = limit() else { return };
+        let line = format!("error: {}\n", super::told(limit, ULIMIT));
+        let say = move || {
+            _ = rustix::io::write(rustix::stdio::stderr(), line.as_bytes());
+            low_level::exit(1);
+        };
+        // Safety: the handler only writes bytes that are there already, and ends the process.
+        #[expect(unsafe_code, reason = "no safe function says something when memory is out")]
+        let registered = unsafe { low_level::register(SIGABRT, say) };
+        _ = registered;
+    }
 }

@@ -75,6 +75,19 @@ fn case_1622_bombs_are_stopped() {
     check("box40x60.stl", &["plan", "CASE", "--picture", "99"], 1, &["the part has the layers 1 to"]);
     check("krl_callbomb.src", &["inspect", "CASE", "--max-memory", "0.1"], 1, &["0.1 GB of memory", "--max-memory"]);
     #[cfg(unix)]
+    for kilobytes in [60_000, 150_000] {
+        let folder = TempDir::new().unwrap();
+        let (program, case) = (env!("CARGO_BIN_EXE_beadwright"), case("krl_callbomb.src"));
+        let line = format!("ulimit -v {kilobytes}; exec '{program}' inspect '{case}'");
+        let output = Command::new("sh").current_dir(folder.path()).args(["-c", &line]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("GB of memory would be needed, and nothing was written") && said.contains("ulimit -v"),
+            "{said}"
+        );
+    }
+    #[cfg(unix)]
     for device in ["/dev/zero", "/dev/null"] {
         check("box40x60.stl", &["plan", device], 1, &["a device or a pipe"]);
         check("box40x60.stl", &["inspect", device], 1, &["a device or a pipe"]);
