@@ -279,6 +279,11 @@ fn broken_archives_are_refused() {
         bomb += &object(k, &format!("<components>{twice}</components>"));
     }
     refused(threemf("millimeter", &bomb, "<item objectid=\"31\"/>"), "triangles");
+    // 100 MB of one vertex, packed into a thousandth of that.
+    let vertices = "<vertex x=\"0\" y=\"0\" z=\"0\"/>".repeat(3_500_000);
+    let packed = threemf("millimeter", &object(1, &format!("<mesh><vertices>{vertices}")), item);
+    assert!(packed.len() < 1_000_000, "{}", packed.len());
+    refused(packed, "unfolds to more than 64 MB");
     // Five thousand million spaces, packed small, would take minutes: elements nested without end stand for it.
     refused(archive(&[("3D/3dmodel.model", &"<a>".repeat(300))]), "deep");
     let lattice = format!(

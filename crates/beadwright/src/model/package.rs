@@ -19,6 +19,11 @@ pub(crate) const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturin
 
 /// The files of an archive hold no more, bytes.
 const MOST_BYTES: u64 = 4 << 30;
+/// Nor do they hold more than this multiple of the archive, beyond what is small anyhow: models unfold to 5 to 30 times their
+/// size.
+const MOST_TIMES: u64 = 100;
+/// What any archive may unfold to, bytes.
+const SMALL_BYTES: u64 = 64 << 20;
 /// An archive has no more entries.
 const MOST_ENTRIES: usize = 100_000;
 /// Where the model lies if the archive does not say.
@@ -27,6 +32,8 @@ const USUAL: &str = "3D/3dmodel.model";
 /// A 3MF file that is being read.
 pub(crate) struct Package<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
+    /// How much may come out of it, bytes.
+    most: u64,
     /// How much may still come out of it, bytes.
     left: u64,
 }
@@ -56,7 +63,8 @@ impl<'a> Package<'a> {
         if archive.len() > MOST_ENTRIES {
             return Err(broken(format!("its archive has {} entries, at most {MOST_ENTRIES} are read", archive.len())));
         }
-        Ok(Self { archive, left: MOST_BYTES })
+        let most = (MOST_TIMES * bytes.len() as u64).clamp(SMALL_BYTES, MOST_BYTES);
+        Ok(Self { archive, most, left: most })
     }
 
     /// The path of the model in the archive, as its relationships tell it.
@@ -88,7 +96,7 @@ impl<'a> Package<'a> {
     /// [`ImportError::Broken`] where it is not there.
     pub(crate) fn elements(&mut self, path: &str) -> Result<PackageElements<'_, 'a>, ImportError> {
         let entry = self.archive.by_name(path).map_err(|error| broken(format!("{path}: {error}")))?;
-        let limited = Counted { inner: entry, left: &mut self.left };
+        let limited = Counted { inner: entry, most: self.most, left: &mut self.left };
         Ok(Elements::new(BufReader::with_capacity(1 << 16, limited), "3MF"))
     }
 }
@@ -136,19 +144,24 @@ pub(crate) fn unit_in_mm(model: &Element) -> Result<f64, ImportError> {
     })
 }
 
+fn unfolds(most: u64) -> String {
+    let megabytes = most >> 20;
+    format!(
+        "it unfolds to more than {megabytes} MB, which no model of its size does. Save the part in another format, such as STL"
+    )
+}
+
 /// Reads on until too much has come out of an archive.
 pub(crate) struct Counted<'a, R> {
     inner: R,
+    most: u64,
     left: &'a mut u64,
 }
 
 impl<R: Read> Read for Counted<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        *self.left = self
-            .left
-            .checked_sub(count as u64)
-            .ok_or_else(|| std::io::Error::other(format!("it unfolds to more than {} GB", MOST_BYTES >> 30)))?;
+        *self.left = self.left.checked_sub(count as u64).ok_or_else(|| std::io::Error::other(unfolds(self.most)))?;
         Ok(count)
     }
 }
