@@ -44,7 +44,7 @@ struct Arguments {
     /// Most memory that may be used, GB; three quarters of the machine's if left out.
     #[arg(long, global = true, value_name = "GB", value_parser = parse_memory)]
     max_memory: Option<f64>,
-    /// Say only warnings and errors, besides what is asked for.
+    /// Say only warnings and errors, on standard error, besides what is asked for.
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
     /// Tell how long each stage took.

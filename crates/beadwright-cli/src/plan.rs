@@ -372,7 +372,7 @@ pub(crate) fn print_head(
 
 /// What is said even with `--quiet`.
 pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = say::warnings();
     let events = summary.warnings.summaries().map(|w| w.sentence());
     let told =
         profile.forbidden().into_iter().chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned());

@@ -40,6 +40,14 @@ pub(crate) fn done(output_is_standard: bool) -> Box<dyn Write> {
     }
 }
 
+/// Where warnings go: to the lines of the command, or with `--quiet` to standard error, where nothing else is said.
+pub(crate) fn warnings() -> Box<dyn Write> {
+    match loudness() {
+        Loudness::Quiet => Box::new(std::io::stderr().lock()),
+        _ => Box::new(std::io::stdout().lock()),
+    }
+}
+
 /// A check that has found something.
 #[derive(Debug, thiserror::Error)]
 #[error("{count} {} in {}", if *count == 1 { "finding" } else { "findings" }, place.display())]

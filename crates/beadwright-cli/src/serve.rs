@@ -22,11 +22,14 @@ pub(crate) fn run(port: u16, folder: Option<&Path>) -> anyhow::Result<()> {
     );
     let server = Server::http(("127.0.0.1", port)).map_err(anyhow::Error::from_boxed);
     let server = server.with_context(|| format!("port {port} cannot be used; name another, such as --serve 8321"))?;
+    let port = server.server_addr().to_ip().map_or(port, |address| address.port());
+    // Links are followed here, once: what a link in the folder leads to must lie below.
+    let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
     println!("The studio is at http://{}/ until this command is ended (Ctrl-C).", server.server_addr());
     std::io::stdout().flush()?;
     for request in server.incoming_requests() {
         // A browser that has left is no fault.
-        let _ = answer(request, &folder);
+        let _ = answer(request, &folder, port);
     }
     Ok(())
 }
@@ -45,11 +48,15 @@ fn beside() -> anyhow::Result<PathBuf> {
     }
 }
 
-fn answer(request: Request, folder: &Path) -> std::io::Result<()> {
+fn answer(request: Request, folder: &Path, port: u16) -> std::io::Result<()> {
+    if !is_own(&request, port) {
+        return request
+            .respond(Response::from_string("Only this machine's own address is answered.").with_status_code(403));
+    }
     if !matches!(request.method(), Method::Get | Method::Head) {
         return request.respond(Response::from_string("Only GET and HEAD are answered.").with_status_code(405));
     }
-    match wanted(request.url()).and_then(|path| Some((kind(&path)?, fs::read(folder.join(path)).ok()?))) {
+    match wanted(request.url()).and_then(|path| Some((kind(&path)?, read(folder, &path)?))) {
         Some((kind, bytes)) => {
             let mut response = Response::from_data(bytes);
             // A page that was built anew is shown anew.
@@ -62,6 +69,19 @@ fn answer(request: Request, folder: &Path) -> std::io::Result<()> {
         }
         None => request.respond(Response::from_string("There is no such file.").with_status_code(404)),
     }
+}
+
+/// Whether the browser has asked for this machine by its own name: another page may have given its name this address.
+fn is_own(request: &Request, port: u16) -> bool {
+    let host = request.headers().iter().find(|header| header.field.equiv("Host"));
+    let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}"));
+    host.is_some_and(|host| own.iter().any(|own| host.value.as_str().eq_ignore_ascii_case(own)))
+}
+
+/// The bytes of a file below the folder, also where a link leads there.
+fn read(folder: &Path, path: &Path) -> Option<Vec<u8>> {
+    let file = folder.join(path).canonicalize().ok().filter(|file| file.starts_with(folder))?;
+    fs::read(file).ok()
 }
 
 /// The file that an address asks for, below the folder; nothing that leads out of it.

@@ -248,18 +248,22 @@ fn a_broken_template_is_told_with_its_line_and_nothing_is_written() {
     ok(folder.path(), &all);
 }
 
-/// Links in the folder lead nowhere.
+/// A link in the folder is refused, not left out: the author meant it to be read.
 #[cfg(unix)]
 #[test]
 fn templates_see_their_folder_only() {
     let folder = shop();
     fs::write(folder.path().join("secret.txt"), "secret").unwrap();
-    std::os::unix::fs::symlink(folder.path().join("secret.txt"), folder.path().join("gantry/secret.txt")).unwrap();
-    let end = folder.path().join("gantry/end.txt");
+    let (link, end) = (folder.path().join("gantry/secret.txt"), folder.path().join("gantry/end.txt"));
     let whole = fs::read_to_string(&end).unwrap();
+    let plan = ["plan", "cross.stl", "--post", "./gantry", "-o", "out"];
+    std::os::unix::fs::symlink(folder.path().join("secret.txt"), &link).unwrap();
+    let said = refused(folder.path(), &plan);
+    assert!(said.contains("secret.txt: it is a link") && said.contains("Copy the file there"), "{said}");
+    fs::remove_file(link).unwrap();
     for name in ["secret.txt", "../secret.txt", "/etc/passwd"] {
         fs::write(&end, format!("{{% include \"{name}\" %}}\n{whole}")).unwrap();
-        let said = refused(folder.path(), &["plan", "cross.stl", "--post", "./gantry", "-o", "out"]);
+        let said = refused(folder.path(), &plan);
         assert!(said.contains("only files of this folder") && said.contains("end.txt, line 1"), "{said}");
     }
 }

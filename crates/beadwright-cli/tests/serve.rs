@@ -33,8 +33,13 @@ impl Served {
 
     /// Status, head and body of the answer to a request line.
     fn ask(&self, line: &str) -> (u32, String, Vec<u8>) {
+        self.ask_of(&self.address, line)
+    }
+
+    /// The same with another name of the machine.
+    fn ask_of(&self, host: &str, line: &str) -> (u32, String, Vec<u8>) {
         let mut stream = TcpStream::connect(&self.address).unwrap();
-        write!(stream, "{line} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", self.address).unwrap();
+        write!(stream, "{line} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
         let mut bytes = Vec::new();
         stream.read_to_end(&mut bytes).unwrap();
         let end = bytes.windows(4).position(|four| four == b"\r\n\r\n").unwrap();
@@ -97,6 +102,37 @@ fn nothing_else_is_handed_out() {
     assert_eq!(served.ask("POST /index.html").0, 405);
     // It still answers.
     assert_eq!(served.ask("GET /").0, 200);
+}
+
+/// A page elsewhere may give its own name this machine's address: it is not answered.
+#[test]
+fn only_its_own_host_is_answered() {
+    let folder = page();
+    let served = Served::of(&folder.path().join("page"));
+    let port = served.address.split(':').next_back().unwrap();
+    for host in [served.address.clone(), format!("localhost:{port}"), format!("LocalHost:{port}")] {
+        assert_eq!(served.ask_of(&host, "GET /").0, 200, "{host}");
+    }
+    let other = [format!("evil.example:{port}"), "localhost".to_owned(), "127.0.0.1:1".to_owned(), String::new()];
+    for host in other.iter().map(String::as_str).chain([&*format!("localhost.evil.example:{port}")]) {
+        let (status, _, body) = served.ask_of(host, "GET /");
+        assert!(status == 403 && !body.windows(8).any(|eight| eight == b"<canvas>"), "{host}: {status}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_lead_nowhere_else() {
+    use std::os::unix::fs::symlink;
+    let folder = page();
+    let page = folder.path().join("page");
+    symlink(folder.path().join("secret.html"), page.join("outside.html")).unwrap();
+    symlink(folder.path(), page.join("up")).unwrap();
+    symlink(page.join("studio.js"), page.join("inside.js")).unwrap();
+    let served = Served::of(&page);
+    assert_eq!(served.ask("GET /outside.html").0, 404);
+    assert_eq!(served.ask("GET /up/secret.html").0, 404);
+    assert_eq!(served.ask("GET /inside.js").0, 200);
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn quiet_says_warnings_only_and_verbose_times() {
     assert_eq!(said(&["example", "propeller", "-q"]), ["", ""]);
     let plan = ["plan", "propeller.stl", "--no-deposit", "-o", "out", "--set", "bead.height=1.5"];
     let [usual, silent] = said(&plan);
-    let [warnings, none] = said(&[&plan[..], &["--quiet"]].concat());
+    let [none, warnings] = said(&[&plan[..], &["--quiet"]].concat());
     let told: Vec<&str> = usual.lines().filter(|line| line.starts_with("warning: ")).collect();
     assert!(!told.is_empty() && silent.is_empty() && none.is_empty(), "{usual}");
     assert_eq!(warnings.lines().collect::<Vec<_>>(), told);

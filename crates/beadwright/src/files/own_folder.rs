@@ -25,7 +25,7 @@ pub fn posts<S: AsRef<str>>(names: &[S], base: &Path) -> Result<Vec<Post>, OwnEr
     names.iter().map(post).collect()
 }
 
-/// The files of a folder by their names. Links are left out, since templates see nothing outside their folder.
+/// The files of a folder by their names. Links are refused, since templates see nothing outside their folder.
 fn texts(name: &str, folder: &Path) -> Result<BTreeMap<String, String>, OwnError> {
     let error =
         |file: &str, reason: String| OwnError { folder: name.to_owned(), file: file.to_owned(), line: None, reason };
@@ -35,6 +35,10 @@ fn texts(name: &str, folder: &Path) -> Result<BTreeMap<String, String>, OwnError
         let entry = entry.map_err(unreadable)?;
         let (Ok(file), Ok(about)) = (entry.file_name().into_string(), entry.metadata()) else { continue };
         let is_template = [".txt", ".toml"].iter().any(|end| file.ends_with(end));
+        if is_template && about.is_symlink() {
+            let reason = "it is a link, and templates are read from their own folder only. Copy the file there.";
+            return Err(error(&file, reason.to_owned()));
+        }
         if !about.is_file() || !is_template {
             continue;
         }
