@@ -601,3 +601,36 @@ fn a_large_plan_is_told_before_it_is_made() {
     assert!(!told(&[]).contains("are to be planned"), "a usual plan needs no words");
     assert!(!told(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
 }
+
+/// `check` reads a program as a welding programmer would; `plan` and `profile check` say what its templates would do.
+#[test]
+fn dangerous_lines_are_found_in_programs_and_profiles() {
+    let folder = folder_with("cross");
+    let at = folder.path();
+    ok(at, &["plan", "cross.stl", "--no-deposit", "-o", "out"]);
+    assert!(ok(at, &["check", "out/CROSS.src"]).contains("nothing found"));
+    let module = at.join("out/CROSS_L003.src");
+    let text = fs::read_to_string(&module).unwrap();
+    fs::write(&module, text.replacen("WAIT SEC 0\r\n", "", 1)).unwrap();
+    let found = beadwright(at, &["check", "out/CROSS.src"]);
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert_eq!(found.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("unwatched-end (1)") && said.contains("CROSS_L003") && said.contains("Remedy: wait until"),
+        "{said}"
+    );
+    let json = beadwright(at, &["check", "out/CROSS.src", "--json"]);
+    let found: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!((&found[0]["check"], &found[0]["count"]), (&"unwatched-end".into(), &1.into()), "{found}");
+    assert!(found[0]["line"].as_u64().unwrap() > 1, "{found}");
+    // The same in a template.
+    ok(at, &["profile", "show", "cmt-al2319-kuka", "-o", "mine.toml"]);
+    ok(at, &["profile", "check", "mine.toml"]);
+    let profile = fs::read_to_string(at.join("mine.toml")).unwrap();
+    fs::write(at.join("mine.toml"), profile.replace("\"WAIT SEC 0\", ", "")).unwrap();
+    let found = beadwright(at, &["profile", "check", "mine.toml"]);
+    let said = String::from_utf8(found.stdout).unwrap();
+    assert!(found.status.code() == Some(3) && said.contains("unwatched-end"), "{said}");
+    let planned = ok(at, &["plan", "cross.stl", "-p", "mine.toml", "--no-deposit", "-o", "mine"]);
+    assert!(planned.contains("warning: krl, unwatched-end"), "{planned}");
+}
