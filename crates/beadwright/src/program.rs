@@ -291,7 +291,9 @@ impl Programmer {
         let [(start, _), (_, first), ..] = moves[..] else { return };
         let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, width)).unwrap_or_default();
         let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
-        let table = self.table.as_mut().map(|table| table.begin(start));
+        let places = || moves.iter().map(|(at, _)| *at).collect::<Vec<_>>();
+        let turned = self.table.as_mut().map(|table| table.begin(&places()));
+        let table = turned.map(|turned| turned.angle);
         let begins = self.torch.at().is_none();
         let pauses = [pause.take(), self.torch.wait(pass.wait)];
         let mut legs = self.torch.approach(start).legs;
@@ -300,7 +302,8 @@ impl Programmer {
         let mut legs = legs.into_iter();
         out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
         pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
-        out.extend(legs.by_ref().take(usize::from(begins)).map(|to| Instruction::Approach { to }));
+        let joints = begins || turned.is_some_and(|turned| turned.far);
+        out.extend(legs.by_ref().take(usize::from(joints)).map(|to| Instruction::Approach { to }));
         out.extend(legs.map(|to| Instruction::Travel { to }));
         out.push(Instruction::Above);
         if self.restarts {

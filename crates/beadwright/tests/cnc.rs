@@ -167,24 +167,31 @@ fn hal_ends_the_arc_where_it_is_lost_and_where_no_program_runs() {
     let head = "loadrt threads name1=servo-thread period1=1000000 fp1=1".to_owned();
     let outputs = ["arc-output", "wire-output", "gas-output", "arc-lost"];
     // What is set, after how long it is looked, and what is then on of arc, wire and gas, and whether the feed is held.
-    let steps: [(&[&str], f64, [bool; 4]); 9] = [
+    let steps: &[(&[&str], f64, [bool; 4])] = &[
         (&["program-runs 1", "gas-commanded 1"], 0.1, [false, false, true, false]),
-        (&["wire-commanded 1", "arc-commanded 1"], 0.1, [true, true, true, false]),
-        (&["arc-current 1"], 0.1, [true, true, true, false]),
+        (&["arc-commanded 1"], 0.1, [true, false, true, false]),
+        (&["arc-current 1", "wire-commanded 1"], 0.1, [true, true, true, false]),
         // A flicker is no lost arc; a lost arc ends all, gas 5 s later, and does not come back by itself.
         (&["arc-current 0"], 0.04, [true, true, true, false]),
         (&[], 0.3, [false, false, true, true]),
         (&["arc-current 1"], 5.5, [false, false, false, true]),
-        // An abort ends the spindle, and leaves the outputs; the next program strikes anew.
-        (&["arc-current 0", "arc-commanded 0", "program-runs 0"], 0.2, [false, false, false, false]),
-        (&["program-runs 1", "arc-commanded 1", "arc-current 1"], 0.2, [true, true, true, false]),
+        // An abort ends the spindle, and leaves the outputs: no later program or MDI command feeds wire before M65 P1.
+        (&["arc-current 0", "arc-commanded 0", "program-runs 0"], 0.2, [false, false, false, true]),
+        (&["program-runs 1"], 0.2, [false, false, false, true]),
+        (&["wire-commanded 0"], 0.2, [false, false, true, false]),
+        (&["arc-commanded 1"], 0.2, [true, false, true, false]),
+        (&["arc-current 1", "wire-commanded 1"], 0.2, [true, true, true, false]),
+        // The spindle is stopped by hand: wire without an arc.
+        (&["arc-commanded 0", "arc-current 0"], 0.3, [false, false, true, true]),
+        (&["wire-commanded 0", "arc-commanded 1"], 0.2, [true, false, true, false]),
+        (&["arc-current 1", "wire-commanded 1"], 0.2, [true, true, true, false]),
         // A pause: arc and wire end, gas later.
-        (&["program-runs 0"], 0.1, [false, false, true, false]),
+        (&["program-runs 0"], 0.05, [false, false, true, false]),
     ];
     let mut script = vec![head];
     script.extend(lines.lines().filter(own).map(str::to_owned));
     script.push("start".to_owned());
-    for (set, seconds, _) in &steps {
+    for (set, seconds, _) in steps {
         script.extend(set.iter().map(|set| format!("sets {set}")));
         script.push(format!("loadusr -w sleep {seconds}"));
         script.extend(outputs.iter().map(|output| format!("gets {output}")));

@@ -37,6 +37,10 @@ pub struct ProgramSettings {
     /// part and whose angle grows counter-clockwise as seen from above, turns with the torch, and the controller moves both
     /// together. KRL and RAPID write it, as `table_angle`, in whose place it stands. Leave it out if the table stands still.
     pub table_side: Option<f64>,
+    /// Between which angles a table that turns with the torch (`table_side`) may turn, least and greatest, °: passes begin where it
+    /// can follow them to their end, and at the end of its range it stops while the torch goes on around it. Leave it out if the table
+    /// turns without end.
+    pub table_range: Option<[f64; 2]>,
     /// Which part of a wall's lean the torch takes on (work angle), 0 to 1; 0, the default, leaves it as in the robot's
     /// section. Robots only.
     pub follow_wall: f64,
@@ -68,6 +72,7 @@ impl Default for ProgramSettings {
             linear_axis: None,
             table_angle: None,
             table_side: None,
+            table_range: None,
             follow_wall: 0.0,
             max_work_angle: 30.0,
             travel_angle: 0.0,
@@ -124,6 +129,10 @@ impl ProgramSettings {
                 value: format!("{side}"),
                 reason: reason.to_owned(),
             });
+        }
+        if let Some([low, high]) = self.table_range.filter(|[low, high]| !(low + 360.0 <= *high && high - low < 1e5)) {
+            let reason = "the least angle comes first, and the table must turn by 360° at least.".to_owned();
+            return Some(Broken { key: "program.table_range".to_owned(), value: format!("[{low}, {high}]"), reason });
         }
         let reason = if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
             "0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move."

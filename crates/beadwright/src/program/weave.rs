@@ -142,7 +142,7 @@ mod tests {
         assert!((time(path[0], &swings) - 50.0 / 6.0 - 50.0 / 12.0).abs() < 1e-3);
         let steps: Vec<f64> = swings.windows(2).map(|pair| pair[1].to.x - pair[0].to.x).collect();
         assert!(steps[..steps.len() - 1].iter().all(|step| (step - 2.0).abs() < 2e-3), "{steps:?}");
-        assert!((swings[80].speed / swings[20].speed - 2.0).abs() < 1e-3);
+        assert!((swings[40].speed / swings[10].speed - 2.0).abs() < 1e-3);
     }
 
     /// Around a circle the swings stay beside it, and a path that is shorter than a half wave stays as it is.

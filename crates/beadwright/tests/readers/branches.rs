@@ -74,9 +74,9 @@ pub fn resolve(text: &str, start: &mut f64) -> String {
 const SILENT: [&str; 11] = [
     "$FLAG[1] = FALSE",
     "set_runstate_",
-    "INTERRUPT DECL 1",
-    "INTERRUPT ON 1",
-    "INTERRUPT OFF 1",
+    "INTERRUPT DECL ",
+    "INTERRUPT ON ",
+    "INTERRUPT OFF ",
     "WAIT FOR",
     "HALT",
     "kill ",
@@ -107,9 +107,18 @@ fn is_reset(line: &str) -> bool {
 
 fn holds(line: &str, start: f64) -> bool {
     if line.starts_with("thread ")
-        || ["NOT $IN[", "NOT $FLAG[", "WHILE late", "not get_", "[#5399 LT 0]", "MACH_DEF_INDEX <> "]
-            .iter()
-            .any(|asks| line.contains(asks))
+        || [
+            "NOT ($IN[",
+            "OR NOT $OUT[",
+            "NOT $FLAG[",
+            "WHILE late",
+            "while get_",
+            "not (get_",
+            "[#5399 LT 0]",
+            "MACH_DEF_INDEX <> ",
+        ]
+        .iter()
+        .any(|asks| line.contains(asks))
     {
         return false;
     }

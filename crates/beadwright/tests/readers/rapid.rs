@@ -71,7 +71,7 @@ fn pgf(text: &str) -> BTreeSet<String> {
 }
 
 /// Routines of the watch over the arc.
-const WATCH: [&str; 4] = ["WatchArc", "ArcBurns", "tArcLost", "AllOff"];
+const WATCH: [&str; 3] = ["WatchArc", "ArcBurns", "tArcLost"];
 
 /// Statements of that watch.
 const WATCHING: [&str; 2] = ["IDelete", "TriggStopProc"];
@@ -303,7 +303,8 @@ impl Reader<'_> {
             "PDispOff" => self.machine.lift = 0.0,
             "ActUnit" => assert!(self.active.insert(rest.to_owned()), "{rest} is active already"),
             "WatchArc" | "ArcBurns" => assert!(self.machine.burns(), "the arc is looked at before it is lit"),
-            "AllOff" => assert!(!self.machine.burns()),
+            // No current flows before the arc is struck.
+            "WaitDI" => assert!(rest == "diArc,0" && !self.machine.burns(), "{statement}"),
             _ if WATCHING.contains(&word) => {}
             "MoveAbsJ" => {
                 assert!(!self.machine.burns());

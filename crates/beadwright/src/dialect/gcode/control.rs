@@ -133,7 +133,7 @@ mod tests {
             ("com1", "PART_COM1"),
             ("cycle832", "PART_CYCLE832"),
             ("", "PART_"),
-            ("a long name of a part that goes on", "A_LONG_NAME_OF_A_PART_TH"),
+            ("the long name of a part that goes on", "THE_LONG_NAME_OF_A_PART_"),
         ] {
             assert_eq!(Siemens.file_name(part), name);
         }

@@ -8,6 +8,7 @@ use super::review;
 use crate::dialect::reading::fault::{RAPID_WITH_ARC, TURNING_TORCH, TWO_SWITCHES};
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
+use crate::dialect::reading::truth::truth;
 use crate::dialect::reading::words::{
     Patterns, arguments, before_comment, begins_with, compact, name, number, strip_word, unscoped,
 };
@@ -289,18 +290,21 @@ impl Reader<'_> {
         let known = if word.eq_ignore_ascii_case("FOR") {
             turns(lines[i], "=", Counting::Up)
         } else {
-            let condition = compact(rest);
-            if condition.contains("$IN[") {
+            if rest.to_ascii_uppercase().contains("$IN[") {
                 self.trace.watch.look();
             }
-            let condition = condition.strip_suffix("THEN").unwrap_or(&condition);
+            let condition =
+                rest.len().checked_sub(4).filter(|at| rest.get(*at..).is_some_and(|w| w.eq_ignore_ascii_case("THEN")));
+            let condition = condition.map_or(rest, |at| &rest[..at]);
             let until = behind(i + 1, lines.len(), |at| mark(lines[at]));
             let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
             let loops = word.eq_ignore_ascii_case("WHILE");
-            let taken = holds(condition, |name| self.values.get(name).copied()).filter(|_| !loops);
+            let compared = |part: &str| holds(&compact(part), |name| self.values.get(name).copied()).filter(|_| !loops);
+            let on = |part: &str| compared(part).or_else(|| self.is_on(part));
             let waits =
                 lines[i + 1..until].iter().all(|line| WAITING.iter().any(|word| strip_word(line, word).is_some()));
-            taken.or_else(|| input(condition).filter(|_| !moves)).or(waits.then_some(false)).map(u64::from)
+            let known = truth(condition, &compared).or_else(|| truth(condition, &on).filter(|_| !moves));
+            known.or(waits.then_some(false)).map(u64::from)
         };
         known.map_or_else(
             || {
@@ -310,6 +314,18 @@ impl Reader<'_> {
             },
             Next::Turns,
         )
+    }
+
+    /// Whether an input, a flag or an output is on while all is well: inputs and flags of a burning arc or of a watch are.
+    fn is_on(&self, part: &str) -> Option<bool> {
+        let flat = compact(part);
+        let (kind, number) = flat.strip_suffix(']')?.split_once('[')?;
+        let number = number.parse::<u32>().ok()?;
+        match kind {
+            "$IN" | "$FLAG" => Some(true),
+            "$OUT" => self.outputs.contains(&number).then_some(true),
+            _ => None,
+        }
     }
 
     fn statement(&mut self, line: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
@@ -650,14 +666,6 @@ fn mark(line: &str) -> Option<Mark> {
     let is = |word: &str| strip_word(line, word).is_some();
     let of = |(begin, end): &(&str, &str)| is(begin).then_some(Mark::Begin).or_else(|| is(end).then_some(Mark::End));
     BLOCKS.iter().find_map(of).or_else(|| is("ELSE").then_some(Mark::Else))
-}
-
-/// What a condition on an input or a flag alone is while all is well: those of a burning arc or of a watch are on.
-fn input(condition: &str) -> Option<bool> {
-    let (condition, wanted) = condition.strip_prefix("NOT").map_or((condition, true), |rest| (rest, false));
-    let condition = condition.trim_matches(['(', ')']);
-    let inside = condition.strip_prefix("$IN[").or_else(|| condition.strip_prefix("$FLAG["))?;
-    inside.strip_suffix(']').is_some_and(|number| number.bytes().all(|b| b.is_ascii_digit())).then_some(wanted)
 }
 
 /// Number and state of an output that a compact statement switches.

@@ -8,6 +8,7 @@ use super::{module, review};
 use crate::dialect::reading::fault::{CONFIGURATION, RAPID_WITH_ARC, TWO_SWITCHES, WEAVE_PITCH};
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
+use crate::dialect::reading::truth::truth;
 use crate::dialect::reading::words::{Patterns, arguments, begins_with, compact, name, number, strip_word, unscoped};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
@@ -220,7 +221,7 @@ impl Reader<'_> {
                 let next = match (strip_word(text, "IF"), strip_word(text, "WHILE")) {
                     (Some(condition), _) => Next::taken(self.holds(condition, module).or_else(waits)),
                     // A loop that goes on while something is late.
-                    (_, Some(condition)) => Next::taken(self.is_late(condition).or_else(waits)),
+                    (_, Some(condition)) => Next::taken(self.goes_on(condition).or_else(waits)),
                     _ => turns(text, "FROM", Counting::Towards).map_or(Next::On, Next::Turns),
                 };
                 if next == Next::On {
@@ -246,10 +247,18 @@ impl Reader<'_> {
         holds(condition.strip_suffix("THEN").unwrap_or(&condition), value)
     }
 
-    /// Whether a condition is the flag of a wait that may come too late: while all is well none does.
-    fn is_late(&self, condition: &str) -> Option<bool> {
-        let condition = compact(condition).to_ascii_uppercase();
-        self.in_time.contains(condition.strip_suffix("DO").unwrap_or(&condition)).then_some(false)
+    /// Whether a loop goes on whose condition asks flags of waits that may come too late, and outputs: while all is well none
+    /// does, and outputs are as they were set.
+    fn goes_on(&self, condition: &str) -> Option<bool> {
+        let end = condition.to_ascii_uppercase().strip_suffix("DO").map_or(condition.len(), str::len);
+        truth(&condition[..end], &|part| {
+            let flat = compact(part);
+            let output = flat.strip_prefix("DOUTPUT(").and_then(|rest| rest.split_once(")="));
+            let set = |(name, value): (&str, &str)| {
+                self.outputs.contains(name).then(|| value == "1").filter(|_| ["0", "1"].contains(&value))
+            };
+            self.in_time.contains(&flat).then_some(false).or_else(|| set(output?))
+        })
     }
 
     fn statement(&mut self, text: &str, line: usize, module: &Rc<Module>, depth: usize) -> Result<(), ReadError> {

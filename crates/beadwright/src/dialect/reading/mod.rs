@@ -16,6 +16,7 @@ pub(super) mod fault;
 mod layers;
 pub(super) mod loops;
 pub(super) mod trace;
+pub(super) mod truth;
 pub(super) mod watch;
 pub(super) mod words;
 

@@ -7,6 +7,7 @@
 use crate::dialect::reading::fault::{ENDLESS_WAIT, LEFT_ON, RAPID_WITH_ARC, STOP_LEAVES_ON, TOO_LARGE, TURNING_TORCH};
 use crate::dialect::reading::loops::{Mark, Next, behind, holds, stepped, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
+use crate::dialect::reading::truth::truth;
 use crate::dialect::reading::words::{Patterns, arguments, before_comment, compact, name, number, strip_word};
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
 use glam::{DQuat, DVec3};
@@ -229,14 +230,22 @@ impl Reader {
     fn turns(&mut self, lines: &[(usize, String)]) -> Option<u64> {
         let head = &lines.first()?.1;
         let until = behind(1, lines.len(), |at| mark(&lines[at].1));
-        let moves = lines[1..until].iter().any(|(_, line)| line.starts_with("move"));
+        let called = |line: &str| self.functions.get(name(line).0).is_some_and(moves_directly);
+        let moves = lines[1..until].iter().any(|(_, line)| line.starts_with("move") || called(line));
         let (word, condition) = name(head);
-        if input(condition).is_some() {
+        let condition = condition.trim_end_matches(':');
+        if condition.contains("digital_in(") {
             self.trace.watch.look();
         }
-        let asked = input(condition).filter(|_| ["if", "while"].contains(&word) && !moves);
-        let branch = || holds(condition.trim_end_matches(':'), |name| self.number(name)).filter(|_| word == "if");
-        if let Some(taken) = asked.or_else(branch) {
+        let inner = lines.get(1..until - 1).unwrap_or_default();
+        let waits = inner.iter().all(|(_, line)| ["sleep", "sync"].contains(&name(line).0));
+        if word == "while" && waits && input(condition).is_some() {
+            return Some(0);
+        }
+        let compared = |part: &str| holds(part, |name| self.number(name)).filter(|_| word == "if");
+        let on = |part: &str| compared(part).or_else(|| input(part)).or_else(|| self.output_is_on(part));
+        let asked = || truth(condition, &on).filter(|_| ["if", "while"].contains(&word) && !moves);
+        if let Some(taken) = truth(condition, &compared).or_else(asked) {
             return Some(taken.into());
         }
         let condition = strip_word(head, "while")?.trim_end_matches(':').trim();
@@ -253,6 +262,14 @@ impl Reader {
             true if below == (step > 0.0) => stepped(from, to, step),
             true => None,
         }
+    }
+
+    /// Whether `get_standard_digital_out(1)` is on, which it is where the program has switched it on.
+    fn output_is_on(&self, part: &str) -> Option<bool> {
+        let flat = compact(part);
+        let (read, number) = flat.strip_suffix(')')?.split_once('(')?;
+        let number = number.parse().ok().filter(|_| read.starts_with("GET_") && read.ends_with("_OUT"))?;
+        self.outputs.contains(&number).then_some(true)
     }
 
     fn call(&mut self, function: &str, line: usize, depth: usize) -> Result<(), ReadError> {
@@ -300,8 +317,7 @@ impl Reader {
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
             self.trace.dwell += wait.max(0.0);
         } else if let Some(thread) = started(text) {
-            let moves = |body: &Rc<Body>| body.iter().any(|(_, line)| line.starts_with("move"));
-            if self.functions.get(thread).is_none_or(moves) {
+            if self.functions.get(thread).is_none_or(moves_directly) {
                 self.trace.note(thread, "runs beside the program and was left out", line);
             }
             let watches = |body: &Rc<Body>| {
@@ -428,6 +444,11 @@ impl Reader {
     }
 }
 
+/// Whether a function moves the torch by itself.
+fn moves_directly(body: &Rc<Body>) -> bool {
+    body.iter().any(|(_, line)| line.starts_with("move"))
+}
+
 /// Whether the block at the start of these lines moves the torch.
 fn moves_or_calls(lines: &[(usize, String)]) -> bool {
     let until = behind(1, lines.len(), |at| mark(&lines[at].1));
@@ -446,13 +467,14 @@ fn started(text: &str) -> Option<&str> {
     strip_word(text, "run").map(|thread| name(thread).0)
 }
 
-/// What a condition on an input alone is while all is well: inputs such as that of a burning arc are on.
+/// What a condition on inputs alone is while all is well: inputs such as that of a burning arc are on.
 fn input(condition: &str) -> Option<bool> {
-    let condition = condition.trim_end_matches(':').trim();
-    let (condition, wanted) = strip_word(condition, "not").map_or((condition, true), |rest| (rest, false));
-    let (called, rest) = name(condition);
-    let reads = called.starts_with("get_") && called.ends_with("_in") && rest.starts_with('(') && rest.ends_with(')');
-    reads.then_some(wanted)
+    truth(condition.trim_end_matches(':'), &|part| {
+        let (called, rest) = name(part.trim());
+        let reads =
+            called.starts_with("get_") && called.ends_with("_in") && rest.starts_with('(') && rest.ends_with(')');
+        reads.then_some(true)
+    })
 }
 
 /// Where a block begins or ends.

@@ -7,10 +7,10 @@ PROTECT = READ_WRITE;
 DEFAULT_GROUP = 1,*,*,*,*;
 /MN
    1:  !The cell must supply: ;
-   2:  !The arc's signal is wired: FANUC ;
-   3:  !arc detect, Yaskawa arc ;
-   4:  !confirmation, UR input 0 (on ;
-   5:  !while current flows). ;
+   2:  !The signal that current flows: ;
+   3:  !arc detect (FANUC), arc ;
+   4:  !confirmation (Yaskawa), input 0 ;
+   5:  !(UR), on while it does. ;
    6:  !The emergency stop also switches ;
    7:  !the power source off. ;
    8:  !Shielding gas has pressure, and ;

@@ -1,8 +1,8 @@
 MODULE demo
   ! demo, cmt-steel-robots
   ! The cell must supply:
-  ! The arc's signal is wired: FANUC arc detect, Yaskawa arc confirmation, UR
-  ! input 0 (on while current flows).
+  ! The signal that current flows: arc detect (FANUC), arc confirmation
+  ! (Yaskawa), input 0 (UR), on while it does.
   ! The emergency stop also switches the power source off.
   ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];

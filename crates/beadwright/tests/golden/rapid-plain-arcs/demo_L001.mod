@@ -8,6 +8,7 @@ MODULE demo_L001
     MoveL [[35.000,20.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
+    WaitDI diArc,0;
     SetDO doGas,1;
     WaitTime \InPos,0.5;
     SetDO doArc,1;
@@ -29,6 +30,7 @@ MODULE demo_L001
     MoveL [[50.000,5.000,1.419],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 2 infill
     WaitTime \InPos,0;
+    WaitDI diArc,0;
     SetDO doGas,1;
     WaitTime \InPos,0.5;
     SetDO doArc,1;

@@ -1,8 +1,8 @@
 MODULE demo
   ! demo, cmt-steel-robots
   ! The cell must supply:
-  ! The arc's signal is wired: FANUC arc detect, Yaskawa arc confirmation, UR
-  ! input 0 (on while current flows).
+  ! The signal that current flows: arc detect (FANUC), arc confirmation
+  ! (Yaskawa), input 0 (UR), on while it does.
   ! The emergency stop also switches the power source off.
   ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
@@ -29,7 +29,8 @@ MODULE demo
     Load \Dynamic,"HOME:/part/demo_L002.mod";
     %"demo_L002:Layer002"%;
     UnLoad "HOME:/part/demo_L002.mod";
-    AllOff;
+    SetDO doArc,0;
+    SetDO doGas,0;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
   PROC WatchArc()
@@ -37,26 +38,22 @@ MODULE demo
     CONNECT iArc WITH tArcLost;
     ISignalDI \SingleSafe,diArc,0,iArc;
   ENDPROC
-  PROC AllOff()
-    SetDO doArc,0;
-    SetDO doGas,0;
-  ENDPROC
   PROC ArcBurns()
     VAR num tried:=1;
     VAR bool late:=FALSE;
     WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
-    WHILE late DO
+    WHILE late OR DOutput(doGas)=0 DO
       SetDO doArc,0;
       IF tried>=3 THEN
         WaitTime 5;
         SetDO doGas,0;
         TPWrite "The arc does not burn. Start strikes it again.";
         Stop;
-        SetDO doGas,1;
-        WaitTime 0.5;
         tried:=0;
       ENDIF
       tried:=tried+1;
+      SetDO doGas,1;
+      WaitTime 0.5;
       SetDO doArc,1;
       WaitTime 0.2;
       WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;

@@ -1,8 +1,11 @@
 MODULE frame
   ! frame, cmt-steel-abb
   ! The cell must supply:
-  ! RobotWare Arc watches the arc; with arc = "plain" diArc is on while current
-  ! flows, and programs wait for it.
+  ! RobotWare Arc watches the arc. With arc = "plain" diArc is on while current
+  ! flows: programs wait for it, and stop
+  ! where it goes off; doShadow is an output without a wire, and a routine of
+  ! the cell ends doArc and doGas at the events
+  ! STOP and QSTOP (docs/dialects/rapid.md).
   ! The emergency stop also switches the power source off.
   ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
@@ -23,7 +26,8 @@ MODULE frame
     TriggStopProc rdArc\DO1:=doArc,doShadow;
     %"frame_L001:Layer001"%;
     %"frame_L002:Layer002"%;
-    AllOff;
+    SetDO doArc,0;
+    SetDO doGas,0;
     MoveAbsJ jHome,vHome,fine,tTorch\WObj:=wPart;
   ENDPROC
   PROC WatchArc()
@@ -31,26 +35,22 @@ MODULE frame
     CONNECT iArc WITH tArcLost;
     ISignalDI \SingleSafe,diArc,0,iArc;
   ENDPROC
-  PROC AllOff()
-    SetDO doArc,0;
-    SetDO doGas,0;
-  ENDPROC
   PROC ArcBurns()
     VAR num tried:=1;
     VAR bool late:=FALSE;
     WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;
-    WHILE late DO
+    WHILE late OR DOutput(doGas)=0 DO
       SetDO doArc,0;
       IF tried>=3 THEN
         WaitTime 5;
         SetDO doGas,0;
         TPWrite "The arc does not burn. Start strikes it again.";
         Stop;
-        SetDO doGas,1;
-        WaitTime 0.5;
         tried:=0;
       ENDIF
       tried:=tried+1;
+      SetDO doGas,1;
+      WaitTime 0.5;
       SetDO doArc,1;
       WaitTime 0.2;
       WaitDI diArc,1\MaxTime:=3\TimeFlag:=late;

@@ -11,6 +11,7 @@ MODULE frame_L002
     MoveL [[0.000,0.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 1 contour
     WaitTime \InPos,0;
+    WaitDI diArc,0;
     SetDO doGas,1;
     WaitTime \InPos,0.5;
     SetDO doArc,1;
@@ -33,6 +34,7 @@ MODULE frame_L002
     MoveL [[5.000,10.000,2.837],[0.0000000,1.0000000,0.0000000,0.0000000],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]],vTravel,fine,tTorch\WObj:=wPart;
     ! pass 2 infill
     WaitTime \InPos,0;
+    WaitDI diArc,0;
     SetDO doGas,1;
     WaitTime \InPos,0.5;
     SetDO doArc,1;

@@ -1,8 +1,11 @@
 MODULE frame
   ! frame, cmt-steel-abb
   ! The cell must supply:
-  ! RobotWare Arc watches the arc; with arc = "plain" diArc is on while current
-  ! flows, and programs wait for it.
+  ! RobotWare Arc watches the arc. With arc = "plain" diArc is on while current
+  ! flows: programs wait for it, and stop
+  ! where it goes off; doShadow is an output without a wire, and a routine of
+  ! the cell ends doArc and doGas at the events
+  ! STOP and QSTOP (docs/dialects/rapid.md).
   ! The emergency stop also switches the power source off.
   ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
