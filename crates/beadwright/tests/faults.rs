@@ -218,6 +218,16 @@ const SEEDS: &[Seed] = &[
     ("gcode", as_it_is, "M3 S1", "M3", "no-output"),
     ("krl", arctech, "PTP XHOME\r\nEND", "$OUT[2] = FALSE\r\nPTP XHOME\r\nEND", "two-switches"),
     ("rapid", as_it_is, "    MoveAbsJ jHome,vHome,fine,tTorch\\WObj:=wPart;\r\n  ENDPROC", "    SetDO doArc,0;\r\n  ENDPROC", "two-switches"),
+    // Halts, waits and ends that nobody expects.
+    ("krl", as_it_is, "WAIT SEC 0\r\n", "HALT\r\n", "left-on"),
+    ("krl", as_it_is, "WAIT SEC 0\r\n", "WAIT FOR $IN[7]\r\n", "endless-wait"),
+    ("krl", as_it_is, "$OUT[1] = FALSE", "$OUT[3] = FALSE", "left-on"),
+    ("rapid", as_it_is, ",fine,tTorch\\WObj:=wPart;", ",z5,tTorch\\WObj:=wPart;", "blended-switch"),
+    ("urscript", as_it_is, "v=0.010400)\n    kill watch", "v=0.010400, r=0.0005)\n    kill watch", "unwatched-end"),
+    ("fanuc", as_it_is, "  Weld End", "  PAUSE ;\r\n   9:  Weld End", "left-on"),
+    ("fanuc", as_it_is, "  Weld End", "  WAIT DI[3]=ON ;\r\n   9:  Weld End", "endless-wait"),
+    ("inform", as_it_is, "ARCOF", "PAUSE\r\nARCOF", "left-on"),
+    ("inform", as_it_is, "ARCOF", "WAIT IN#(3)=ON\r\nARCOF", "endless-wait"),
     // Postures, weaves, shifts.
     ("rapid", as_it_is, "    ConfJ \\Off;\r\n", "", "configuration"),
     ("rapid", as_it_is, "    ConfL \\Off;\r\n", "", "configuration"),
@@ -250,6 +260,39 @@ fn every_fault_that_is_put_in_is_found() {
     println!("{found:?}");
     assert!(missed.is_empty(), "{}", missed.join("\n"));
     assert!(found.values().sum::<usize>() >= 30, "{found:?}");
+}
+
+/// What is right in programs of other hands is not found.
+#[test]
+fn what_is_right_is_not_found() {
+    for (post, ask, old, new) in [
+        ("krl", arctech as Ask, "PTP XHOME\r\nEND", "$OUT[40] = TRUE\r\nPTP XHOME\r\nEND"),
+        ("krl", as_it_is, "A6 0.0}", "A6 0.0,E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0}"),
+        ("rapid", plain, "SetDO doArc,1;", "SetDO doArc,1;\r\n    SetDO doLamp,low;"),
+        ("rapid", as_it_is, "    MoveAbsJ jHome", "    SetDO doLamp,high;\r\n    MoveAbsJ jHome"),
+        ("fanuc", weave, "  Weave End ;\r\n", ""),
+    ] {
+        let mut profile = base();
+        ask(&mut profile);
+        let files = written(post, &profile);
+        assert!(files.values().any(|text| text.contains(old)), "{post}: {old}");
+        let changed = |text: &String| match post {
+            // The weave ends behind the arc.
+            "fanuc" => {
+                let lines: Vec<&str> = text.split_inclusive('\n').filter(|line| !line.contains(old)).collect();
+                let ended = |line: &&str| line.contains("Weld End");
+                lines
+                    .iter()
+                    .flat_map(|line| [Some(*line), ended(line).then_some("   0:  Weave End ;\r\n")])
+                    .flatten()
+                    .collect()
+            }
+            _ => text.replace(old, new),
+        };
+        let files: Files = files.iter().map(|(name, text)| (name.clone(), changed(text))).collect();
+        let found: Vec<String> = faults(post, &profile, &files).iter().map(Fault::to_string).collect();
+        assert!(found.is_empty(), "{post}: {found:?}");
+    }
 }
 
 /// Sizes and names that a controller does not take.

@@ -34,7 +34,9 @@ pub(crate) fn with_all_dialects(name: &str) -> Profile {
     // Parts stay where they are, as with robots.
     all.dialects.marlin.as_mut().expect("just set").bed = None;
     all.dialects.krl.as_mut().expect("just set").table_machine = Some(2);
-    all.dialects.rapid.as_mut().expect("of the ABB cell").table_unit = Some("STN1".to_owned());
+    // The part stands on the axis of the table.
+    let rapid = all.dialects.rapid.as_mut().expect("of the ABB cell");
+    (rapid.table_unit, rapid.part_frame) = (Some("STN1".to_owned()), Some([0.0, 0.0, 400.0, 1.0, 0.0, 0.0, 0.0]));
     (all.dialects.fanuc, all.dialects.inform, all.dialects.urscript) = (robots.fanuc, robots.inform, robots.urscript);
     all
 }

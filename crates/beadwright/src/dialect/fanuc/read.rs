@@ -3,9 +3,7 @@
 //! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
 //! them, on lines of their own or after a motion, or by the codes in the options.
 
-use crate::dialect::reading::fault::{
-    BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON, WEAVE_PITCH,
-};
+use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON, WEAVE_PITCH};
 use crate::dialect::reading::loops::{Counting, Mark, Next, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, begins_with, compact, name, number};
@@ -213,14 +211,15 @@ impl Reader<'_> {
         if self.switches(&flat, line) {
         } else if let Some(kind) = flat.strip_prefix("WEAVE") {
             self.weaves(kind);
-        } else if is(&"PAUSE") && self.trace.arc {
-            let place = Some(self.trace.place(line));
-            self.trace.faults.add(&LEFT_ON, place, "the program pauses with the arc on.");
+        } else if is(&"PAUSE") || is(&"ABORT") {
+            self.trace.halts(word, line);
         } else if is(&"WAIT") {
             // Other waits are for signals.
             if let Some(seconds) = rest.split_once("(sec)").map(|(seconds, _)| seconds) {
                 let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
                 self.trace.dwell += wait.max(0.0);
+            } else if !flat.contains("TIMEOUT") {
+                self.trace.waits(text.trim_end_matches(';').trim(), line);
             }
         } else if is(&"CALL") || is(&"RUN") {
             return self.call(rest, line, depth);
@@ -258,9 +257,6 @@ impl Reader<'_> {
                 let what = if on { "struck" } else { "ended" };
                 let text = format!("the arc is {what} behind a move with {end}.");
                 self.trace.faults.add(&BLENDED_SWITCH, place.clone(), text);
-            }
-            if self.weave.is_some() && off && self.trace.arc {
-                self.trace.faults.add(&WEAVE_LEFT_ON, place, "the arc ends while the torch still weaves.");
             }
             self.pitch = None;
             self.trace.set_arc(on, line);

@@ -82,7 +82,7 @@ impl CncGcode {
     }
 
     fn comment(&self, text: &mut String, comment: &str) {
-        let clean = comment.replace(['(', ')'], "_").to_uppercase();
+        let clean = comment.replace(['(', ')'], "_").replace(';', ",").to_uppercase();
         let clean = &clean[..clean.len().min(MAX_COMMENT)];
         match self.gcode.comments {
             GcodeComments::Parentheses => text.push_str(&format!("({clean})\n")),

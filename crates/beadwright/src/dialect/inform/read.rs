@@ -6,7 +6,7 @@
 //! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
 //! circle, so a chain that leaves its circle is noted).
 
-use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, LEFT_ON, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON};
+use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON};
 use crate::dialect::reading::loops::{Next, holds, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
@@ -201,9 +201,6 @@ impl Reader<'_> {
                     format!("the arc is {what} behind a move with {level}."),
                 );
             }
-            if off && self.weaves && self.trace.arc {
-                self.trace.faults.add(&WEAVE_LEFT_ON, place, "the arc ends while the torch still weaves.");
-            }
             self.end_circle();
             self.trace.set_arc(on, line);
         } else if word == "TIMER" {
@@ -225,11 +222,10 @@ impl Reader<'_> {
             self.weaves = word == "WVON";
         } else if word == "SFTOF" {
             self.shifts = false;
-        } else if word == "PAUSE" {
-            if self.trace.arc {
-                let place = Some(self.trace.place(line));
-                self.trace.faults.add(&LEFT_ON, place, "the job pauses with the arc on.");
-            }
+        } else if word == "PAUSE" || word == "ABORT" {
+            self.trace.halts(word, line);
+        } else if word == "WAIT" && !text.contains(" T=") {
+            self.trace.waits(text, line);
         } else if word == "SFTON" {
             self.shifts = true;
             if !self.unshifted {

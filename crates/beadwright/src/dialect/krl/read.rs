@@ -166,7 +166,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         None => (0, 1),
     };
     reader.run(main, start, 0)?;
-    let Reader { mut trace, sources, interrupts, lit_with, .. } = reader;
+    let Reader { mut trace, sources, interrupts, lit_with, outputs, .. } = reader;
+    let left: Vec<String> = outputs.intersection(&lit_with).map(|output| format!("$OUT[{output}]")).collect();
+    trace.ends_with(&left);
     review::program(&mut trace, &sources, &interrupts, &lit_with, options);
     trace.finish(super::DIALECT.language)
 }
@@ -354,6 +356,11 @@ impl Reader<'_> {
         }
         if strip_word(line, "WAIT").is_some() || strip_word(line, "HALT").is_some() {
             self.trace.watch.wait();
+            if flat.starts_with("HALT") {
+                self.trace.halts("HALT", number);
+            } else if flat.starts_with("WAITFOR") && !flat.contains("$TIMER") {
+                self.trace.waits(line, number);
+            }
         }
         if let Some(rest) = strip_word(line, "WAIT").and_then(|r| strip_word(r, "SEC")) {
             let seconds = words::number(rest);
@@ -456,7 +463,8 @@ impl Reader<'_> {
         } else {
             self.outputs.remove(&output);
         }
-        if self.forms {
+        let flat = compact(line);
+        if self.forms && (self.on.matches(&flat) || self.off.matches(&flat)) {
             let place = Some(self.trace.place(number));
             let text = format!("$OUT[{output}] is switched beside the forms of ArcTech.");
             self.trace.faults.add(&TWO_SWITCHES, place, text);

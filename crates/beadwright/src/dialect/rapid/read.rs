@@ -5,7 +5,7 @@
 
 use super::module::{Module, Target, Value};
 use super::{module, review};
-use crate::dialect::reading::fault::{CONFIGURATION, RAPID_WITH_ARC, TWO_SWITCHES, WEAVE_PITCH};
+use crate::dialect::reading::fault::{BLENDED_SWITCH, CONFIGURATION, RAPID_WITH_ARC, TWO_SWITCHES, WEAVE_PITCH};
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::truth::truth;
@@ -141,7 +141,9 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
     let main = reader.load(None, text)?;
     let entry = main.proc("main").or_else(|| main.first_proc()).ok_or(ReadError::NoProgram("RAPID"))?;
     reader.run(&main, entry, 0)?;
-    let Reader { mut trace, stops, lit_with, .. } = reader;
+    let Reader { mut trace, stops, lit_with, outputs, .. } = reader;
+    let left: Vec<String> = outputs.intersection(&lit_with).cloned().collect();
+    trace.ends_with(&left);
     review::program(&mut trace, &main, stops, &lit_with);
     trace.finish(super::DIALECT.language)
 }
@@ -332,19 +334,24 @@ impl Reader<'_> {
             self.trace.watch.disarm(&format!("{word} {}", rest.trim()), &mut self.trace.faults, place);
         } else if is("IWatch") && self.interrupts.contains_key(&first()) {
             self.trace.watch.arm();
-        } else if is("WaitDI") {
+        } else if is("WaitDI") || is("WaitUntil") {
             self.trace.watch.look();
+            if !flat.contains("\\MAXTIME") {
+                self.trace.waits(word, line);
+            }
+        } else if is("Stop") || is("EXIT") || is("UIMsgBox") || is("TPReadFK") {
+            self.trace.halts(word, line);
         } else if is("WaitTime") && flat.contains("\\INPOS") || is("WaitRob") {
             self.trace.watch.wait();
         } else if is("SetDO") || is("Set") || is("Reset") {
             let parts = arguments(rest);
             let output = parts.first().copied().unwrap_or_default().to_ascii_uppercase();
-            if is("Set") || parts.get(1) == Some(&"1") {
+            if is("Set") || parts.get(1).is_some_and(|state| *state == "1" || state.eq_ignore_ascii_case("high")) {
                 self.outputs.insert(output.clone());
             } else {
                 self.outputs.remove(&output);
             }
-            if self.package {
+            if self.package && (self.on.matches(flat) || self.off.matches(flat)) {
                 let place = Some(self.trace.place(line));
                 let text = format!("{output} is switched beside RobotWare Arc.");
                 self.trace.faults.add(&TWO_SWITCHES, place, text);
@@ -496,6 +503,11 @@ impl Reader<'_> {
         };
         let step = Step { speed: speed.unwrap_or(0.0), metal, width: None, line };
         self.package |= weld == Weld::Start;
+        let zone = at(speed_at + if weld == Weld::No { 1 } else { 3 });
+        if matches!(weld, Weld::Start | Weld::End) && !zone.eq_ignore_ascii_case("fine") {
+            let (place, what) = (self.trace.place(line), if weld == Weld::End { "ends" } else { "is struck" });
+            self.trace.faults.add(&BLENDED_SWITCH, Some(place), format!("the arc {what} at a point with zone {zone}."));
+        }
         let targets = (self.target(at(0), module, line)?, round.then(|| self.target(at(1), module, line)).transpose()?);
         if let (_, Some(Some(last))) | (Some(last), None) = targets {
             self.before_motion(&last, joint, rest, module, line);

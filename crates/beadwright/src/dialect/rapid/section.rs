@@ -290,6 +290,13 @@ impl Section for Rapid {
         if self.arc == RapidArc::Plain {
             needs::lines("rapid", &self.templates(), "SetAO aoWire,{{wire_feed_ratio}};", job)?;
         }
+        if job.program.table_side.is_some() && self.part_frame.is_some_and(|[x, y, ..]| x != 0.0 || y != 0.0) {
+            return Err(DialectError::Cannot {
+                dialect: "rapid",
+                what: "a part beside the axis of a table that turns with the torch (program.table_side)",
+                remedy: "The table turns about x = 0, y = 0 of the part: set the first two numbers of rapid.part_frame to 0.",
+            });
+        }
         let mut section = self.clone();
         if self.arc == RapidArc::Instructions {
             section.hooks.without_arc();

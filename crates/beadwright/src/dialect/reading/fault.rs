@@ -133,9 +133,12 @@ pub(in crate::dialect) struct Faults(Vec<Fault>);
 const MOST_OF_A_KIND: usize = 10;
 
 impl Faults {
-    /// Adds one at a place; the same again is counted.
+    /// Adds one at a place; the same at another place is counted, and a line has no kind twice.
     pub(in crate::dialect) fn add(&mut self, kind: &'static FaultKind, place: Option<Place>, text: impl Into<String>) {
         let text = text.into();
+        if place.is_some() && self.0.iter().any(|fault| fault.kind == kind && fault.place == place) {
+            return;
+        }
         let alike = |fault: &&mut Fault| fault.kind == kind && fault.text == text;
         if let Some(known) = self.0.iter_mut().find(alike) {
             known.count += 1;

@@ -1,6 +1,6 @@
 //! The moves of a program as a reader finds them: positions that may be unknown, arcs, notes.
 
-use super::fault::{Faults, LEFT_ON, MISSING_AXIS, STATIC_FRAME, TURNING_TORCH};
+use super::fault::{ENDLESS_WAIT, Faults, LEFT_ON, MISSING_AXIS, STATIC_FRAME, TURNING_TORCH};
 use super::watch::Watch;
 use super::{Metal, Move, Place, ReadError, ReadProgram};
 use crate::model::MAX_REACH_MM;
@@ -139,6 +139,8 @@ pub(in crate::dialect) struct Trace {
     tool: Option<DQuat>,
     /// Axes beside the robot's as the last target states them.
     axes: Option<[Option<f64>; 6]>,
+    /// The same of home.
+    home: Option<[Option<f64>; 6]>,
     /// Where the table stood when the arc was lit first, and how far it has turned since below a frame that stands, °: before
     /// the present move and behind it.
     table: Option<f64>,
@@ -166,6 +168,7 @@ impl Trace {
             bytes: 0,
             tool: None,
             axes: None,
+            home: None,
             table: None,
             turn: [0.0; 2],
             moves: Vec::new(),
@@ -215,6 +218,29 @@ impl Trace {
         self.arc = on;
     }
 
+    /// A statement halts the program, or asks somebody.
+    pub(in crate::dialect) fn halts(&mut self, statement: &str, line: usize) {
+        if self.arc {
+            let place = Some(self.place(line));
+            self.faults.add(&LEFT_ON, place, format!("{statement} halts the program with the arc on."));
+        }
+    }
+
+    /// A statement waits for a signal without a limit of time.
+    pub(in crate::dialect) fn waits(&mut self, statement: &str, line: usize) {
+        if self.arc {
+            let place = Some(self.place(line));
+            self.faults.add(&ENDLESS_WAIT, place, format!("{statement} waits for ever, with the arc on."));
+        }
+    }
+
+    /// The program ends with these outputs on, which were on while the arc burned.
+    pub(in crate::dialect) fn ends_with(&mut self, outputs: &[String]) {
+        if !outputs.is_empty() && !self.arc {
+            self.faults.add(&LEFT_ON, None, format!("the program ends with {} on.", outputs.join(" and ")));
+        }
+    }
+
     /// `Arc` or `Off` as it is now.
     pub(in crate::dialect) fn metal(&self) -> Metal {
         if self.arc { Metal::Arc } else { Metal::Off }
@@ -258,10 +284,14 @@ impl Trace {
         self.axes = Some(stated.axes);
     }
 
-    /// All targets state the same axes.
+    /// All targets state the same axes, and home states them too.
     pub(in crate::dialect) fn states_axes(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
-        let lacks = |axis: &usize| self.axes.is_some_and(|before| before[*axis].is_some() != axes[*axis].is_some());
-        if let Some(axis) = (0..6).find(lacks) {
+        let differs = |axis: &usize| match (self.axes, self.home) {
+            (Some(before), _) => before[*axis].is_some() != axes[*axis].is_some(),
+            (None, Some(home)) => axes[*axis].is_some() && home[*axis].is_none(),
+            (None, None) => false,
+        };
+        if let Some(axis) = (0..6).find(differs) {
             let (has, others) = if axes[axis].is_some() {
                 ("states", "targets before it do not")
             } else {
@@ -273,10 +303,15 @@ impl Trace {
         }
     }
 
-    /// Axes that a target without a place states: home.
+    /// Axes that a target without a place states: home. It may state axes that are not used.
     pub(in crate::dialect) fn home(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
-        self.states_axes(axes, what, line);
-        self.axes = Some(*axes);
+        let lacks = |axis: &usize| self.axes.is_some_and(|before| before[*axis].is_some()) && axes[*axis].is_none();
+        if let Some(axis) = (0..6).find(lacks) {
+            let text = format!("{what} does not state external axis {}, and others do.", axis + 1);
+            let place = Some(self.place(line));
+            self.faults.add(&MISSING_AXIS, place, text);
+        }
+        self.home = Some(*axes);
     }
 
     /// A straight move; axes without a value stand still.

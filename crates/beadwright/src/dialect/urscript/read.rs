@@ -90,6 +90,8 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     if let Some(first) = first.filter(|_| defines_only) {
         reader.call(&first, 1, 0)?;
     }
+    let left: Vec<String> = reader.outputs.intersection(&reader.lit_with).map(|n| format!("output {n}")).collect();
+    reader.trace.ends_with(&left);
     reader.review(options);
     reader.trace.finish(super::DIALECT.language)
 }
@@ -308,10 +310,10 @@ impl Reader {
                 self.low_when_stopped.insert(output);
             }
         } else if strip_word(text, "kill").is_some_and(|handle| Some(handle) == self.thread.as_deref()) {
-            // The statement before has ended when this one runs.
-            self.trace.watch.wait();
             let place = self.trace.place(line);
             self.trace.watch.disarm(text, &mut self.trace.faults, place);
+        } else if ["popup", "pause", "halt"].contains(&word) {
+            self.trace.halts(word, line);
         } else if word == "sleep" {
             let seconds = inside(rest);
             let wait = number(seconds).ok_or_else(|| self.trace.number_error(line, seconds))?;
@@ -410,6 +412,10 @@ impl Reader {
         });
         let place = self.trace.place(line);
         self.trace.watch.go(blended.then_some("a blend"), &mut self.trace.faults, place.clone());
+        if !blended {
+            // What follows is run when the robot stands.
+            self.trace.watch.wait();
+        }
         if let Some(Some(last)) = places.last() {
             let stated = Stated { tool: last.tool, axes: [None; 6] };
             self.trace.stand(&stated, last.at, "a pose", line);

@@ -11,5 +11,5 @@ pub(super) fn number(layer: usize, pass: usize) -> usize {
 
 /// What the head of a program says about its variable.
 pub(in crate::dialect) fn comment(variable: &str) -> String {
-    format!("{variable}: 0, or layer * 10000 + pass to begin at")
+    format!("{variable}: 0, or layer * 10000 + pass, 10001 or more")
 }

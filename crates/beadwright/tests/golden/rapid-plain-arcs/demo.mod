@@ -6,7 +6,7 @@ MODULE demo
   ! The emergency stop also switches the power source off.
   ! Shielding gas has pressure, and the fume extraction runs.
   TASK PERS tooldata tTorch:=[TRUE,[[85.000,0.000,320.000],[0.9238795,0.0000000,0.3826834,0.0000000]],[4.500,[30.000,0.000,120.000],[1,0,0,0],0,0,0]];
-  TASK PERS wobjdata wPart:=[FALSE,TRUE,"",[[900.000,0.000,400.000],[1.0000000,0.0000000,0.0000000,0.0000000]],[[0,0,0],[1,0,0,0]]];
+  TASK PERS wobjdata wPart:=[FALSE,TRUE,"",[[0.000,0.000,400.000],[1.0000000,0.0000000,0.0000000,0.0000000]],[[0,0,0],[1,0,0,0]]];
   CONST jointtarget jHome:=[[0.000,0.000,0.000,0.000,30.000,0.000],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
   CONST speeddata vHome:=[100.000,500.000,5000,1000];
   CONST speeddata vTravel:=[100.000,500.000,5000,1000];
