@@ -51,7 +51,7 @@ pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault>
     });
     let inside = |p: DVec2| boxes.inside(p, edges.len());
     outside(&lines, &cuts, &edges, inside, allowance)
-        .or_else(|| first(found).map(|(_, _, place)| Fault::Crossing { place }))
+        .or_else(|| first(found).map(|Crossing { place, .. }| Fault::Crossing { place }))
 }
 
 fn note(cuts: &mut BTreeMap<Number, Vec<f64>>, piece: Number, cut: Option<f64>) {
@@ -115,20 +115,31 @@ const MOST_SAMPLES: f64 = 4000.0;
 
 /// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
 /// Neighbouring pieces, and touching ends, do not count.
-pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = Crossing> {
+pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DVec2)> {
+    let mut found = crossing_pieces(lines);
+    found.sort_by(by_line);
+    found.into_iter().map(|Crossing { pieces: [(i, _), (j, _)], place }| (i, j, place))
+}
+
+/// The same with the numbers of the pieces, in no order.
+pub(super) fn crossing_pieces(lines: &[Vec<DVec2>]) -> Vec<Crossing> {
     let (numbers, pieces) = pieces(lines);
     let mut found = Vec::new();
     let boxes = Boxes::new(pieces.clone());
     boxes.pairs(|i, j| found.extend(crossing((numbers[i], pieces[i]), (numbers[j], pieces[j]))));
-    found.sort_by(by_line);
-    found.into_iter()
+    found
 }
 
-/// Where two lines cross: their numbers, the higher one first, and the place.
-type Crossing = (usize, usize, DVec2);
+/// Where two pieces cross.
+pub(super) struct Crossing {
+    /// The pieces: numbers of their lines, the higher one first, and their numbers in them.
+    pub(super) pieces: [Number; 2],
+    place: DVec2,
+}
 
 fn by_line(a: &Crossing, b: &Crossing) -> Ordering {
-    (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.x.total_cmp(&b.2.x)).then(a.2.y.total_cmp(&b.2.y))
+    let lines = |crossing: &Crossing| crossing.pieces.map(|(line, _)| line);
+    lines(a).cmp(&lines(b)).then(a.place.x.total_cmp(&b.place.x)).then(a.place.y.total_cmp(&b.place.y))
 }
 
 fn first(found: Vec<Crossing>) -> Option<Crossing> {
@@ -157,5 +168,5 @@ fn crossing(((i, k), [p, q]): (Number, Piece), ((j, l), [r, s]): (Number, Piece)
     let across = u.perp_dot(v);
     let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
     let inside = |x: f64| (INNER..1.0 - INNER).contains(&x);
-    (across != 0.0 && inside(t) && inside(w)).then(|| (i, j, p + u * t))
+    (across != 0.0 && inside(t) && inside(w)).then(|| Crossing { pieces: [(i, k), (j, l)], place: p + u * t })
 }

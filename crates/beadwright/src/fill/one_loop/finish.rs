@@ -6,6 +6,7 @@
 use super::LoopSettings;
 use super::line::Line;
 use super::room::Room;
+use super::tangles::tangled;
 use glam::DVec2;
 use planar::arcs::{Arc, Fit};
 
@@ -18,10 +19,31 @@ const GRID: f64 = 1e-6;
 /// Beads may reach this many bead widths beyond the outline: too low there to count as outside in the deposit model.
 const OUT: f64 = 0.005;
 
+/// Where lines lie so close that they would cross, they deviate by no more than these fractions of that.
+const CLOSER: [f64; 3] = [1.0, 0.3, 0.05];
+
+/// The lines, made of few pieces; lines that do not cross do not cross afterwards.
+pub fn all_finished(lines: &[Line], room: &Room, settings: &LoopSettings) -> Vec<Line> {
+    let finished = |closer: &f64| {
+        let tolerance = TOLERANCE * settings.width_step * closer;
+        lines.iter().map(|line| finished_to(line, tolerance, room, settings)).collect::<Vec<_>>()
+    };
+    let [first, others @ ..] = CLOSER.each_ref();
+    let first = finished(first);
+    if !tangled(&first) || tangled(lines) {
+        return first;
+    }
+    others.into_iter().map(finished).find(|lines| !tangled(lines)).unwrap_or(first)
+}
+
 /// The line, made of few pieces.
 pub fn finished(line: &Line, room: &Room, settings: &LoopSettings) -> Line {
+    finished_to(line, TOLERANCE * settings.width_step, room, settings)
+}
+
+fn finished_to(line: &Line, tolerance: f64, room: &Room, settings: &LoopSettings) -> Line {
     let w = settings.bead_width;
-    let fit = Fit { tolerance: TOLERANCE * settings.width_step, arcs: true, grid: GRID * w };
+    let fit = Fit { tolerance, arcs: true, grid: GRID * w };
     let (points, widths, thin) = opened(line, line.smooth_widths(settings.smoothing_length), settings);
     let count = points.len().saturating_sub(1);
     let mut result = Line { closed: line.closed, ..Line::default() };

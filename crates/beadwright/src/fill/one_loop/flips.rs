@@ -8,6 +8,7 @@
 
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring};
+use super::room::Room;
 use glam::{DVec2, I64Vec2};
 use std::collections::HashMap;
 
@@ -23,6 +24,9 @@ const FIELD: f64 = 4.0;
 pub(super) const TURNS: i64 = 3;
 /// No other ring comes closer to the middle between two rings than this fraction of their distance.
 const BETWEEN: f64 = 0.35;
+/// Where a link is looked at, and how far it stays from the outline, in widths of the narrowest bead.
+const LINK: [f64; 3] = [0.25, 0.5, 0.75];
+const NARROWEST: f64 = 0.45;
 
 /// A place where two rings can be joined: a stretch of each, by the numbers of their points.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,12 +49,12 @@ pub struct Joined {
 }
 
 /// Joins rings by a spanning tree of flips.
-pub fn join(rings: &[Ring], settings: &LoopSettings) -> Joined {
+pub fn join(rings: &[Ring], room: &Room, settings: &LoopSettings) -> Joined {
     let points = Points::of(rings);
     let mut chosen: Vec<&Flip> = Vec::new();
     let mut groups = Groups::new(rings.len());
     let mut taken = vec![false; points.at.len()];
-    let mut flips = candidates(&points, settings);
+    let mut flips = candidates(&points, room, settings);
     flips.sort_by(|a, b| a.score.total_cmp(&b.score).then_with(|| a.stretches.cmp(&b.stretches)));
     // First well apart, then wherever possible.
     for apart in [APART * settings.stepover, 0.0] {
@@ -177,23 +181,42 @@ fn replace(beside: &mut [[Option<usize>; 2]], point: usize, old: Option<usize>, 
     }
 }
 
-/// A flip at every second point of every ring with each neighbour.
-fn candidates(points: &Points, settings: &LoopSettings) -> Vec<Flip> {
-    let reach = FARTHEST * settings.stepover;
-    let cell = |p: DVec2| (p / reach).floor().as_i64vec2();
-    let mut cells: HashMap<I64Vec2, Vec<usize>> = HashMap::new();
-    for (i, &p) in points.at.iter().enumerate() {
-        cells.entry(cell(p)).or_default().push(i);
+/// Points by squares.
+struct Squares {
+    side: f64,
+    points: HashMap<I64Vec2, Vec<usize>>,
+}
+
+impl Squares {
+    fn of(points: &[DVec2], side: f64) -> Self {
+        let mut squares = Self { side, points: HashMap::new() };
+        for (i, &p) in points.iter().enumerate() {
+            squares.points.entry(squares.square(p)).or_default().push(i);
+        }
+        squares
     }
+
+    fn square(&self, p: DVec2) -> I64Vec2 {
+        (p / self.side).floor().as_i64vec2()
+    }
+
+    /// The points in the square of a place and in those around it.
+    fn near(&self, p: DVec2) -> impl Iterator<Item = usize> + '_ {
+        let home = self.square(p);
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| I64Vec2::new(dx, dy)));
+        around.flat_map(move |by| self.points.get(&(home + by)).into_iter().flatten().copied())
+    }
+}
+
+/// A flip at every second point of every ring with each neighbour.
+fn candidates(points: &Points, room: &Room, settings: &LoopSettings) -> Vec<Flip> {
+    let reach = FARTHEST * settings.stepover;
+    let squares = Squares::of(&points.at, reach);
     let mut flips = Vec::new();
     let mut nearby: Vec<usize> = Vec::new();
     for (i, &p) in points.at.iter().enumerate().filter(|(i, _)| i.is_multiple_of(2)) {
         nearby.clear();
-        let home = cell(p);
-        for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
-            let near = cells.get(&(home + I64Vec2::new(dx, dy))).into_iter().flatten();
-            nearby.extend(near.filter(|&&j| points.at[j].distance_squared(p) < reach * reach));
-        }
+        nearby.extend(squares.near(p).filter(|&j| points.at[j].distance_squared(p) < reach * reach));
         for j in nearest_of_each_ring(points, i, &nearby) {
             let (middle, gap) = ((p + points.at[j]) / 2.0, p.distance(points.at[j]));
             let own = [points.ring[i], points.ring[j]];
@@ -201,11 +224,35 @@ fn candidates(points: &Points, settings: &LoopSettings) -> Vec<Flip> {
                 !own.contains(&points.ring[k]) && points.at[k].distance_squared(middle) < (BETWEEN * gap).powi(2)
             };
             if nearby.iter().find(between).is_none() {
-                flips.extend(flip(points, i, j, settings));
+                flips
+                    .extend(flip(points, i, j, settings).filter(|flip| flip.is_free(points, room, &squares, settings)));
             }
         }
     }
     flips
+}
+
+impl Flip {
+    /// Whether its links stay inside, and cross no ring.
+    fn is_free(&self, points: &Points, room: &Room, squares: &Squares, settings: &LoopSettings) -> bool {
+        let [a, b] = &self.stretches;
+        let mut links = a.first().zip(b.first()).into_iter().chain(a.last().zip(b.last()));
+        links.all(|(&i, &j)| {
+            let (p, q) = (points.at[i], points.at[j]);
+            let inside = LINK.iter().all(|&t| room.at(p.lerp(q, t)) >= NARROWEST * settings.width_limits.0);
+            let crosses = |k: usize| {
+                let next = points.further(k, 1);
+                ![i, j].contains(&k) && ![i, j].contains(&next) && cross([p, q], [points.at[k], points.at[next]])
+            };
+            inside && !squares.near(p.midpoint(q)).any(crosses)
+        })
+    }
+}
+
+/// Whether two pieces cross.
+fn cross([p, q]: [DVec2; 2], [r, s]: [DVec2; 2]) -> bool {
+    let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a) > 0.0;
+    side(p, q, r) != side(p, q, s) && side(r, s, p) != side(r, s, q)
 }
 
 /// For each ring with a higher number than that of point `i`, the nearest of the nearby points.

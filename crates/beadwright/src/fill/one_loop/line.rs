@@ -126,6 +126,11 @@ impl Line {
         (0..count).map(smooth).collect()
     }
 
+    /// The points, the first one repeated at the end of a closed line.
+    pub fn path(&self) -> Vec<DVec2> {
+        self.points.iter().copied().chain(self.points.first().copied().filter(|_| self.closed)).collect()
+    }
+
     /// Pulls every point by the fraction `part` towards the midpoint of its neighbours; ends stay.
     pub fn tighten(&mut self, part: f64) {
         let middle = |i: usize| (self.points[self.before(i)] + self.points[self.behind(i)]) / 2.0;

@@ -11,6 +11,7 @@
 //! | walls for one bead tied in | [`tie`] |
 //! | widths by cell | [`cells`] |
 //! | relaxation: by heights ([`relax`] on a [`field`]), flat beads by their edges ([`fit`]) | |
+//! | lines that would cross go back | [`tangles`] |
 //! | few pieces, widths in steps | [`finish`] |
 //!
 //! The whole method is our own. Rings are level sets: closed by construction, nested, and never crossing. There are as
@@ -29,6 +30,7 @@ pub mod relax;
 pub mod rings;
 pub mod room;
 pub mod spiral;
+pub mod tangles;
 
 use super::thin::tie::{TieSettings, tie};
 use super::thin::{Split, ThinLimits, split};
@@ -122,7 +124,8 @@ impl Strategy for OneLoop {
             let relaxed = Steps::relaxed_in(&room, &part, &settings).relaxed;
             for (layer, passes) in layers.iter().zip(&mut passes) {
                 let settings = LoopSettings::of(layer, middle);
-                passes.extend(relaxed.iter().map(|line| pass(finish::finished(line, &room, &settings), middle)));
+                let lines = finish::all_finished(&relaxed, &room, &settings);
+                passes.extend(lines.into_iter().map(|line| pass(line, middle)));
             }
         }
         passes.into_iter().map(fill_of).collect()
@@ -295,7 +298,7 @@ impl Steps {
     pub fn of(island: &Polygon, settings: &LoopSettings) -> Self {
         let room = Room::of(island, settings);
         let steps = Self::relaxed_in(&room, island, settings);
-        let lines = steps.relaxed.iter().map(|line| finish::finished(line, &room, settings)).collect();
+        let lines = finish::all_finished(&steps.relaxed, &room, settings);
         Self { lines, ..steps }
     }
 
@@ -305,14 +308,15 @@ impl Steps {
         let (mut rings, mut flips, mut paths) = (Vec::new(), Vec::new(), Vec::new());
         for part in &split.thick {
             // Usually the whole island is thick.
-            let own =
-                if part == island { rings_of(room, settings) } else { rings_of(&Room::of(part, settings), settings) };
+            let of_part = (part != island).then(|| Room::of(part, settings));
+            let room = of_part.as_ref().unwrap_or(room);
+            let own = rings_of(room, settings);
             // A thin wall tied to an open path would cost an arc start.
             let open = settings.spirals && split.thin.is_empty();
             match Some(&own).filter(|_| open).and_then(|own| spiral::spiral(own, settings)) {
                 Some(path) => paths.push(path_pass(path, false)),
                 None => {
-                    let joined = flips::join(&own, settings);
+                    let joined = flips::join(&own, room, settings);
                     flips.extend(joined.flips);
                     paths.extend(joined.loops.into_iter().map(|line| path_pass(line, true)));
                 }

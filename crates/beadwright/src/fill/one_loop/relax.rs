@@ -7,6 +7,7 @@ use super::LoopSettings;
 use super::field::{Faults, Field};
 use super::line::Line;
 use super::room::Room;
+use super::tangles::{tangled, untangle};
 use glam::DVec2;
 use planar::Region;
 
@@ -28,22 +29,39 @@ const GAIN_FALL: f64 = 0.8;
 const LOWEST: f64 = 0.3;
 const MOST_CHANGE: f64 = 0.1;
 
-/// Relaxes lines; the best round is kept.
-pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> (Vec<Line>, Faults) {
+/// Relaxes lines; the best round is kept. Lines that do not cross do not cross afterwards.
+pub fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> (Vec<Line>, Faults) {
+    let first = rounds(lines.clone(), room, open, settings, |_, _| {});
+    // Seldom: looking at every round takes its time.
+    if tangled(&first.0) && !tangled(&lines) { rounds(lines, room, open, settings, untangle) } else { first }
+}
+
+/// All rounds; `mend` has the lines as they are and as they were before they moved.
+fn rounds(
+    mut lines: Vec<Line>,
+    room: &Room,
+    open: &Region,
+    settings: &LoopSettings,
+    mend: impl Fn(&mut [Line], &[Line]),
+) -> (Vec<Line>, Faults) {
     let field = Field::of(room, open, settings);
+    let mut before = lines.clone();
     for line in &mut lines {
         line.keep_inside(room, settings);
         line.fit_inside(room, settings);
     }
+    mend(&mut lines, &before);
     let mut heights = field.heights(&lines, settings);
     let mut best = (lines.clone(), field.faults(&heights));
     for round in 0..settings.rounds {
         let blurred = field.blurred(&heights);
+        before.clone_from_slice(&lines);
         let (stride, gain) = (STRIDE * STRIDE_FALL.powi(round as i32), GAIN * GAIN_FALL.powi(round as i32));
         for line in &mut lines {
             shift(line, &blurred, room, settings, stride);
             adapt(line, &blurred, room, settings, gain);
         }
+        mend(&mut lines, &before);
         heights = field.heights(&lines, settings);
         let faults = field.faults(&heights);
         if faults.cost() < best.1.cost() {

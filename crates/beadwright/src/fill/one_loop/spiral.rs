@@ -6,6 +6,7 @@
 
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring, perimeter};
+use crate::fill::sound;
 use glam::DVec2;
 use planar::polyline::point_at;
 
@@ -26,9 +27,10 @@ pub fn spiral(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<DVec2>> {
     let chain = chain(rings, settings)?;
     let d = settings.stepover;
     let tries = ((perimeter(&chain[0]) / (TRIES * d)).ceil() as usize).clamp(1, MOST_TRIES);
-    let starts = (0..tries).map(|k| k * chain[0].len() / tries);
-    let best = starts.map(|start| Aligned::of(&chain, start, d)).min_by(|a, b| a.score.total_cmp(&b.score))?;
-    Some(best.path())
+    let mut all: Vec<Aligned> = (0..tries).map(|k| Aligned::of(&chain, k * chain[0].len() / tries, d)).collect();
+    all.sort_by(|a, b| a.score.total_cmp(&b.score));
+    // A ramp between rings that do not run side by side may cross them.
+    all.iter().map(Aligned::path).find(|path| sound::crossing_pieces(std::slice::from_ref(path)).is_empty())
 }
 
 /// The rings from outside in, if each lies inside the one before and close to it.

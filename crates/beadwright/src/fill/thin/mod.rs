@@ -173,8 +173,9 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let whole = with_fewer_points(island, SIMPLER * limits.bead_width);
     let open = centres.offset(limits.double / 2.0 + GROWN * limits.bead_width, round(limits));
     let needs_two = |part: &&Polygon| part.holds_disc(limits.single.1 / 2.0);
-    // The disc that opened a part fits into it.
-    let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || needs_two(part);
+    // The disc that opened a part fits into it; the part has grown.
+    let widest = limits.single.1 / 2.0 + GROWN * limits.bead_width;
+    let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || part.holds_disc(widest);
     let thick: Vec<Polygon> = open.polygons().iter().filter(opens_two).cloned().collect();
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
