@@ -35,6 +35,10 @@ pub enum WarningKind {
     Unsound,
     /// Nothing lies below the first bead, or below a whole layer; the size is the gap, mm.
     NothingBelow,
+    /// Less than half of a pass lies over metal; the size is its length, mm.
+    InTheAir,
+    /// A small new island hangs in the air and was left out; the size is its area, mm².
+    HangingIsland,
     /// Part of a layer reaches farther than check.max_overhang beyond the one below; the size is its area, mm².
     Overhang,
     /// A pass is over before its arc is steady; the size is its length, mm.
@@ -61,7 +65,7 @@ pub const SLIVER_MM: f64 = 0.05;
 impl WarningKind {
     /// Whether a program with such a fault is not written unless somebody insists.
     pub fn forbids(self) -> bool {
-        matches!(self, Self::Unsound | Self::NothingBelow)
+        matches!(self, Self::Unsound | Self::NothingBelow | Self::InTheAir)
     }
 }
 
@@ -181,6 +185,15 @@ impl WarningSummary {
                 "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead (layer {}). \
                  Cut the model off below, or take a narrower bead that fills what lies there.",
                 largest.layer + 1
+            ),
+            WarningKind::InTheAir => format!(
+                "{layers}: {} less than half over metal, {total:.1} mm in all, the longest {size:.1} mm {place}. Turn the part \
+                 (--orient), begin above the place (--from-z), or add metal below that is machined off.",
+                times("pass lies", "passes lie")
+            ),
+            WarningKind::HangingIsland => format!(
+                "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
+                times("island", "islands")
             ),
             WarningKind::Overhang => format!(
                 "{layers}: places that reach farther beyond the layer below than check.max_overhang, {total:.1} mm² in all, \

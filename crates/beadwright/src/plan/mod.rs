@@ -14,6 +14,7 @@
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
+//! | `support` | whether passes lie on metal |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 pub mod choice;
@@ -25,6 +26,7 @@ mod parts;
 mod preview;
 mod relight;
 mod scan_lines;
+mod support;
 pub mod warm;
 
 pub use expected::{Expected, expected};
@@ -56,6 +58,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::convert::Infallible;
+use support::Support;
 use warm::{Heat, Warmth};
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
@@ -475,6 +478,7 @@ fn run<S: Sink + Send>(
         torch: None,
         heat,
         memory: order::Memory::default(),
+        support: Support::default(),
         below: Vec::new(),
         built: 0.0,
         points: 0,
@@ -553,6 +557,7 @@ struct Emitter<'a, S> {
     torch: Option<DVec2>,
     heat: Heat,
     memory: order::Memory,
+    support: Support,
     /// Outlines of the layer below, of the islands that are welded.
     below: Vec<Polygon>,
     /// Top of the highest layer with beads, mm.
@@ -568,7 +573,7 @@ impl<S: Sink> Emitter<'_, S> {
         let Slice { index, z, height, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
-        let laid = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
+        let laid: Vec<Polygon> = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
@@ -578,9 +583,10 @@ impl<S: Sink> Emitter<'_, S> {
         let mut layer =
             Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
         relight::relight(&mut layer, self.profile);
+        self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);
         self.warm(&mut layer);
         self.doubts(&mut layer);
-        self.below = laid;
+        self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
         layer.warnings.iter().for_each(|w| self.warnings.add(*w));
         self.metrics.add(&layer);
         self.sink.layer(layer)

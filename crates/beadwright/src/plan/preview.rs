@@ -1,6 +1,7 @@
 //! One layer ahead of the others, to look at while the rest is planned.
 
 use super::filled::{Filled, fill_planned};
+use super::support::Support;
 use super::warm::{Heat, Warmth};
 use super::{Emitter, Layer, PlanError, Sink, levels, scan_lines, slabs_at, strategy_of, weld_curves};
 use crate::metrics::Metrics;
@@ -41,6 +42,7 @@ pub fn preview(
         torch: None,
         heat: Heat::default(),
         memory: Memory::default(),
+        support: Support::default(),
         below: Vec::new(),
         built,
         points: 0,

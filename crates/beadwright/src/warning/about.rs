@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -26,6 +26,8 @@ impl WarningKind {
         Self::Bare,
         Self::Unsound,
         Self::NothingBelow,
+        Self::InTheAir,
+        Self::HangingIsland,
         Self::Overhang,
         Self::ShortArc,
         Self::Relit,
@@ -86,6 +88,17 @@ impl WarningKind {
                 "the first bead of a place would be laid in the air",
                 "stand the part on the plate (`--lay-flat`, `--from-z MM`), or turn it; the program is not written \
                  unless you insist",
+            ),
+            Self::InTheAir => (
+                "in-the-air",
+                "less than half of a pass lies over the beads below",
+                "turn the part (`--orient`, `--lay-flat`), begin above the place (`--from-z MM`), or add metal below that is \
+                 machined off; the program is not written unless you insist",
+            ),
+            Self::HangingIsland => (
+                "hanging-island",
+                "a small island begins in the air, and nothing stands on it, so it is left out",
+                "turn the part (`--orient`), or add metal below that is machined off, if the island matters",
             ),
             Self::Overhang => (
                 "overhang",

@@ -1,0 +1,140 @@
+//! Whether passes lie on metal, judged by the footprints of the passes below.
+
+use crate::fill::line_index::LineIndex;
+use crate::layer::Layer;
+use crate::pass::Pass;
+use crate::warning::{Warning, WarningKind};
+use glam::DVec2;
+use planar::polyline::distance_squared_to_segment;
+use planar::{Polygon, Region};
+
+/// A pass with less than this part of its length over metal lies in the air.
+const LEAST: f64 = 0.5;
+/// A new island in the air is left out up to this area, in squared bead widths.
+const SMALL: f64 = 4.0;
+/// Passes are looked at so many times per bead width.
+const SAMPLES: f64 = 4.0;
+/// An island stands on another from this part of the smaller one's area on.
+const STANDS: f64 = 0.05;
+
+/// What lies below the next layer.
+#[derive(Default)]
+pub(super) struct Support {
+    /// The passes of the layer below; `None` before the first layer, which lies on the plate.
+    metal: Option<Metal>,
+    /// Outlines of the layer below.
+    islands: Vec<Polygon>,
+    /// Those of them that were left out, since they hang.
+    left_out: Vec<Polygon>,
+}
+
+/// Footprints of passes.
+struct Metal {
+    index: LineIndex,
+    /// Half the width of each piece of each pass, mm.
+    halves: Vec<Vec<f64>>,
+}
+
+impl Support {
+    /// Warns of passes that lie in the air, takes small islands out that hang, and remembers the layer for the next one.
+    /// `solid` tells whether layers are filled; on sparse ones the next lie as if they were.
+    pub(super) fn judge(&mut self, layer: &mut Layer, width: f64, solid: bool) {
+        let alike = self.left_out.is_empty() && self.islands == layer.islands;
+        if let Some(metal) = self.metal.take().filter(|_| !alike) {
+            let over = |p: DVec2| metal.is_at(p) || (!solid && self.islands.iter().any(|island| island.contains(p)));
+            let hanging: Vec<bool> = layer.passes.iter().map(|pass| part_over(pass, width, over) < LEAST).collect();
+            self.left_out = self.take_out(layer, &hanging, width);
+        } else if !alike {
+            self.left_out.clear();
+        }
+        self.metal = (!layer.passes.is_empty()).then(|| Metal::of(&layer.passes, width));
+        self.islands.clone_from(&layer.islands);
+    }
+
+    /// Whether an island of the layer that was judged last was left out.
+    pub(super) fn is_left_out(&self, island: &Polygon) -> bool {
+        self.left_out.contains(island)
+    }
+
+    /// Takes out small new islands whose passes all hang, and warns of other passes that do. The islands taken out.
+    fn take_out(&self, layer: &mut Layer, hanging: &[bool], width: f64) -> Vec<Polygon> {
+        if !hanging.contains(&true) {
+            return Vec::new();
+        }
+        let start = |pass: &Pass| pass.start().unwrap_or_default().truncate();
+        let island_of = |pass: &Pass| layer.islands.iter().position(|island| island.contains(start(pass)));
+        let of: Vec<Option<usize>> = layer.passes.iter().map(island_of).collect();
+        let small = |i: usize| {
+            let island = &layer.islands[i];
+            let all = of.iter().zip(hanging).all(|(of, hangs)| *of != Some(i) || *hangs);
+            all && island.area() <= SMALL * width * width && !self.left_out.iter().any(|lower| stands_on(island, lower))
+        };
+        let out: Vec<bool> = (0..layer.islands.len()).map(small).collect();
+        let (mut kept, mut taken) = (Vec::new(), vec![false; layer.islands.len()]);
+        for ((pass, of), hangs) in std::mem::take(&mut layer.passes).into_iter().zip(of).zip(hanging) {
+            match of.filter(|i| *hangs && out[*i]) {
+                Some(i) => taken[i] = true,
+                None => {
+                    if *hangs {
+                        let (kind, size) = (WarningKind::InTheAir, pass.length());
+                        layer.warnings.push(Warning { kind, layer: layer.index, place: start(&pass), size });
+                    }
+                    kept.push(pass);
+                }
+            }
+        }
+        layer.passes = kept;
+        let taken: Vec<Polygon> =
+            layer.islands.iter().zip(taken).filter(|(_, taken)| *taken).map(|(island, _)| island.clone()).collect();
+        for island in &taken {
+            let place = island.outer.points().first().copied().unwrap_or_default();
+            let (kind, size) = (WarningKind::HangingIsland, island.area());
+            layer.warnings.push(Warning { kind, layer: layer.index, place, size });
+            layer.planned_area = (layer.planned_area - size).max(0.0);
+        }
+        taken
+    }
+}
+
+fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
+    let common = Region::from(island.clone()).intersection(&Region::from(lower.clone())).area();
+    common > STANDS * island.area().min(lower.area())
+}
+
+/// The part of a pass's length that lies over metal.
+fn part_over(pass: &Pass, width: f64, over: impl Fn(DVec2) -> bool) -> f64 {
+    let (mut along, mut next, mut all, mut on) = (0.0, 0.0, 0_usize, 0_usize);
+    let step = width / SAMPLES;
+    for piece in pass.segments().filter(|piece| piece.from.is_finite()) {
+        let length = piece.length();
+        while next <= along + length {
+            let share = if length > 0.0 { (next - along) / length } else { 0.0 };
+            all += 1;
+            on += usize::from(over(piece.from.lerp(piece.to, share).truncate()));
+            next += step;
+        }
+        along += length;
+    }
+    on as f64 / all.max(1) as f64
+}
+
+impl Metal {
+    fn of(passes: &[Pass], width: f64) -> Self {
+        let halves: Vec<Vec<f64>> =
+            passes.iter().map(|pass| pass.segments().map(|piece| piece.width / 2.0).collect()).collect();
+        let widest = halves.iter().flatten().copied().fold(width / 2.0, f64::max);
+        let mut index = LineIndex::new(widest);
+        for (number, pass) in passes.iter().enumerate() {
+            let ends = pass.segments().next().map(|piece| piece.from).into_iter().chain(pass.segments().map(|p| p.to));
+            index.add_line(number, &ends.map(|p| p.truncate()).collect::<Vec<_>>());
+        }
+        Self { index, halves }
+    }
+
+    fn is_at(&self, p: DVec2) -> bool {
+        self.index.near(p).any(|(line, piece, a, b)| {
+            let half = self.halves[line].get(piece).copied().unwrap_or_default();
+            distance_squared_to_segment(p, a, b) <= half * half
+        })
+    }
+}
