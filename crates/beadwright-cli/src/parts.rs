@@ -60,7 +60,7 @@ fn each(arguments: &Arguments) -> anyhow::Result<()> {
     let reasons: Vec<String> =
         planned.iter().flat_map(named).chain(clearance.close().iter().map(Close::sentence)).collect();
     if !reasons.is_empty() && !arguments.allow_findings {
-        return Err(Refused(reasons).into());
+        return Err(Refused { reasons, report: None }.into());
     }
     let mut all = Vec::new();
     for part in planned {

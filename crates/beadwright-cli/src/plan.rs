@@ -6,7 +6,7 @@ use anyhow::Context;
 use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
+use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Start, Written};
 use beadwright::layer::Layer;
 use beadwright::model::together::Place;
 use beadwright::model::{Mesh, Part, RepairReport};
@@ -214,7 +214,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         anyhow::bail!("--picture {missing}: the part has the layers 1 to {}", summary.metrics.layers);
     }
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
-        return Err(Refused(summary.forbidden).into());
+        let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
+        return Err(Refused { reasons: summary.forbidden, report }.into());
     }
     let faults = check::rehearse(&profile).into_iter();
     let faults =
@@ -260,8 +261,17 @@ pub(crate) fn refused(error: PlanError<anyhow::Error>, model: &Path) -> anyhow::
 
 /// Programs that nobody should start.
 #[derive(Debug, thiserror::Error)]
-#[error("nothing was written, since the program should not be started:\n{}\n--allow-findings writes it all the same.", .0.join("\n"))]
-pub(crate) struct Refused(pub(crate) Vec<String>);
+#[error(
+    "no program was written, since it should not be started:\n{}\n{}--allow-findings writes it all the same.",
+    .reasons.join("\n"),
+    .report.as_ref().map_or(String::new(), |report| format!("{} shows the places. ", report.display()))
+)]
+pub(crate) struct Refused {
+    /// Sentences.
+    pub(crate) reasons: Vec<String>,
+    /// The report that was written all the same.
+    pub(crate) report: Option<PathBuf>,
+}
 
 /// Where the layers go.
 pub(crate) struct Files<'a> {
@@ -296,6 +306,16 @@ impl<'a> Files<'a> {
     /// What people must know about the programs: sentences.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.files.iter().flat_map(PlanFiles::notes).collect()
+    }
+
+    /// Writes the report alone, in which the places are seen why there is no program; where it lies.
+    fn refuse(self, summary: &Summary, repair: &RepairReport, output: &Path) -> anyhow::Result<Option<PathBuf>> {
+        let Some(files) = self.files else { return Ok(None) };
+        drop(self.folder);
+        let mut folder = Folder::new(output)?;
+        folder.extend([files.refused(summary, repair)])?;
+        folder.commit()?;
+        Ok(Some(output.join(REFUSED)))
     }
 
     /// Writes what comes last, and moves everything into place.

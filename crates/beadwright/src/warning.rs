@@ -93,6 +93,8 @@ pub struct WarningSummary {
     pub layers: Vec<(usize, usize)>,
     /// The largest one.
     pub largest: Warning,
+    /// Top of its layer, mm.
+    pub z: f64,
     /// Sum of the sizes, in the unit of the kind.
     pub total: f64,
 }
@@ -102,19 +104,20 @@ pub struct WarningSummary {
 pub struct Warnings(BTreeMap<WarningKind, WarningSummary>);
 
 impl Warnings {
-    /// Counts one event; events come in the order of layers.
-    pub fn add(&mut self, warning: Warning) {
+    /// Counts one event on a layer whose top lies at `z` (mm); events come in the order of layers.
+    pub fn add(&mut self, warning: Warning, z: f64) {
         let summary = self.0.entry(warning.kind).or_insert_with(|| WarningSummary {
             kind: warning.kind,
             count: 0,
             layers: Vec::new(),
             largest: warning,
+            z,
             total: 0.0,
         });
         summary.count += 1;
         summary.total += warning.size;
         if warning.size > summary.largest.size {
-            summary.largest = warning;
+            (summary.largest, summary.z) = (warning, z);
         }
         match summary.layers.last_mut() {
             Some((_, last)) if warning.layer <= *last + 1 => *last = warning.layer.max(*last),
@@ -131,8 +134,8 @@ impl Warnings {
 impl WarningSummary {
     /// One sentence with layer range, place, size and remedy.
     pub fn sentence(&self) -> String {
-        let Self { count, largest, total, .. } = self;
-        let (layers, place, size) = (self.layer_text(), place_text(largest), largest.size);
+        let Self { count, largest, z, total, .. } = self;
+        let (layers, place, size) = (self.layer_text(), place_text(largest, *z), largest.size);
         let times = |one: &str, many: &str| format!("{count} {}", if *count == 1 { one } else { many });
         match self.kind {
             WarningKind::GapClosed => {
@@ -247,6 +250,6 @@ impl WarningSummary {
     }
 }
 
-fn place_text(w: &Warning) -> String {
-    format!("(layer {}, near x {:.1} y {:.1} mm)", w.layer + 1, w.place.x, w.place.y)
+fn place_text(w: &Warning, z: f64) -> String {
+    format!("(layer {}, near x {:.1} y {:.1} z {z:.1} mm)", w.layer + 1, w.place.x, w.place.y)
 }

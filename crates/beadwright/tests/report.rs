@@ -219,7 +219,7 @@ fn a_warning_leads_to_its_place_and_words_are_explained() {
     plan.summary.warnings = Default::default();
     for (layer, size) in [(0, 3.0), (2, 9.0), (1, 5.0)] {
         let place = DVec2::new(1.25, -4.5 - size);
-        plan.summary.warnings.add(Warning { kind: WarningKind::ThinFeature, layer, place, size });
+        plan.summary.warnings.add(Warning { kind: WarningKind::ThinFeature, layer, place, size }, 2.0);
     }
     let html = page(&plan, &profile);
     let button = "<button data-layer=\"2\" data-x=\"1.25\" data-y=\"-13.50\">Show on layer 3</button>";

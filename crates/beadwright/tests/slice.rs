@@ -58,7 +58,7 @@ fn topology(layers: &[Slice]) -> Vec<(usize, usize)> {
 
 fn summaries(layers: &[Slice]) -> Vec<WarningSummary> {
     let mut warnings = Warnings::default();
-    layers.iter().flat_map(|l| &l.warnings).for_each(|w| warnings.add(*w));
+    layers.iter().for_each(|l| l.warnings.iter().for_each(|w| warnings.add(*w, l.z)));
     warnings.summaries().cloned().collect()
 }
 

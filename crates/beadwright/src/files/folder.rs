@@ -187,9 +187,10 @@ fn earlier(folder: &Path) -> BTreeSet<String> {
     }
     let listing = fs::read(folder.join(super::METRICS)).ok().and_then(|text| serde_json::from_slice(&text).ok());
     let files = listing.map_or(Vec::new(), |listing: Listing| listing.files);
+    let files = files.into_iter().chain([super::REFUSED.to_owned()]);
     // A list that somebody has edited names no place elsewhere.
     let plain = |name: &str| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
-    files.into_iter().filter(|name| plain(name) && folder.join(name).is_file()).collect()
+    files.filter(|name| plain(name) && folder.join(name).is_file()).collect()
 }
 
 /// Links the files of a folder and its folders into another.

@@ -34,6 +34,8 @@ pub const PLAN: &str = "plan.json";
 pub const METRICS: &str = "metrics.json";
 /// Name of the report.
 pub const REPORT: &str = "report.html";
+/// Name of the report on a plan whose programs are not written.
+pub const REFUSED: &str = "refused.html";
 
 /// What programs are written with.
 #[derive(Debug, Clone)]
@@ -222,6 +224,11 @@ impl PlanFiles {
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names)));
         Ok(chunks)
+    }
+
+    /// The report on a plan whose programs are not written, in which the places are seen why.
+    pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
+        Chunk::new(REFUSED, self.report.finish(summary, repair, &[]))
     }
 
     fn note(&mut self, chunks: &[Chunk]) {

@@ -587,7 +587,7 @@ impl<S: Sink> Emitter<'_, S> {
         self.warm(&mut layer);
         self.doubts(&mut layer);
         self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
-        layer.warnings.iter().for_each(|w| self.warnings.add(*w));
+        layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
         self.metrics.add(&layer);
         self.sink.layer(layer)
     }

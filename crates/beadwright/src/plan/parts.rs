@@ -127,7 +127,7 @@ impl<S: Sink> Sink for Row<'_, S> {
     fn layer(&mut self, mut layer: Layer) -> Result<(), S::Error> {
         layer.index += self.first;
         layer.warnings.iter_mut().for_each(|warning| warning.layer += self.first);
-        layer.warnings.iter().for_each(|warning| self.warnings.add(*warning));
+        layer.warnings.iter().for_each(|warning| self.warnings.add(*warning, layer.z));
         self.metrics.add(&layer);
         self.sink.layer(layer)
     }

@@ -122,6 +122,7 @@ impl Report {
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, repair)),
+            ("refused", tables::refused(summary)),
             ("kinds", tables::kinds(&self.kinds)),
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),

@@ -240,7 +240,9 @@ async function start() {
     return;
   }
   if (!deep) withoutSolid("This browser has no WebGL 2, so there is no 3-D view; every layer is shown from above.");
-  await show(heads.findLastIndex(head => head.passes));
+  // Where the program should not be started, the place is seen first.
+  const worst = document.querySelector(".refused button");
+  await show(worst ? Number(worst.dataset.layer) : heads.findLastIndex(head => head.passes));
   if (deep) readSolid();
 }
 start();

@@ -45,10 +45,24 @@ fn empty(header: &Header, m: &Metrics) -> String {
 
 /// The badge beside the heading.
 pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
+    if !summary.forbidden.is_empty() {
+        return "<a class=\"badge bad\" href=\"#warnings\">Do not start</a>".to_owned();
+    }
     match remarks(summary, repair).len() {
         0 => "<a class=\"badge good\" href=\"#warnings\">Nothing was lost</a>".to_owned(),
         n => format!("<a class=\"badge warn\" href=\"#warnings\">{}</a>", count(n, "remark", "remarks")),
     }
+}
+
+/// Why the program should not be started, with the places; nothing for a plan that can be welded.
+pub(super) fn refused(summary: &Summary) -> String {
+    let place = |reason: &String| summary.warnings.summaries().find(|w| w.sentence() == *reason).map(|w| w.largest);
+    let item = |reason: &String| {
+        let link = place(reason).as_ref().map(link).unwrap_or_default();
+        format!("<li><b>Do not start</b> {}{link}</li>", escape(reason))
+    };
+    let items: String = summary.forbidden.iter().map(item).collect();
+    if items.is_empty() { items } else { format!("<ul class=\"warnings refused\">{items}</ul>") }
 }
 
 /// The totals of the plan.
@@ -207,7 +221,8 @@ fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<Remark> {
     let model = repair.sentences().into_iter().map(|s| ("Model", s, None));
     let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some(w.largest)));
     let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
-    model.chain(layers).chain(process).collect()
+    // What forbids the program stands at the head of the page.
+    model.chain(layers).chain(process).filter(|(_, text, _)| !summary.forbidden.contains(text)).collect()
 }
 
 /// A button that shows the place of a warning.
