@@ -71,5 +71,8 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// The name of a file without its ending; `-` has none.
 pub(crate) fn stem(path: &Path) -> Option<String> {
     let stem = path.file_stem().filter(|_| !is_standard(path))?;
+    // `part.stl.gz` is a part.stl, packed.
+    let packed = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("gz"));
+    let stem = if packed { Path::new(stem).file_stem().unwrap_or(stem) } else { stem };
     Some(stem.to_string_lossy().into_owned())
 }

@@ -1,8 +1,9 @@
 //! Parts that are welded one after another, each with plan and programs of its own.
 
-use crate::plan::{self, Arguments, Files, Refused, print_head, print_summary, print_warnings, refused};
+use crate::plan::{self, Arguments, Files, Refused, print_found, print_head, print_summary, print_warnings, refused};
 use crate::several::Programs;
 use crate::{progress, say};
+use beadwright::check::Found;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
 use beadwright::model::together::Place;
@@ -107,7 +108,9 @@ fn one<'a>(
 impl Planned<'_> {
     /// Writes the files and tells of them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
-        let Self { name, profile, model, folder, files, summary, figures } = self;
+        let Self { name, profile, model, folder, mut files, summary, figures } = self;
+        let found = files.check(&Task::new())?;
+        let found: Vec<String> = found.iter().filter(|f| !f.is_told(&summary)).map(Found::sentence).collect();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {
             let mut value = summary.json(figures.as_ref());
@@ -116,6 +119,7 @@ impl Planned<'_> {
         }
         let place: Vec<Place> = places.iter().filter(|(part, _)| part == name).cloned().collect();
         print_head(&mut say::done(false), name, profile, model, &place)?;
+        print_found(&found)?;
         print_warnings(profile, model, &summary)?;
         print_summary(&mut say::done(false), &folder, &summary, figures.as_ref(), &written)?;
         writeln!(say::done(false))?;

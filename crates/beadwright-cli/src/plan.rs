@@ -3,7 +3,7 @@
 use crate::several::{Build, Order, Several};
 use crate::{model, profile, program, progress, say};
 use anyhow::Context;
-use beadwright::check;
+use beadwright::check::{self, Found};
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{DepositSettings, Figures, Judge};
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Start, Written};
@@ -221,6 +221,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
+    let found: Vec<String> = files.check(&task)?.iter().filter(|f| !f.is_told(&summary)).map(Found::sentence).collect();
     let figures = files.figures();
     let written = files.finish(&summary, &model.repair())?;
 
@@ -229,6 +230,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(());
     }
     print_head(&mut say::done(false), &part, &profile, &model, &places)?;
+    print_found(&found)?;
     print_warnings(&profile, &model, &summary)?;
     Ok(print_summary(&mut say::done(false), &arguments.output, &summary, figures.as_ref(), &written)?)
 }
@@ -306,6 +308,12 @@ impl<'a> Files<'a> {
     /// What people must know about the programs: sentences.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.files.iter().flat_map(PlanFiles::notes).collect()
+    }
+
+    /// What the checks find in the plan.
+    pub(crate) fn check(&mut self, task: &Task) -> anyhow::Result<Vec<Found>> {
+        let Some(files) = &mut self.files else { return Ok(Vec::new()) };
+        Ok(files.check(task)?.to_vec())
     }
 
     /// Writes the report alone, in which the places are seen why there is no program; where it lies.
@@ -400,6 +408,12 @@ pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary)
         writeln!(out, "warning: {line}")?;
     }
     Ok(())
+}
+
+/// Prints what the checks found, a line each.
+pub(crate) fn print_found(found: &[String]) -> std::io::Result<()> {
+    let mut out = say::warnings();
+    found.iter().try_for_each(|line| writeln!(out, "check {line}"))
 }
 
 pub(crate) fn print_summary(

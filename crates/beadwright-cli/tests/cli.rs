@@ -254,6 +254,42 @@ fn every_shared_model_plans_or_is_refused() {
     }
 }
 
+/// `plan` says all that `check` finds in the plan just written, and the report shows it.
+#[test]
+fn check_adds_nothing_to_a_plan_just_written() {
+    let out = TempDir::new().unwrap();
+    for (part, strategy, set) in [
+        ("cross", "loop", "check.max_void=0.01"),
+        ("gear", "contour", "check.max_void=0.5"),
+        ("propeller", "raster", "check.max_overfill=0.1"),
+        ("star", "zigzag", "check.max_heat_input=1"),
+    ] {
+        let name = format!("{part}.stl");
+        ok(out.path(), &["example", part, "-o", &name]);
+        let settings = ["-p", "cmt-al2319-kuka", "-s", strategy, "--set", set];
+        let planned = beadwright(out.path(), &[&["plan", &name, "-o", "out"], &settings[..]].concat());
+        let said = String::from_utf8_lossy(&planned.stderr) + String::from_utf8_lossy(&planned.stdout);
+        let metrics = fs::read_to_string(out.path().join("out/metrics.json")).unwrap();
+        let metrics: serde_json::Value = serde_json::from_str(&metrics).unwrap();
+        let checked = beadwright(out.path(), &["check", "out/plan.json", "--json"]);
+        let found: Vec<serde_json::Value> = serde_json::from_slice(&checked.stdout).unwrap();
+        let report = fs::read_to_string(out.path().join("out/report.html")).unwrap();
+        let told = metrics["findings"].as_array().unwrap();
+        let count: u64 = told.iter().map(|f| f["count"].as_u64().unwrap()).sum();
+        assert_eq!(count as usize, found.len(), "{part}: {told:?}");
+        for check in told {
+            let name = check["check"].as_str().unwrap();
+            let own = found.iter().filter(|f| f["check"] == check["check"]).count();
+            assert_eq!(check["count"].as_u64().unwrap() as usize, own, "{part}: {name}");
+            // Warnings of the plan say these.
+            if !["overhang", "layers", "short-arc"].contains(&name) {
+                assert!(said.contains(&format!("check {name}: ")), "{part}: {said}");
+                assert!(report.contains(&format!("<b>Check</b> {name}: ")), "{part}: {name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn plans_and_programs_are_simulated_alike() {
     let folder = folder_with("cross");

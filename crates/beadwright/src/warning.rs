@@ -171,9 +171,8 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::PassTooShort => format!(
-                "{layers}: {} left out that would be shorter than fill.min_pass_length or over before the arc is \
-                 steady (process.arc_start_delay), {total:.1} mm in all, the longest \
-                 {size:.1} mm {place}.",
+                "{layers}: {} left out that would be shorter than fill.min_pass_length, or over before the arc is steady in \
+                 programs that do not wait for it, {total:.1} mm in all, the longest {size:.1} mm {place}.",
                 times("pass", "passes")
             ),
             WarningKind::Bare => format!(

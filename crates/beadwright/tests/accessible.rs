@@ -95,7 +95,7 @@ fn report(part: &str, profile: &Profile) -> String {
     for layer in &plan.layers {
         report.layer(layer, Some(&judge.layer(layer)));
     }
-    report.finish(&plan.summary, &RepairReport::default(), &["a.src".to_owned()])
+    report.finish(&plan.summary, &RepairReport::default(), &["a.src".to_owned()], &[])
 }
 
 #[test]

@@ -239,7 +239,9 @@ const PLACED: [Placed; 20] = [
     ),
     (
         "an arc over before it burns",
-        |l, _| {
+        |l, p| {
+            // The program leaves at once.
+            p.dialects.krl.as_mut().unwrap().arc_on = vec!["$OUT[2] = TRUE".to_owned()];
             let pass = stub(&l[1], 8.0);
             l[1].passes.push(pass)
         },

@@ -310,6 +310,12 @@ fn programs_have_one_arc_start_a_layer_and_what_does_not_outlast_it_is_left_out(
         strategy.clone_into(&mut profile.fill.strategy);
         let star = example::find("star").unwrap().mesh();
         let plan = plan::plan("star", &star, &profile, &Task::new()).unwrap();
+        // These programs stand still until the arc burns: any pass that is long enough is laid.
+        let shortest = plan.layers.iter().flat_map(|l| &l.passes).map(|p| p.length()).fold(f64::INFINITY, f64::min);
+        assert!(shortest >= profile.fill.min_pass_length, "{strategy}: a pass of {shortest} mm");
+        // Programs that leave at once lay no pass that is over before.
+        profile.dialects.krl.as_mut().unwrap().arc_on = vec!["$OUT[2] = TRUE".to_owned()];
+        let plan = plan::plan("star", &star, &profile, &Task::new()).unwrap();
         let soonest = profile.process.arc_start_delay;
         let least = plan.summary.metrics.shortest_arc_s.unwrap();
         assert!(least >= soonest, "{strategy}: an arc of {least} s");

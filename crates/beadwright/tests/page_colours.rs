@@ -32,7 +32,7 @@ fn report() -> String {
     let plan = common::planned("cross", &profile);
     let mut report = Report::new(&plan.header, &profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    report.finish(&plan.summary, &RepairReport::default(), &[])
+    report.finish(&plan.summary, &RepairReport::default(), &[], &[])
 }
 
 #[test]

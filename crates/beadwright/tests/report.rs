@@ -29,7 +29,7 @@ fn process() -> Process {
 fn page(plan: &Plan, profile: &Profile) -> String {
     let mut report = Report::new(&plan.header, profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()])
+    report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()], &[])
 }
 
 /// Kind, closed, points, width and speed.

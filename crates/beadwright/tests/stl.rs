@@ -181,7 +181,7 @@ fn other_formats_are_recognised() {
     let iges = format!("{:<72}S      1\n{:<72}G      1\n", "Exported part", "1H,,1H;,4Hpart;");
     let cases: [(&[u8], &str); 9] = [
         (b"PK\x03\x04\x14\x00\x06\x003D/3dmodel.model", "the 3MF file cannot be read"),
-        (b"\x1f\x8b\x08\x00\x00\x00\x00\x00", "a gzip archive (unpack it first)"),
+        (b"\x1f\x8b\x08\x00\x00\x00\x00\x00", "the gzip file cannot be read: it is damaged"),
         (b"ISO-10303-21;\nHEADER;\n", "a STEP file"),
         (iges.as_bytes(), "an IGES file"),
         (b"ply\nformat ascii 1.0\n", "the PLY file cannot be read"),
@@ -279,4 +279,29 @@ fn damaged_files_never_panic() {
             survives(&bytes[..length])
         })
         .unwrap();
+}
+
+/// A packed file is read as what it holds; one that unfolds without end is refused before it fills the memory.
+#[test]
+fn a_file_packed_by_gzip_is_read_as_it_is() {
+    let packed = |bytes: &[u8]| {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        std::io::Write::write_all(&mut encoder, bytes).unwrap();
+        encoder.finish().unwrap()
+    };
+    let obj = b"v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    let [plain, unpacked] = [obj.to_vec(), packed(obj)].map(|bytes| import(&bytes, &Task::new()).unwrap());
+    assert_eq!((plain.mesh.triangles, plain.mesh.vertices), (unpacked.mesh.triangles, unpacked.mesh.vertices));
+    let bomb = packed(&vec![b' '; 80 << 20]);
+    check(&bomb, &["the gzip file cannot be read", "unfolds to more than 64 MB"]);
+    check(&packed(obj)[..30], &["the gzip file cannot be read", "damaged"]);
+}
+
+/// Some programs write edges as faces of two corners.
+#[test]
+fn faces_of_two_corners_are_counted_and_left_out() {
+    let obj = b"v 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 4 3\n";
+    let import = import(obj, &Task::new()).unwrap();
+    assert_eq!((import.repair.triangles_read, import.repair.degenerate, import.repair.triangles), (6, 2, 4));
+    assert!((import.mesh.volume() - 4500.0).abs() < 1e-9);
 }

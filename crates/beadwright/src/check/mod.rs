@@ -32,9 +32,10 @@ pub use rehearsal::rehearse;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
 use crate::layer::Layer;
-use crate::plan;
+use crate::plan::{self, Summary};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
+use crate::warning::WarningKind;
 use glam::DVec3;
 use planar::Bounds;
 use serde::Serialize;
@@ -175,6 +176,49 @@ pub fn check_figures<L: Borrow<Layer>>(
     let layers = layers.iter().map(L::borrow).collect();
     let subject = Subject { layers, profile, rise, figures, growth };
     CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
+}
+
+/// The findings of one check: how many, and the first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// Name of the check.
+    pub check: &'static str,
+    /// How many findings it has.
+    pub count: usize,
+    /// The first of them.
+    pub first: Finding,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// Findings by their checks, in the order of [`CHECKS`].
+pub fn found(findings: &[Finding]) -> Vec<Found> {
+    let of = |check: &Check| {
+        let own = || findings.iter().filter(|finding| finding.check == check.name);
+        let (count, first) = (own().count(), own().next()?.clone());
+        Some(Found { check: check.name, count, first, remedy: check.remedy })
+    };
+    CHECKS.iter().filter_map(of).collect()
+}
+
+impl Found {
+    /// Whether a warning of the plan tells the same.
+    pub fn is_told(&self, summary: &Summary) -> bool {
+        let kinds: &[WarningKind] = match self.check {
+            "overhang" => &[WarningKind::Overhang, WarningKind::InTheAir],
+            "layers" => &[WarningKind::EmptyLayer, WarningKind::NothingBelow],
+            "short-arc" => &[WarningKind::ShortArc],
+            _ => &[],
+        };
+        summary.warnings.summaries().any(|w| kinds.contains(&w.kind))
+    }
+
+    /// All of them in a sentence for people.
+    pub fn sentence(&self) -> String {
+        let (first, more) = (self.first.sentence(), self.count - 1);
+        let more = if more == 0 { String::new() } else { format!(" And {more} more.") };
+        format!("{}: {first}{more} Remedy: {}.", self.check, self.remedy)
+    }
 }
 
 impl Finding {

@@ -67,6 +67,11 @@ pub trait Section {
         None
     }
 
+    /// Whether the torch stands until the arc is steady (`process.arc_start_delay`), so that it may leave as soon as it likes.
+    fn stands_at_start(&self) -> bool {
+        self.templates().iter().any(|(key, lines)| key.ends_with(".arc_on") && stands(lines))
+    }
+
     /// How long the torch stands at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of the
     /// section determine it and not `process.arc_end_delay`.
     fn arc_end_time(&self, _weld: &WeldSettings) -> Option<f64> {
@@ -92,6 +97,11 @@ pub trait Section {
     /// # Errors
     /// [`DialectError`] for a job that asks for more than the dialect can write or the section provides.
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError>;
+}
+
+/// Whether lines that strike the arc wait until it is steady.
+fn stands(arc_on: &[String]) -> bool {
+    arc_on.iter().any(|line| line.contains("{{arc_start_delay"))
 }
 
 /// How a section names the turn table under the part, so that the part's frame turns with it.

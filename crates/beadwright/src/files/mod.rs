@@ -16,16 +16,18 @@ pub use folder::{Folder, FolderError, Written, write_file};
 #[cfg(feature = "files")]
 pub use own_folder::posts;
 
+use crate::check::{self, Finding, Found};
 use crate::deposit::{Figures, Judgement};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
 use crate::layer::{Extent, Layer};
 use crate::model::RepairReport;
-use crate::plan::{Header, Summary};
+use crate::plan::{self, Header, Summary};
 use crate::plan_file;
 use crate::profile::Profile;
 use crate::program::Programmer;
 use crate::report::Report;
+use crate::task::{Cancelled, Task};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Name of the plan's file.
@@ -152,10 +154,18 @@ impl Default for Start {
     }
 }
 
+/// Larger plans are not checked as they are written, which needs all their layers at once, points.
+const MOST_CHECKED: usize = 2_000_000;
+
 /// Makes the text of all files of a plan as its layers come.
 pub struct PlanFiles {
     programs: Programs,
     report: Report,
+    profile: Profile,
+    /// The layers so far, of a plan that is not too large to be checked.
+    layers: Vec<Layer>,
+    points: usize,
+    found: Option<Vec<Found>>,
     start: Start,
     names: BTreeSet<String>,
 }
@@ -177,7 +187,8 @@ impl PlanFiles {
             return Err(failure);
         }
         let report = Report::new(header, profile);
-        let mut files = Self { programs, report, start, names: BTreeSet::new() };
+        let (profile, layers, names) = (profile.clone(), Vec::new(), BTreeSet::new());
+        let mut files = Self { programs, report, profile, layers, points: 0, found: None, start, names };
         files.note(&chunks);
         Ok((files, chunks))
     }
@@ -185,6 +196,12 @@ impl PlanFiles {
     /// Takes the next layer, and what the deposit model says of it; returns their text.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
+        self.points += layer.passes.iter().map(|pass| pass.points.len()).sum::<usize>();
+        if judgement.is_none() || self.points > MOST_CHECKED {
+            self.layers.clear();
+        } else {
+            self.layers.push(layer.clone());
+        }
         let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
         if (self.start.layer..=self.start.last).contains(&layer.index) {
             let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
@@ -198,7 +215,25 @@ impl PlanFiles {
 
     /// What people must know about the programs, once all layers are written: sentences.
     pub fn notes(&self) -> Vec<String> {
-        self.programs.writers.iter().flat_map(|writer| writer.notes()).collect()
+        let unchecked = (self.points > MOST_CHECKED).then(|| {
+            format!("The plan has {} points, so its checks were left out: `beadwright check` runs them.", self.points)
+        });
+        self.programs.writers.iter().flat_map(|writer| writer.notes()).chain(unchecked).collect()
+    }
+
+    /// What the checks find, once all layers are written; nothing in a plan that was not judged by the deposit model.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn check(&mut self, task: &Task) -> Result<&[Found], Cancelled> {
+        if self.found.is_none() {
+            let layers = std::mem::take(&mut self.layers);
+            let settings = plan::deposit_settings_of(&self.profile, &layers);
+            let findings: Vec<Finding> =
+                if layers.is_empty() { Vec::new() } else { check::check(&layers, &self.profile, settings, task)? };
+            self.found = Some(check::found(&findings));
+        }
+        Ok(self.found.as_deref().unwrap_or_default())
     }
 
     /// The last text of all files; `total` is what the deposit model says of all layers.
@@ -211,6 +246,8 @@ impl PlanFiles {
         repair: &RepairReport,
         total: Option<&Figures>,
     ) -> Result<Vec<Chunk>, DialectError> {
+        // Nobody stops a task of its own.
+        let found = self.check(&Task::new()).map(<[Found]>::to_vec).unwrap_or_default();
         let mut chunks = self.programs.end();
         if let Some(failure) = self.programs.failure() {
             return Err(failure);
@@ -221,14 +258,15 @@ impl PlanFiles {
         let mut metrics = summary.json(total);
         // So that the next plan in this folder knows which files are those of this one.
         metrics["files"] = serde_json::json!(names);
+        metrics["findings"] = serde_json::json!(found);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
-        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names)));
+        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &found)));
         Ok(chunks)
     }
 
     /// The report on a plan whose programs are not written, in which the places are seen why.
     pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
-        Chunk::new(REFUSED, self.report.finish(summary, repair, &[]))
+        Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &[]))
     }
 
     fn note(&mut self, chunks: &[Chunk]) {

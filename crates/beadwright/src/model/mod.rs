@@ -23,6 +23,7 @@ pub(crate) mod adjacency;
 mod amf;
 pub mod cut;
 mod formats;
+mod gzip;
 pub mod holes;
 pub mod iges;
 pub(crate) mod merge_vertices;
@@ -232,11 +233,19 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
     }
 }
 
-/// Text as UTF-8 with usual line ends; anything else as it is.
+/// What is packed by gzip unpacked, text as UTF-8 with usual line ends, anything else as it is.
 ///
 /// # Errors
-/// [`TextError`] for text in an encoding that is not read.
-pub fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TextError> {
+/// [`ImportError`] for text in an encoding that is not read, and for what cannot be unpacked.
+pub fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, ImportError> {
+    if gzip::is_packed(bytes) {
+        let unpacked = gzip::unpacked(bytes)?;
+        return Ok(decoded_text(&unpacked)?.into_owned().into());
+    }
+    Ok(decoded_text(bytes)?)
+}
+
+fn decoded_text(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TextError> {
     let is_text = stl::announced_size(bytes) != Some(bytes.len()) && text::needs_decoding(bytes);
     Ok(if is_text { text::of(bytes)?.into_bytes().into() } else { bytes.into() })
 }
@@ -263,8 +272,8 @@ pub fn is_stl(bytes: &[u8]) -> bool {
 /// Formats that people hand over by mistake.
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(400)];
-    if head.starts_with(b"\x1f\x8b") {
-        Some("a gzip archive (unpack it first)")
+    if gzip::is_packed(head) {
+        Some("a gzip archive in another")
     } else if head.starts_with(b"ISO-10303-21") {
         Some("a STEP file")
     } else {

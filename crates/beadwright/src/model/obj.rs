@@ -20,7 +20,7 @@ fn looks_obj(bytes: &[u8]) -> bool {
 
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     let (mut vertices, mut facets, mut lines) = (Vec::<[f32; 3]>::new(), Vec::new(), Vec::<u32>::new());
-    let mut corners = Vec::new();
+    let (mut corners, mut edges) = (Vec::new(), 0);
     for (number, line) in (1..).zip(bytes.split(|&b| b == b'\n')) {
         if number % 100_000 == 0 {
             task.check()?;
@@ -40,7 +40,8 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
                     corners.push(index.ok_or_else(|| broken("a corner names a vertex that is not there yet"))?);
                 }
                 if corners.len() < 3 {
-                    return Err(broken("a face needs three corners"));
+                    // Some programs write edges as faces.
+                    edges += 1;
                 }
                 for triangle in formats::fan(&corners) {
                     facets.extend(formats::indexed(&vertices, triangle));
@@ -52,7 +53,10 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
     let count = facets.len();
     let place = |i: usize| format!("line {}", lines.get(i).copied().unwrap_or_default());
-    formats::of_facets(facets.into_iter(), count, "OBJ", place, task)
+    let mut import = formats::of_facets(facets.into_iter(), count, "OBJ", place, task)?;
+    import.repair.degenerate += edges;
+    import.repair.triangles_read += edges;
+    Ok(import)
 }
 
 /// The index of the vertex that a corner names: `7`, `7/1`, `7//2`, `7/1/2`, or counted back from the last one, `-1`.

@@ -63,7 +63,7 @@ impl<'a> Package<'a> {
         if archive.len() > MOST_ENTRIES {
             return Err(broken(format!("its archive has {} entries, at most {MOST_ENTRIES} are read", archive.len())));
         }
-        let most = (MOST_TIMES * bytes.len() as u64).clamp(SMALL_BYTES, MOST_BYTES);
+        let most = most_of(bytes.len());
         Ok(Self { archive, most, left: most })
     }
 
@@ -144,7 +144,12 @@ pub(crate) fn unit_in_mm(model: &Element) -> Result<f64, ImportError> {
     })
 }
 
-fn unfolds(most: u64) -> String {
+/// How much may come out of an archive of that size, bytes.
+pub(super) fn most_of(packed: usize) -> u64 {
+    (MOST_TIMES * packed as u64).clamp(SMALL_BYTES, MOST_BYTES)
+}
+
+pub(super) fn unfolds(most: u64) -> String {
     let megabytes = most >> 20;
     format!(
         "it unfolds to more than {megabytes} MB, which no model of its size does. Save the part in another format, such as STL"

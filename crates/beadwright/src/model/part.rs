@@ -143,7 +143,7 @@ impl Model {
         bytes: &[u8],
         task: &Task,
     ) -> Result<Self, PartError> {
-        let bytes = &*decoded(bytes).map_err(ImportError::from)?;
+        let bytes = &*decoded(bytes)?;
         Ok(if is_iges(bytes) {
             Self::Curves(iges::read(bytes)?)
         } else if outline::drawing(bytes).is_some() {

@@ -85,6 +85,14 @@ pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> 
     deposit_settings(profile).fitted_to(&bounds, (high.z / profile.layers.height) as usize)
 }
 
+/// The same, with a grid fitted to the layers of a plan.
+pub fn deposit_settings_of(profile: &Profile, layers: &[Layer]) -> DepositSettings {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
+    let settings = deposit_settings(profile);
+    Bounds::of(points.chain(outlines)).map_or(settings, |bounds| settings.fitted_to(&bounds, layers.len()))
+}
+
 /// What is the same for all layers of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Header {

@@ -335,10 +335,12 @@ impl Profile {
         }
     }
 
-    /// A pass that takes less time than this, s, ends before its arc is steady. A hybrid that follows its paper to the
-    /// letter lays such passes all the same.
+    /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch stands until then. A hybrid
+    /// that follows its paper to the letter lays such passes all the same.
     pub fn soonest_arc_end(&self) -> f64 {
-        if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
+        let stands = |post: &String| self.dialects.get(post).is_some_and(|section| section.stands_at_start());
+        let stands = !self.posts.is_empty() && self.posts.iter().all(stands);
+        if self.hybrid.literal || stands { 0.0 } else { self.process.arc_start_delay }
     }
 
     /// The most instructions that a pass may have, so that all posts can write it; `None` where it may have any number.

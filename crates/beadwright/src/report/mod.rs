@@ -32,6 +32,7 @@ mod tables;
 pub mod temperature;
 mod words;
 
+use crate::check::Found;
 use crate::deposit::{Figures, Judgement};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
@@ -114,14 +115,14 @@ impl Report {
         }
     }
 
-    /// The page. `files` are the names of the files that were written.
-    pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String]) -> String {
+    /// The page. `files` are the names of the files that were written, `found` is what the checks have found.
+    pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String], found: &[Found]) -> String {
         let (header, profile) = (&self.header, &self.profile);
         let values = [
             ("title", escape(&header.part)),
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
-            ("state", tables::state(summary, repair)),
+            ("state", tables::state(summary, repair, found)),
             ("refused", tables::refused(summary)),
             ("kinds", tables::kinds(&self.kinds)),
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
@@ -129,7 +130,7 @@ impl Report {
             ("angles", angles::section(&self.middle, profile)),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
-            ("warnings", tables::warnings(summary, repair)),
+            ("warnings", tables::warnings(summary, repair, found)),
             ("words", words::list()),
             ("data", self.data()),
             (

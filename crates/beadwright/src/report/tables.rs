@@ -3,6 +3,7 @@
 use super::escape;
 use super::words::hinted;
 use crate::bead::Overlap;
+use crate::check::Found;
 use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
 use crate::metrics::Metrics;
@@ -11,7 +12,7 @@ use crate::number::hours;
 use crate::pass::PassKind;
 use crate::plan::{Header, Summary};
 use crate::profile::{Profile, RasterTurn};
-use crate::warning::Warning;
+use glam::DVec2;
 use std::collections::BTreeSet;
 
 /// One sentence about the whole plan.
@@ -44,11 +45,11 @@ fn empty(header: &Header, m: &Metrics) -> String {
 }
 
 /// The badge beside the heading.
-pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
+pub(super) fn state(summary: &Summary, repair: &RepairReport, found: &[Found]) -> String {
     if !summary.forbidden.is_empty() {
         return "<a class=\"badge bad\" href=\"#warnings\">Do not start</a>".to_owned();
     }
-    match remarks(summary, repair).len() {
+    match remarks(summary, repair, found).len() {
         0 => "<a class=\"badge good\" href=\"#warnings\">Nothing was lost</a>".to_owned(),
         n => format!("<a class=\"badge warn\" href=\"#warnings\">{}</a>", count(n, "remark", "remarks")),
     }
@@ -56,9 +57,11 @@ pub(super) fn state(summary: &Summary, repair: &RepairReport) -> String {
 
 /// Why the program should not be started, with the places; nothing for a plan that can be welded.
 pub(super) fn refused(summary: &Summary) -> String {
-    let place = |reason: &String| summary.warnings.summaries().find(|w| w.sentence() == *reason).map(|w| w.largest);
+    let place = |reason: &String| {
+        summary.warnings.summaries().find(|w| w.sentence() == *reason).map(|w| (w.largest.layer, w.largest.place))
+    };
     let item = |reason: &String| {
-        let link = place(reason).as_ref().map(link).unwrap_or_default();
+        let link = place(reason).map(link).unwrap_or_default();
         format!("<li><b>Do not start</b> {}{link}</li>", escape(reason))
     };
     let items: String = summary.forbidden.iter().map(item).collect();
@@ -201,11 +204,11 @@ pub(super) fn files(files: &[String]) -> String {
 }
 
 /// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
-pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
+pub(super) fn warnings(summary: &Summary, repair: &RepairReport, found: &[Found]) -> String {
     let item = |(source, text, place): &Remark| {
-        format!("<li><b>{source}</b> {}{}</li>", escape(text), place.as_ref().map(link).unwrap_or_default())
+        format!("<li><b>{source}</b> {}{}</li>", escape(text), place.map(link).unwrap_or_default())
     };
-    let items: Vec<String> = remarks(summary, repair).iter().map(item).collect();
+    let items: Vec<String> = remarks(summary, repair, found).iter().map(item).collect();
     if items.is_empty() {
         return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
                 of the profile fit together.</p>"
@@ -215,19 +218,23 @@ pub(super) fn warnings(summary: &Summary, repair: &RepairReport) -> String {
 }
 
 /// Where a remark comes from, the remark, and the place that it tells of.
-type Remark = (&'static str, String, Option<Warning>);
+type Remark = (&'static str, String, Option<Seen>);
 
-fn remarks(summary: &Summary, repair: &RepairReport) -> Vec<Remark> {
+/// A layer and a place on it, mm.
+type Seen = (usize, DVec2);
+
+fn remarks(summary: &Summary, repair: &RepairReport, found: &[Found]) -> Vec<Remark> {
     let model = repair.sentences().into_iter().map(|s| ("Model", s, None));
-    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some(w.largest)));
+    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some((w.largest.layer, w.largest.place))));
     let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
+    let seen = |f: &Found| f.first.layer.zip(f.first.place.map(|place| place.truncate()));
+    let checks = found.iter().filter(|f| !f.is_told(summary)).map(|f| ("Check", f.sentence(), seen(f)));
     // What forbids the program stands at the head of the page.
-    model.chain(layers).chain(process).filter(|(_, text, _)| !summary.forbidden.contains(text)).collect()
+    checks.chain(model).chain(layers).chain(process).filter(|(_, text, _)| !summary.forbidden.contains(text)).collect()
 }
 
 /// A button that shows the place of a warning.
-fn link(warning: &Warning) -> String {
-    let (layer, place) = (warning.layer, warning.place);
+fn link((layer, place): Seen) -> String {
     format!(
         "<button data-layer=\"{layer}\" data-x=\"{:.2}\" data-y=\"{:.2}\">Show on layer {}</button>",
         place.x,

@@ -127,7 +127,8 @@ impl WarningKind {
             ),
             Self::PassTooShort => (
                 "pass-too-short",
-                "a pass would be shorter than fill.min_pass_length or over before the arc is steady, and is left out",
+                "a pass would be shorter than fill.min_pass_length, or over before the arc is steady in programs that do not wait \
+                 for it (no `{{arc_start_delay}}` where the arc is struck), and is left out",
                 "lower fill.min_pass_length if your arc is steady sooner, or take another strategy",
             ),
             Self::NeverCools => (

@@ -6,7 +6,7 @@ use super::write::KukaKrl;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::MEGABYTE;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer, stands};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use crate::program::ProgramSettings;
 use crate::weld::WeldSettings;
@@ -164,6 +164,10 @@ impl Section for Krl {
 
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
+    }
+
+    fn stands_at_start(&self) -> bool {
+        self.arc == KrlArc::Arctech || stands(&self.arc_on)
     }
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {

@@ -4,7 +4,7 @@ use super::names;
 use super::write::AbbRapid;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer, stands};
 use crate::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use crate::program::ProgramSettings;
 use crate::weld::{WeldSettings, retract_time};
@@ -271,6 +271,10 @@ impl Section for Rapid {
 
     fn hooks(&self) -> Option<&Hooks> {
         Some(&self.hooks)
+    }
+
+    fn stands_at_start(&self) -> bool {
+        self.arc == RapidArc::Instructions || stands(&self.arc_on)
     }
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
