@@ -238,7 +238,8 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
 /// # Errors
 /// [`ImportError`] for text in an encoding that is not read, and for what cannot be unpacked.
 pub fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, ImportError> {
-    if gzip::is_packed(bytes) {
+    // A binary STL may have any header.
+    if gzip::is_packed(bytes) && stl::announced_size(bytes) != Some(bytes.len()) {
         let unpacked = gzip::unpacked(bytes)?;
         return Ok(decoded_text(&unpacked)?.into_owned().into());
     }

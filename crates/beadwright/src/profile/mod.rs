@@ -326,7 +326,8 @@ impl Profile {
             machining_allowance: fill.machining_allowance,
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,
-            min_pass_length: fill.min_pass_length.max(self.soonest_arc_end() * self.process.deposition_speed),
+            // What a strategy lays outlasts the start of its arc where it has the choice.
+            min_pass_length: fill.min_pass_length.max(self.steady_after() * self.process.deposition_speed),
             layer,
             hybrid: self.hybrid.settings(self.bead.width, self.stepover()),
             wall: self.wall.settings(self.bead.width),
@@ -335,12 +336,16 @@ impl Profile {
         }
     }
 
-    /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch stands until then. A hybrid
-    /// that follows its paper to the letter lays such passes all the same.
+    /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch stands until then.
     pub fn soonest_arc_end(&self) -> f64 {
         let stands = |post: &String| self.dialects.get(post).is_some_and(|section| section.stands_at_start());
         let stands = !self.posts.is_empty() && self.posts.iter().all(stands);
-        if self.hybrid.literal || stands { 0.0 } else { self.process.arc_start_delay }
+        if stands { 0.0 } else { self.steady_after() }
+    }
+
+    /// How long an arc takes until it is steady, s; a hybrid that follows its paper to the letter does not ask.
+    fn steady_after(&self) -> f64 {
+        if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
     }
 
     /// The most instructions that a pass may have, so that all posts can write it; `None` where it may have any number.
