@@ -3,7 +3,6 @@
 use crate::plan::{self, Arguments, Files, Refused, print_found, print_head, print_summary, print_warnings, refused};
 use crate::several::Programs;
 use crate::{progress, say};
-use beadwright::check::Found;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
 use beadwright::model::together::Place;
@@ -110,16 +109,16 @@ impl Planned<'_> {
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
         let found = files.check(&Task::new())?;
-        let found: Vec<String> = found.iter().filter(|f| !f.is_told(&summary)).map(Found::sentence).collect();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {
             let mut value = summary.json(figures.as_ref());
             value["part"] = name.into();
+            value["findings"] = serde_json::json!(found);
             return Ok(Some(value));
         }
         let place: Vec<Place> = places.iter().filter(|(part, _)| part == name).cloned().collect();
         print_head(&mut say::done(false), name, profile, model, &place)?;
-        print_found(&found)?;
+        print_found(&found, &summary)?;
         print_warnings(profile, model, &summary)?;
         print_summary(&mut say::done(false), &folder, &summary, figures.as_ref(), &written)?;
         writeln!(say::done(false))?;

@@ -221,16 +221,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
-    let found: Vec<String> = files.check(&task)?.iter().filter(|f| !f.is_told(&summary)).map(Found::sentence).collect();
+    let found = files.check(&task)?;
     let figures = files.figures();
     let written = files.finish(&summary, &model.repair())?;
 
     if arguments.json {
-        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&summary.json(figures.as_ref()))?)?;
+        let mut json = summary.json(figures.as_ref());
+        json["findings"] = serde_json::json!(found);
+        writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&json)?)?;
         return Ok(());
     }
     print_head(&mut say::done(false), &part, &profile, &model, &places)?;
-    print_found(&found)?;
+    print_found(&found, &summary)?;
     print_warnings(&profile, &model, &summary)?;
     Ok(print_summary(&mut say::done(false), &arguments.output, &summary, figures.as_ref(), &written)?)
 }
@@ -411,9 +413,9 @@ pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary)
 }
 
 /// Prints what the checks found, a line each.
-pub(crate) fn print_found(found: &[String]) -> std::io::Result<()> {
+pub(crate) fn print_found(found: &[Found], summary: &Summary) -> std::io::Result<()> {
     let mut out = say::warnings();
-    found.iter().try_for_each(|line| writeln!(out, "check {line}"))
+    found.iter().filter(|f| !f.is_told(summary)).try_for_each(|f| writeln!(out, "check {}", f.sentence()))
 }
 
 pub(crate) fn print_summary(

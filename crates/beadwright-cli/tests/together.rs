@@ -123,7 +123,9 @@ fn four_parts_are_welded_one_after_another() {
     let near = ["-o", "near", "--gap", "5"];
     let refused = beadwright(at, &[&PLAN[..], &near, &["--order", "parts"]].concat());
     let text = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(3) && !at.join("near").exists(), "{text}");
+    assert_eq!(refused.status.code(), Some(3), "{text}");
+    let left: Vec<_> = fs::read_dir(at.join("near")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["refused.html"], "no program is written");
     assert!(text.contains("The torch would hit") && text.contains("mm farther apart"), "{text}");
     assert!(beadwright(at, &[&PLAN[..], &near].concat()).status.success());
 }

@@ -37,7 +37,7 @@ pub enum WarningKind {
     NothingBelow,
     /// Less than half of a pass lies over metal; the size is its length, mm.
     InTheAir,
-    /// A small new island hangs in the air and was left out; the size is its area, mm².
+    /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
     /// Part of a layer reaches farther than check.max_overhang beyond the one below; the size is its area, mm².
     Overhang,
@@ -184,9 +184,8 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::NothingBelow => format!(
-                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead (layer {}). \
-                 Cut the model off below, or take a narrower bead that fills what lies there.",
-                largest.layer + 1
+                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead {place}. \
+                 Cut the model off below, or take a narrower bead that fills what lies there."
             ),
             WarningKind::InTheAir => format!(
                 "{layers}: {} less than half over metal, {total:.1} mm in all, the longest {size:.1} mm {place}. Turn the part \
@@ -195,7 +194,7 @@ impl WarningSummary {
             ),
             WarningKind::HangingIsland => format!(
                 "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
-                times("island", "islands")
+                times("small place", "small places")
             ),
             WarningKind::Overhang => format!(
                 "{layers}: places that reach farther beyond the layer below than check.max_overhang, {total:.1} mm² in all, \

@@ -12,6 +12,8 @@ use planar::{Polygon, Region};
 const LEAST: f64 = 0.5;
 /// A new island in the air is left out up to this area, in squared bead widths.
 const SMALL: f64 = 4.0;
+/// A pass in the air is left out up to this length, in bead widths.
+const STUB: f64 = 2.0;
 /// Passes are looked at so many times per bead width.
 const SAMPLES: f64 = 4.0;
 /// An island stands on another from this part of the smaller one's area on.
@@ -56,7 +58,8 @@ impl Support {
         self.left_out.contains(island)
     }
 
-    /// Takes out small new islands whose passes all hang, and warns of other passes that do. The islands taken out.
+    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. The islands
+    /// taken out.
     fn take_out(&self, layer: &mut Layer, hanging: &[bool], width: f64) -> Vec<Polygon> {
         if !hanging.contains(&true) {
             return Vec::new();
@@ -74,6 +77,10 @@ impl Support {
         for ((pass, of), hangs) in std::mem::take(&mut layer.passes).into_iter().zip(of).zip(hanging) {
             match of.filter(|i| *hangs && out[*i]) {
                 Some(i) => taken[i] = true,
+                None if *hangs && pass.length() <= STUB * width => {
+                    let (kind, size) = (WarningKind::HangingIsland, pass.length() * width);
+                    layer.warnings.push(Warning { kind, layer: layer.index, place: start(&pass), size });
+                }
                 None => {
                     if *hangs {
                         let (kind, size) = (WarningKind::InTheAir, pass.length());

@@ -191,7 +191,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::Unsound => "passes leave the part or cross".to_owned(),
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::InTheAir => format!("pass of {size:.1} mm less than half over metal"),
-        WarningKind::HangingIsland => format!("hanging island of {size:.1} mm² left out"),
+        WarningKind::HangingIsland => format!("hanging place of {size:.1} mm² left out"),
         WarningKind::Overhang => format!("{size:.1} mm² hang over the layer below"),
         WarningKind::ShortArc => format!("pass of {size:.1} mm over before its arc is steady"),
         WarningKind::Relit => format!("pass longer than a program: arc lit again {size:.0} times"),

@@ -97,7 +97,7 @@ impl WarningKind {
             ),
             Self::HangingIsland => (
                 "hanging-island",
-                "a small island begins in the air, and nothing stands on it, so it is left out",
+                "a small island begins in the air, and nothing stands on it, or a pass of two bead widths hangs, so it is left out",
                 "turn the part (`--orient`), or add metal below that is machined off, if the island matters",
             ),
             Self::Overhang => (
