@@ -415,7 +415,7 @@ pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary)
 /// Prints what the checks found, a line each.
 pub(crate) fn print_found(found: &[Found], summary: &Summary) -> std::io::Result<()> {
     let mut out = say::warnings();
-    found.iter().filter(|f| !f.is_told(summary)).try_for_each(|f| writeln!(out, "check {}", f.sentence()))
+    found.iter().filter(|f| !f.is_warned_of(summary)).try_for_each(|f| writeln!(out, "check {}", f.sentence()))
 }
 
 pub(crate) fn print_summary(

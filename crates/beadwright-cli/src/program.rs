@@ -7,7 +7,7 @@ use beadwright::compare::Totals;
 use beadwright::deposit::{self, DepositSettings};
 use beadwright::dialect::reading::{self, ArcCodes, Fault, Metal};
 use beadwright::export::toolpath;
-use beadwright::layer::Layer;
+use beadwright::layer::{self, Layer};
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
 use beadwright::plan;
@@ -63,9 +63,7 @@ pub(crate) struct Loaded {
 impl Loaded {
     /// How the layers are judged: with the grid asked for, or one that fits them.
     pub(crate) fn deposit_settings(&self, grid: Option<f64>) -> anyhow::Result<DepositSettings> {
-        let points = self.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-        let outlines = self.layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
-        match Bounds::of(points.chain(outlines)) {
+        match layer::bounds(&self.layers) {
             Some(bounds) => fitted(grid, self.settings, &bounds, self.layers.len()),
             None => Ok(self.settings),
         }
@@ -228,7 +226,7 @@ fn told_profile(text: &str) -> Option<&'static str> {
 }
 
 impl Reading {
-    /// What switches the arc: the words given, and those of the profile.
+    /// What switches the arc: the words given, or those of the profile.
     fn codes(&self, templates: ArcCodes) -> ArcCodes {
         ArcCodes {
             on: self.arc_on.iter().cloned().chain(templates.on).collect(),

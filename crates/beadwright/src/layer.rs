@@ -3,7 +3,7 @@
 use crate::pass::Pass;
 use crate::warning::Warning;
 use glam::{DVec2, DVec3};
-use planar::{Join, Polygon, Region};
+use planar::{Bounds, Join, Polygon, Region};
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
 
@@ -65,6 +65,13 @@ impl Extent {
     pub fn size(&self) -> DVec3 {
         self.high - self.low
     }
+}
+
+/// What layers cover, seen from above: their passes and outlines.
+pub fn bounds(layers: &[Layer]) -> Option<Bounds> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
+    Bounds::of(points.chain(outlines))
 }
 
 /// Where islands hang farther than `reach` (mm) beyond those below: area (mm²) and a place; smaller areas than half a bead's

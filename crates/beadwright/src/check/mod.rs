@@ -68,6 +68,13 @@ pub const CHECKS: [Check; 23] = [
     dense_points::CHECK,
 ];
 
+/// Checks whose findings the plan warns of by itself.
+const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
+    (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir]),
+    (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::NothingBelow]),
+    (&short_arc::CHECK, &[WarningKind::ShortArc]),
+];
+
 /// A check.
 pub struct Check {
     /// The name people type.
@@ -202,15 +209,10 @@ pub fn found(findings: &[Finding]) -> Vec<Found> {
 }
 
 impl Found {
-    /// Whether a warning of the plan tells the same.
-    pub fn is_told(&self, summary: &Summary) -> bool {
-        let kinds: &[WarningKind] = match self.check {
-            "overhang" => &[WarningKind::Overhang, WarningKind::InTheAir],
-            "layers" => &[WarningKind::EmptyLayer, WarningKind::NothingBelow],
-            "short-arc" => &[WarningKind::ShortArc],
-            _ => &[],
-        };
-        summary.warnings.summaries().any(|w| kinds.contains(&w.kind))
+    /// Whether a warning of the plan already says the same.
+    pub fn is_warned_of(&self, summary: &Summary) -> bool {
+        let warned = |kinds: &[WarningKind]| summary.warnings.summaries().any(|w| kinds.contains(&w.kind));
+        ALSO_WARNED.iter().any(|(check, kinds)| check.name == self.check && warned(kinds))
     }
 
     /// All of them in a sentence for people.

@@ -1,12 +1,12 @@
 //! Finds the lines near a place: a grid of cells that hold pieces of lines.
 
 use glam::{DVec2, IVec2};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Numbered lines, cut into pieces and sorted by place.
 pub struct LineIndex {
     size: f64,
-    cells: HashMap<IVec2, Vec<Piece>>,
+    cells: FxHashMap<IVec2, Vec<Piece>>,
 }
 
 /// Number of the line, number of the piece in it, and its ends.
@@ -15,7 +15,7 @@ type Piece = (usize, usize, DVec2, DVec2);
 impl LineIndex {
     /// An index without lines, which sees no farther than `sight` (mm).
     pub fn new(sight: f64) -> Self {
-        Self { size: sight, cells: HashMap::new() }
+        Self { size: sight, cells: FxHashMap::default() }
     }
 
     /// How far it sees, mm.

@@ -10,17 +10,19 @@
 //! | `parts` | parts that are welded one after another |
 //! | [`choice`] | which strategy a part is planned with |
 //! | [`expected`](expected()) | about how much a plan will hold |
+//! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
-//! | `support` | whether passes lie on metal |
+//! | `support` | whether passes lie on the metal below |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 pub mod choice;
 pub mod clearance;
 mod expected;
 mod filled;
+mod emitter;
 mod levels;
 mod parts;
 mod preview;
@@ -37,14 +39,12 @@ pub use scan_lines::{ToFill, raster_angle};
 use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::wall::{self, graph::Line};
-use crate::fill::{self, Fill, Path, Strategy, coverage};
-use crate::heat::{LONGEST_WAIT, PassHeat};
-use crate::layer::{Extent, Layer, Temperature, overhang};
+use crate::fill::{self, Path, Strategy, coverage};
+use crate::layer::{self, Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
 use crate::order;
-use crate::pass::Pass;
 use crate::profile::Profile;
 use crate::slice::{self, BATCH, LayerFit, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Stage, Task};
@@ -52,8 +52,9 @@ use crate::warning::{Warning, WarningKind, WarningSummary, Warnings};
 use crate::weld;
 use filled::{Filled, drop_short};
 use glam::{DVec2, DVec3};
+use emitter::Emitter;
 use planar::medial::Node;
-use planar::{Bounds, Polygon};
+use planar::Bounds;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -87,10 +88,8 @@ pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> 
 
 /// The same, with a grid fitted to the layers of a plan.
 pub fn deposit_settings_of(profile: &Profile, layers: &[Layer]) -> DepositSettings {
-    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
     let settings = deposit_settings(profile);
-    Bounds::of(points.chain(outlines)).map_or(settings, |bounds| settings.fitted_to(&bounds, layers.len()))
+    layer::bounds(layers).map_or(settings, |bounds| settings.fitted_to(&bounds, layers.len()))
 }
 
 /// What is the same for all layers of a plan.
@@ -557,129 +556,3 @@ fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<
     }
     Ok(())
 }
-
-/// Puts filled layers in order and hands them over.
-struct Emitter<'a, S> {
-    profile: &'a Profile,
-    sink: &'a mut S,
-    torch: Option<DVec2>,
-    heat: Heat,
-    memory: order::Memory,
-    support: Support,
-    /// Outlines of the layer below, of the islands that are welded.
-    below: Vec<Polygon>,
-    /// Top of the highest layer with beads, mm.
-    built: f64,
-    points: usize,
-    metrics: Metrics,
-    warnings: Warnings,
-}
-
-impl<S: Sink> Emitter<'_, S> {
-    fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
-        let Filled { slice, fills, planned_area, shared, .. } = filled;
-        let Slice { index, z, height, islands, mut warnings } = slice;
-        let slice_area = islands.iter().map(Polygon::area).sum();
-        let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
-        let laid: Vec<Polygon> = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
-        if islands.is_empty() {
-            warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
-        }
-        let order = self.profile.order_settings(index);
-        let paths = self.memory.order(fills, shared, &order, &mut self.torch);
-        let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
-        let mut layer =
-            Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
-        relight::relight(&mut layer, self.profile);
-        self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);
-        self.warm(&mut layer);
-        self.doubts(&mut layer);
-        self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
-        layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
-        self.metrics.add(&layer);
-        self.sink.layer(layer)
-    }
-
-    /// Keeps the limits of `[interpass]`, warns where that cannot be, and widens beads by the heat that they find.
-    fn warm(&mut self, layer: &mut Layer) {
-        let Some(build) = &mut self.heat.build else { return };
-        let heat = build.layer_within_limits(layer);
-        // The next layer is ordered from where this one ends.
-        self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
-        let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
-        layer.temperatures = heat.passes.iter().map(temperature).collect();
-        let bead = &self.profile.bead;
-        if let Some(law) = &bead.by_heat {
-            warm::widen(layer, &heat, build, law, bead.width);
-        }
-        let Some(limits) = self.profile.interpass else { return };
-        for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
-            let kind = if pass.wait >= LONGEST_WAIT {
-                WarningKind::NeverCools
-            } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
-                WarningKind::TooCold
-            } else {
-                continue;
-            };
-            let place = pass.start().unwrap_or_default().truncate();
-            layer.warnings.push(Warning { kind, layer: layer.index, place, size: heat.start });
-        }
-    }
-
-    /// Warns of what a layer cannot be welded on, and of what a controller may refuse.
-    fn doubts(&mut self, layer: &mut Layer) {
-        let (profile, index) = (self.profile, layer.index);
-        let limits = &profile.check;
-        let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
-        if let Some(first) = layer.passes.first() {
-            let gap = layer.z - layer.height - self.built;
-            if gap > LARGE_GAP * layer.height {
-                doubt(WarningKind::NothingBelow, first.start().unwrap_or_default().truncate(), gap);
-            } else if !self.below.is_empty() {
-                let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
-                if let Some((area, place)) = overhang(&self.below, &layer.islands, reach, width) {
-                    doubt(WarningKind::Overhang, place, area);
-                }
-            }
-            self.built = layer.z;
-        }
-        let points: usize = layer.passes.iter().map(|pass| pass.points.len()).sum();
-        self.points += points;
-        if points > limits.max_points as usize {
-            doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
-        }
-        let soonest = profile.soonest_arc_end();
-        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < 0.999 * soonest;
-        for pass in layer.passes.iter().filter(unsteady) {
-            doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
-        }
-    }
-}
-
-/// What is laid on a layer, in order and at its height; top and thickness of the layer, mm.
-fn passes(
-    fills: Vec<Fill>,
-    layer: usize,
-    heights: (f64, f64),
-    profile: &Profile,
-    torch: &mut Option<DVec2>,
-) -> Vec<Pass> {
-    lifted(order::order(fills, &profile.order_settings(layer), torch), layer, heights, profile)
-}
-
-/// Paths at the height of their layer; its top and its thickness, mm.
-fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
-    let lift = |path: Path| Pass {
-        kind: path.kind,
-        closed: path.closed,
-        points: path.points.into_iter().map(|p| p.extend(top)).collect(),
-        // The wire feed stays the same: a wider bead is laid more slowly.
-        pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
-        width: path.width,
-        wait: 0.0,
-    };
-    paths.into_iter().map(lift).collect()
-}
-
-/// A gap below a layer counts from this part of its thickness on.
-const LARGE_GAP: f64 = 0.25;

@@ -85,7 +85,7 @@ pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profil
             let raster_angle = angle + FRAC_PI_2 * i as f64;
             let settings = FillSettings { raster_angle, solid: layer.solid, ..profile.fill_settings(i) };
             let fills = infills.iter().map(|region| strategy.lines(region, &settings)).collect();
-            let passes = super::passes(fills, i, (0.0, profile.layers.height), profile, &mut torch);
+            let passes = super::emitter::passes(fills, i, (0.0, profile.layers.height), profile, &mut torch);
             metrics.add(&Layer { passes, ..Layer::default() });
         }
         (metrics.total_time_s, metrics.deposited_volume_mm3)

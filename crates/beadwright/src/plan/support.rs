@@ -14,7 +14,7 @@ const LEAST: f64 = 0.5;
 const SMALL: f64 = 4.0;
 /// A pass in the air is left out up to this length, in bead widths.
 const STUB: f64 = 2.0;
-/// Passes are looked at so many times per bead width.
+/// Places per bead width at which a pass is looked at.
 const SAMPLES: f64 = 4.0;
 /// An island stands on another from this part of the smaller one's area on.
 const STANDS: f64 = 0.05;
@@ -44,7 +44,7 @@ impl Support {
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
         if let Some(metal) = self.metal.take().filter(|_| !alike) {
             let over = |p: DVec2| metal.is_at(p) || (!solid && self.islands.iter().any(|island| island.contains(p)));
-            let hanging: Vec<bool> = layer.passes.iter().map(|pass| part_over(pass, width, over) < LEAST).collect();
+            let hanging: Vec<bool> = layer.passes.iter().map(|pass| hangs(pass, width, over)).collect();
             self.left_out = self.take_out(layer, &hanging, width);
         } else if !alike {
             self.left_out.clear();
@@ -108,21 +108,26 @@ fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
     common > STANDS * island.area().min(lower.area())
 }
 
-/// The part of a pass's length that lies over metal.
-fn part_over(pass: &Pass, width: f64, over: impl Fn(DVec2) -> bool) -> f64 {
-    let (mut along, mut next, mut all, mut on) = (0.0, 0.0, 0_usize, 0_usize);
-    let step = width / SAMPLES;
+/// Whether less than `LEAST` of a pass's length lies over metal.
+fn hangs(pass: &Pass, width: f64, over: impl Fn(DVec2) -> bool) -> bool {
+    let places = places_along(pass, width / SAMPLES);
+    let needed = (LEAST * places.len() as f64).ceil() as usize;
+    places.into_iter().filter(|place| over(*place)).take(needed).count() < needed
+}
+
+/// Places on a pass, `step` (mm) apart.
+fn places_along(pass: &Pass, step: f64) -> Vec<DVec2> {
+    let (mut along, mut next, mut places) = (0.0, 0.0, Vec::new());
     for piece in pass.segments().filter(|piece| piece.from.is_finite()) {
         let length = piece.length();
         while next <= along + length {
             let share = if length > 0.0 { (next - along) / length } else { 0.0 };
-            all += 1;
-            on += usize::from(over(piece.from.lerp(piece.to, share).truncate()));
+            places.push(piece.from.lerp(piece.to, share).truncate());
             next += step;
         }
         along += length;
     }
-    on as f64 / all.max(1) as f64
+    places
 }
 
 impl Metal {

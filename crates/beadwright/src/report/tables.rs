@@ -228,7 +228,7 @@ fn remarks(summary: &Summary, repair: &RepairReport, found: &[Found]) -> Vec<Rem
     let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some((w.largest.layer, w.largest.place))));
     let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
     let seen = |f: &Found| f.first.layer.zip(f.first.place.map(|place| place.truncate()));
-    let checks = found.iter().filter(|f| !f.is_told(summary)).map(|f| ("Check", f.sentence(), seen(f)));
+    let checks = found.iter().filter(|f| !f.is_warned_of(summary)).map(|f| ("Check", f.sentence(), seen(f)));
     // What forbids the program stands at the head of the page.
     checks.chain(model).chain(layers).chain(process).filter(|(_, text, _)| !summary.forbidden.contains(text)).collect()
 }

@@ -10,7 +10,7 @@ use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns,
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::truth::truth;
 use crate::dialect::reading::words::{
-    Patterns, arguments, before_comment, begins_with, compact, name, number, strip_word, unscoped,
+    Patterns, arguments, before_comment, begins_with, compact, name, number, strip_word, unscoped, without_end,
 };
 use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, words};
 use glam::{DQuat, DVec3, EulerRot};
@@ -295,9 +295,7 @@ impl Reader<'_> {
             if rest.to_ascii_uppercase().contains("$IN[") {
                 self.trace.watch.look();
             }
-            let condition =
-                rest.len().checked_sub(4).filter(|at| rest.get(*at..).is_some_and(|w| w.eq_ignore_ascii_case("THEN")));
-            let condition = condition.map_or(rest, |at| &rest[..at]);
+            let condition = without_end(rest, "THEN");
             let until = behind(i + 1, lines.len(), |at| mark(lines[at]));
             let moves = lines[i + 1..until].iter().any(|line| MOTIONS.iter().any(|m| strip_word(line, m.0).is_some()));
             let loops = word.eq_ignore_ascii_case("WHILE");

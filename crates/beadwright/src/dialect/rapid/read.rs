@@ -9,7 +9,9 @@ use crate::dialect::reading::fault::{BLENDED_SWITCH, CONFIGURATION, RAPID_WITH_A
 use crate::dialect::reading::loops::{Counting, Mark, Next, behind, holds, turns, unrolled};
 use crate::dialect::reading::trace::{Step, Trace};
 use crate::dialect::reading::truth::truth;
-use crate::dialect::reading::words::{Patterns, arguments, begins_with, compact, name, number, strip_word, unscoped};
+use crate::dialect::reading::words::{
+    Patterns, arguments, begins_with, compact, name, number, strip_word, unscoped, without_end,
+};
 use crate::dialect::reading::{FindModule, Metal, Options, ReadError, ReadProgram};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -175,6 +177,16 @@ struct Reader<'a> {
     weaves: HashMap<String, [f64; 2]>,
 }
 
+/// Output (in upper case) and state that a statement sets: `SetDO doArc,1;`, `Set doArc;`, `Reset doArc;`.
+pub(super) fn output(word: &str, rest: &str) -> Option<(String, bool)> {
+    let is = |name: &str| word.eq_ignore_ascii_case(name);
+    let parts = arguments(rest);
+    let high = || parts.get(1).is_some_and(|state| *state == "1" || state.eq_ignore_ascii_case("high"));
+    let set = is("Set") || is("SetDO") && high();
+    let named = is("Set") || is("Reset") || is("SetDO");
+    named.then(|| (parts.first().copied().unwrap_or_default().to_ascii_uppercase(), set))
+}
+
 impl Reader<'_> {
     /// Loads a module and evaluates its data.
     fn load(&mut self, name: Option<&str>, text: &str) -> Result<Rc<Module>, ReadError> {
@@ -240,20 +252,19 @@ impl Reader<'_> {
 
     /// Whether a condition up to its `THEN` holds, if that is known.
     fn holds(&self, condition: &str, module: &Module) -> Option<bool> {
-        let condition = compact(condition).to_ascii_uppercase();
+        let condition = compact(without_end(condition, "THEN"));
         let value = |name: &str| match (self.values.get(name), self.value(name, module)) {
             (Some(value), _) => Some(*value),
             (None, Some(Value::Speed(value))) => Some(value),
             _ => None,
         };
-        holds(condition.strip_suffix("THEN").unwrap_or(&condition), value)
+        holds(&condition, value)
     }
 
     /// Whether a loop goes on whose condition asks flags of waits that may come too late, and outputs: while all is well none
     /// does, and outputs are as they were set.
     fn goes_on(&self, condition: &str) -> Option<bool> {
-        let end = condition.to_ascii_uppercase().strip_suffix("DO").map_or(condition.len(), str::len);
-        truth(&condition[..end], &|part| {
+        truth(without_end(condition, "DO"), &|part| {
             let flat = compact(part);
             let output = flat.strip_prefix("DOUTPUT(").and_then(|rest| rest.split_once(")="));
             let set = |(name, value): (&str, &str)| {
@@ -343,14 +354,12 @@ impl Reader<'_> {
             self.trace.halts(word, line);
         } else if is("WaitTime") && flat.contains("\\INPOS") || is("WaitRob") {
             self.trace.watch.wait();
-        } else if is("SetDO") || is("Set") || is("Reset") {
-            let parts = arguments(rest);
-            let output = parts.first().copied().unwrap_or_default().to_ascii_uppercase();
-            if is("Set") || parts.get(1).is_some_and(|state| *state == "1" || state.eq_ignore_ascii_case("high")) {
-                self.outputs.insert(output.clone());
+        } else if let Some((output, on)) = output(word, rest) {
+            if on {
+                self.outputs.insert(output.clone())
             } else {
-                self.outputs.remove(&output);
-            }
+                self.outputs.remove(&output)
+            };
             if self.package && (self.on.matches(flat) || self.off.matches(flat)) {
                 let place = Some(self.trace.place(line));
                 let text = format!("{output} is switched beside RobotWare Arc.");

@@ -2,9 +2,10 @@
 //! stops that leave outputs on.
 
 use super::module::Module;
+use super::read::output;
 use crate::dialect::reading::fault::{ENDLESS_WAIT, LEFT_ON, STOP_LEAVES_ON};
 use crate::dialect::reading::trace::Trace;
-use crate::dialect::reading::words::{arguments, compact, name, strip_word};
+use crate::dialect::reading::words::{compact, name, strip_word};
 use std::collections::BTreeSet;
 
 /// Looks through the main module; `lit_with` are the outputs that are on while the arc burns.
@@ -17,14 +18,14 @@ pub(super) fn program(trace: &mut Trace, main: &Module, stops: bool, lit_with: &
     for (i, line) in main.text.lines().map(str::trim).enumerate() {
         let (word, rest) = name(line);
         let is = |name: &str| word.eq_ignore_ascii_case(name);
-        let parts = arguments(rest.trim_end_matches(';'));
-        let output = parts.first().copied().unwrap_or_default().to_ascii_uppercase();
         if is("PROC") || is("TRAP") {
             on = if name(rest).0.eq_ignore_ascii_case("main") { BTreeSet::new() } else { lit_with.clone() };
-        } else if is("Set") || (is("SetDO") && parts.get(1) == Some(&"1")) {
-            on.insert(output);
-        } else if is("Reset") || is("SetDO") {
-            on.remove(&output);
+        } else if let Some((output, state)) = output(word, rest.trim_end_matches(';')) {
+            if state {
+                on.insert(output)
+            } else {
+                on.remove(&output)
+            };
         }
         let burning = on.intersection(lit_with).cloned().collect::<Vec<_>>().join(" and ");
         if burning.is_empty() {

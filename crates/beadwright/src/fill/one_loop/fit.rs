@@ -7,7 +7,7 @@
 use super::LoopSettings;
 use super::line::Line;
 use super::room::Room;
-use super::tangles::{tangled, untangle};
+use super::tangles::Mend;
 use glam::{DVec2, I64Vec2};
 
 /// Neighbouring beads overlap by this many bead widths.
@@ -33,20 +33,8 @@ const NARROWS: f64 = std::f64::consts::SQRT_2;
 /// Where the cosine between a piece's normal and the line of sight is no more than this, only its round ends are seen.
 const LEAST_LEAN: f64 = 0.2;
 
-/// Fits lines edge to edge. Lines that do not cross do not cross afterwards.
-pub fn fitted(lines: Vec<Line>, room: &Room, settings: &LoopSettings) -> Vec<Line> {
-    let first = rounds(lines.clone(), room, settings, |_, _| {});
-    // Seldom: looking at every round takes its time.
-    if tangled(&first) && !tangled(&lines) { rounds(lines, room, settings, untangle) } else { first }
-}
-
-/// All rounds; `mend` has the lines as they are and as they were before they moved.
-fn rounds(
-    mut lines: Vec<Line>,
-    room: &Room,
-    settings: &LoopSettings,
-    mend: impl Fn(&mut [Line], &[Line]),
-) -> Vec<Line> {
+/// Fits lines edge to edge, mended after each round.
+pub fn fitted(mut lines: Vec<Line>, room: &Room, settings: &LoopSettings, mend: Mend) -> Vec<Line> {
     let first: Vec<Vec<f64>> = lines.iter().map(|line| line.widths.clone()).collect();
     for _ in 0..settings.rounds {
         let (pieces, before) = (Pieces::of(&lines, settings), lines.clone());

@@ -326,7 +326,7 @@ impl Steps {
         let step = settings.stepover / POINTS_PER_STEPOVER;
         let mut joined: Vec<Line> = tied(paths, &split, settings).iter().map(|line| line.resampled(step)).collect();
         cells::set_widths(&mut joined, room, settings);
-        let relaxed = relaxed(joined.clone(), room, &split.open, settings);
+        let relaxed = relaxed(&joined, room, &split.open, settings);
         Self { split, rings, flips, joined, relaxed, lines: Vec::new() }
     }
 }
@@ -337,11 +337,11 @@ fn rings_of(room: &Room, settings: &LoopSettings) -> Vec<rings::Ring> {
     rings::rings(room, &phase, settings)
 }
 
-fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> Vec<Line> {
-    match settings.bead.section {
-        Section::Stadium => fit::fitted(lines, room, settings),
-        Section::Parabola | Section::Ellipse => relax::relaxed(lines, room, open, settings).0,
-    }
+fn relaxed(lines: &[Line], room: &Room, open: &Region, settings: &LoopSettings) -> Vec<Line> {
+    tangles::moved(lines, |lines, mend| match settings.bead.section {
+        Section::Stadium => fit::fitted(lines, room, settings, mend),
+        Section::Parabola | Section::Ellipse => relax::relaxed(lines, room, open, settings, mend),
+    })
 }
 
 /// A width of 0 marks pieces whose width is not known yet.

@@ -4,10 +4,10 @@
 //! Strides and gains fall from round to round, and the best round is kept.
 
 use super::LoopSettings;
-use super::field::{Faults, Field};
+use super::field::Field;
 use super::line::Line;
 use super::room::Room;
-use super::tangles::{tangled, untangle};
+use super::tangles::Mend;
 use glam::DVec2;
 use planar::Region;
 
@@ -29,21 +29,8 @@ const GAIN_FALL: f64 = 0.8;
 const LOWEST: f64 = 0.3;
 const MOST_CHANGE: f64 = 0.1;
 
-/// Relaxes lines; the best round is kept. Lines that do not cross do not cross afterwards.
-pub fn relaxed(lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings) -> (Vec<Line>, Faults) {
-    let first = rounds(lines.clone(), room, open, settings, |_, _| {});
-    // Seldom: looking at every round takes its time.
-    if tangled(&first.0) && !tangled(&lines) { rounds(lines, room, open, settings, untangle) } else { first }
-}
-
-/// All rounds; `mend` has the lines as they are and as they were before they moved.
-fn rounds(
-    mut lines: Vec<Line>,
-    room: &Room,
-    open: &Region,
-    settings: &LoopSettings,
-    mend: impl Fn(&mut [Line], &[Line]),
-) -> (Vec<Line>, Faults) {
+/// Relaxes lines, mended after each round; the best round is kept.
+pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings, mend: Mend) -> Vec<Line> {
     let field = Field::of(room, open, settings);
     let mut before = lines.clone();
     for line in &mut lines {
@@ -68,7 +55,7 @@ fn rounds(
             best = (lines.clone(), faults);
         }
     }
-    best
+    best.0
 }
 
 /// Moves the points of a line down the slope; those in walls for one bead stay in the middle.

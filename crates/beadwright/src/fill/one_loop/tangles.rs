@@ -4,11 +4,21 @@ use super::line::Line;
 use crate::fill::sound::crossing_pieces;
 use glam::DVec2;
 
-/// So many points to both sides of a crossing go back at first, and so many times more each time that this does not help.
+/// Points to each side of a crossing that go back at first, and the factor by which they grow with each further attempt.
 const AROUND: usize = 4;
 const MORE: usize = 3;
-/// After so many times all points go back.
-const TIMES: u32 = 4;
+/// After this many attempts all points go back.
+const ATTEMPTS: u32 = 4;
+
+/// What is done after each round to lines as they are, given how they were before it.
+pub type Mend = fn(&mut [Line], &[Line]);
+
+/// Moves lines in rounds, so that lines that do not cross do not cross afterwards: first without a look at crossings, which
+/// takes its time, and once more with one where that tangles them.
+pub fn moved(lines: &[Line], rounds: impl Fn(Vec<Line>, Mend) -> Vec<Line>) -> Vec<Line> {
+    let quick = rounds(lines.to_vec(), |_, _| {});
+    if tangled(&quick) && !tangled(lines) { rounds(lines.to_vec(), untangle) } else { quick }
+}
 
 /// Whether lines cross each other or themselves.
 pub fn tangled(lines: &[Line]) -> bool {
@@ -17,13 +27,13 @@ pub fn tangled(lines: &[Line]) -> bool {
 
 /// Takes points back to where they were `before`, with the widths beside them, until no line crosses another or itself; the
 /// lines have the same points in the same order, and did not cross before.
-pub fn untangle(lines: &mut [Line], before: &[Line]) {
-    for time in 0..TIMES {
+fn untangle(lines: &mut [Line], before: &[Line]) {
+    for attempt in 0..ATTEMPTS {
         let crossings = crossing_pieces(&paths(lines));
         if crossings.is_empty() {
             return;
         }
-        let around = AROUND * MORE.pow(time);
+        let around = AROUND * MORE.pow(attempt);
         for (line, piece) in crossings.into_iter().flat_map(|crossing| crossing.pieces) {
             lines[line].take_back(&before[line], piece, around);
         }

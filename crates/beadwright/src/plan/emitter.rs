@@ -1,0 +1,148 @@
+//! Hands filled layers over: puts their passes in order and at their heights, keeps the limits of heat, and warns of what a layer
+//! cannot be welded on.
+
+use super::filled::Filled;
+use super::support::Support;
+use super::warm::{self, Heat};
+use super::{Sink, relight};
+use crate::fill::{Fill, Path};
+use crate::heat::{LONGEST_WAIT, PassHeat};
+use crate::layer::{Layer, Temperature, overhang};
+use crate::metrics::Metrics;
+use crate::order;
+use crate::pass::Pass;
+use crate::profile::Profile;
+use crate::slice::Slice;
+use crate::warning::{Warning, WarningKind, Warnings};
+use glam::DVec2;
+use planar::Polygon;
+
+/// Puts filled layers in order and hands them over.
+pub(super) struct Emitter<'a, S> {
+    pub(super) profile: &'a Profile,
+    pub(super) sink: &'a mut S,
+    pub(super) torch: Option<DVec2>,
+    pub(super) heat: Heat,
+    pub(super) memory: order::Memory,
+    pub(super) support: Support,
+    /// Outlines of the layer below, of the islands that are welded.
+    pub(super) below: Vec<Polygon>,
+    /// Top of the highest layer with beads, mm.
+    pub(super) built: f64,
+    pub(super) points: usize,
+    pub(super) metrics: Metrics,
+    pub(super) warnings: Warnings,
+}
+
+impl<S: Sink> Emitter<'_, S> {
+    /// Takes the next layer.
+    ///
+    /// # Errors
+    /// Whatever the sink fails with.
+    pub(super) fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
+        let Filled { slice, fills, planned_area, shared, .. } = filled;
+        let Slice { index, z, height, islands, mut warnings } = slice;
+        let slice_area = islands.iter().map(Polygon::area).sum();
+        let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
+        let laid: Vec<Polygon> = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
+        if islands.is_empty() {
+            warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
+        }
+        let order = self.profile.order_settings(index);
+        let paths = self.memory.order(fills, shared, &order, &mut self.torch);
+        let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
+        let mut layer =
+            Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
+        relight::relight(&mut layer, self.profile);
+        self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);
+        self.warm(&mut layer);
+        self.doubts(&mut layer);
+        self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
+        layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
+        self.metrics.add(&layer);
+        self.sink.layer(layer)
+    }
+
+    /// Keeps the limits of `[interpass]`, warns where that cannot be, and widens beads by the heat that they find.
+    fn warm(&mut self, layer: &mut Layer) {
+        let Some(build) = &mut self.heat.build else { return };
+        let heat = build.layer_within_limits(layer);
+        // The next layer is ordered from where this one ends.
+        self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
+        let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
+        layer.temperatures = heat.passes.iter().map(temperature).collect();
+        let bead = &self.profile.bead;
+        if let Some(law) = &bead.by_heat {
+            warm::widen(layer, &heat, build, law, bead.width);
+        }
+        let Some(limits) = self.profile.interpass else { return };
+        for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
+            let kind = if pass.wait >= LONGEST_WAIT {
+                WarningKind::NeverCools
+            } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
+                WarningKind::TooCold
+            } else {
+                continue;
+            };
+            let place = pass.start().unwrap_or_default().truncate();
+            layer.warnings.push(Warning { kind, layer: layer.index, place, size: heat.start });
+        }
+    }
+
+    /// Warns of what a layer cannot be welded on, and of what a controller may refuse.
+    fn doubts(&mut self, layer: &mut Layer) {
+        let (profile, index) = (self.profile, layer.index);
+        let limits = &profile.check;
+        let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
+        if let Some(first) = layer.passes.first() {
+            let gap = layer.z - layer.height - self.built;
+            if gap > LARGE_GAP * layer.height {
+                doubt(WarningKind::NothingBelow, first.start().unwrap_or_default().truncate(), gap);
+            } else if !self.below.is_empty() {
+                let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
+                if let Some((area, place)) = overhang(&self.below, &layer.islands, reach, width) {
+                    doubt(WarningKind::Overhang, place, area);
+                }
+            }
+            self.built = layer.z;
+        }
+        let points: usize = layer.passes.iter().map(|pass| pass.points.len()).sum();
+        self.points += points;
+        if points > limits.max_points as usize {
+            doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
+        }
+        let soonest = profile.soonest_arc_end();
+        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < 0.999 * soonest;
+        for pass in layer.passes.iter().filter(unsteady) {
+            doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
+        }
+    }
+}
+
+/// What is laid on a layer, in order and at its height; top and thickness of the layer, mm.
+pub(super) fn passes(
+    fills: Vec<Fill>,
+    layer: usize,
+    heights: (f64, f64),
+    profile: &Profile,
+    torch: &mut Option<DVec2>,
+) -> Vec<Pass> {
+    lifted(order::order(fills, &profile.order_settings(layer), torch), layer, heights, profile)
+}
+
+/// Paths at the height of their layer; its top and its thickness, mm.
+fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
+    let lift = |path: Path| Pass {
+        kind: path.kind,
+        closed: path.closed,
+        points: path.points.into_iter().map(|p| p.extend(top)).collect(),
+        // The wire feed stays the same: a wider bead is laid more slowly.
+        pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
+        width: path.width,
+        wait: 0.0,
+    };
+    paths.into_iter().map(lift).collect()
+}
+
+/// A gap below a layer counts from this part of its thickness on.
+const LARGE_GAP: f64 = 0.25;
