@@ -291,13 +291,53 @@ fn remembered_layers_are_laid_as_if_each_were_new() {
     for (seam, alternate) in
         [(Seam::Nearest, false), (Seam::Aligned, false), (Seam::Rotate, false), (Seam::Nearest, true)]
     {
-        let (mut memory, mut torch, mut alone) = (Memory::default(), None, None);
+        let (mut memory, mut fresh) = (Memory::default(), Memory::default());
+        let (mut torch, mut alone) = (None, None);
         for index in 0..14 {
             let settings = OrderSettings { seam, alternate, layer: index, bead_width: 3.0, ..OrderSettings::default() };
             let fills = || layer(if index % 2 == 0 { 8.0 } else { 3.0 });
             let laid = memory.order(fills(), true, &settings, &mut torch);
-            assert_eq!(laid, order(fills(), &settings, &mut alone), "layer {index}, {seam:?}, alternate {alternate}");
+            let again = fresh.order(fills(), false, &settings, &mut alone);
+            assert_eq!(laid, again, "layer {index}, {seam:?}, alternate {alternate}");
             assert_eq!(torch, alone);
+        }
+    }
+}
+
+/// Rings of many sizes beside lines that begin at the same place on every layer, at several turns.
+#[test]
+fn no_closed_pass_begins_within_half_a_bead_of_a_start_of_the_five_layers_below() {
+    let width = 3.0;
+    for turn in [0.0, 0.3, 1.2, 2.5] {
+        let turned = |(x, y): (f64, f64)| DVec2::from_angle(turn).rotate(DVec2::new(x, y));
+        let pass = |corners: &[(f64, f64)], closed| Path {
+            kind: PassKind::Contour,
+            closed,
+            points: corners.iter().copied().map(turned).collect(),
+            width: Along::Same(width),
+            reversible: true,
+        };
+        let ring = |x: f64, side: f64| pass(&[(x, 0.0), (x + side, 0.0), (x + side, side), (x, side)], true);
+        let fill = || {
+            let rings = (1..6).map(|k| ring(f64::from(k) * 25.0, f64::from(k) * 4.0)).collect();
+            let lines = vec![pass(&[(25.0, 0.0), (29.0, -9.0)], false)];
+            vec![Fill { stages: vec![rings, lines], fixed_order: false }]
+        };
+        let length = |passes: &[Path]| passes.iter().map(Path::length).sum::<f64>();
+        let whole: f64 = fill().iter().flat_map(|fill| &fill.stages).map(|stage| length(stage)).sum();
+        for seam in [Seam::Nearest, Seam::Spread, Seam::Rotate] {
+            let (mut memory, mut torch, mut below) = (Memory::default(), None, Vec::<Vec<DVec2>>::new());
+            for layer in 0..20 {
+                let settings = OrderSettings { seam, layer, bead_width: width, ..OrderSettings::default() };
+                let laid = memory.order(fill(), true, &settings, &mut torch);
+                assert!((length(&laid) - whole).abs() < 1e-9);
+                for pass in laid.iter().filter(|pass| pass.closed) {
+                    let near = below.iter().rev().take(5).flatten().map(|start| start.distance(pass.points[0]));
+                    let near = near.fold(f64::INFINITY, f64::min);
+                    assert!(near >= 0.5 * width - 1e-9, "turned {turn}, {seam:?}, layer {layer}: {near} mm");
+                }
+                below.push(laid.iter().map(|pass| pass.points[0]).collect());
+            }
         }
     }
 }

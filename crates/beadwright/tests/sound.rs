@@ -5,7 +5,7 @@
 mod common;
 mod families;
 
-use beadwright::fill::STRATEGIES;
+use beadwright::fill::{STRATEGIES, sound};
 use beadwright::glam::DVec3;
 use beadwright::model::import;
 use beadwright::plan::{self, Plan};
@@ -87,6 +87,75 @@ fn case_1604_what_is_left_of_the_height_is_told() {
     let metal = |plan: &Plan| plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.mesh_volume_mm3.unwrap();
     assert!((metal(&even) / (metal(&fixed) * 2.99 / 2.0) - 1.0).abs() < 0.02, "the metal follows the layers' height");
     assert_eq!(even.layers.len(), 2);
+}
+
+/// What changes sides at a vertex crosses, and what touches there does not, at any turn.
+#[test]
+fn lines_that_change_sides_at_a_common_vertex_cross() {
+    let diagonal = [(0.0, 0.0), (5.0, 5.0), (10.0, 10.0)];
+    type Points = [(f64, f64)];
+    let cases: [(&Points, &Points, bool); 9] = [
+        (&diagonal, &[(0.0, 10.0), (5.0, 5.0), (10.0, 0.0)], true),
+        (&[(0.0, 0.0), (10.0, 10.0)], &[(0.0, 10.0), (5.0, 5.0), (10.0, 0.0)], true),
+        (&diagonal, &[(0.0, 6.0), (5.0, 5.0), (5.1, 4.0)], true),
+        (&diagonal, &[(0.0, 10.0), (5.0, 5.0), (4.0, 10.0)], false),
+        (&diagonal, &[(0.0, 10.0), (5.0, 5.0)], false),
+        (&diagonal, &[(5.0, 5.0), (10.0, 0.0)], false),
+        (&diagonal, &[(0.0, 10.0), (5.0, 5.0), (10.0, 10.0)], false),
+        (&diagonal, &[(10.0, 10.0), (20.0, 0.0), (0.0, -5.0), (0.0, 0.0)], false),
+        (
+            &[(20.0, 0.0), (30.0, 0.0)],
+            &[(0.0, 0.0), (5.0, 5.0), (10.0, 10.0), (10.0, 0.0), (5.0, 5.0), (0.0, 10.0)],
+            true,
+        ),
+    ];
+    for turn in [0.0, 0.3, 1.1, 2.9, 4.0] {
+        let line = |points: &[(f64, f64)]| -> Vec<DVec2> {
+            points.iter().map(|&p| DVec2::from_angle(turn).rotate(DVec2::from(p))).collect()
+        };
+        for (one, other, cross) in cases {
+            for lines in [[line(one), line(other)], [line(other), line(one)]] {
+                let backwards = lines.clone().map(|line| line.into_iter().rev().collect::<Vec<_>>());
+                for lines in [&lines, &backwards] {
+                    assert_eq!(sound::crossings(lines).next().is_some(), cross, "{one:?} {other:?} turned {turn}");
+                }
+            }
+        }
+    }
+    // A ring touches itself where it begins.
+    let ring: Vec<DVec2> = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 0.0)].map(DVec2::from).to_vec();
+    assert_eq!(sound::crossings(&[ring]).next(), None);
+}
+
+/// Where the hybrid cannot, the best of the other strategies fills, with hardly more arc starts than islands.
+#[test]
+#[cfg_attr(no_models, ignore = "no shared cases")]
+fn islands_that_the_hybrid_cannot_fill_are_filled_well_all_the_same() {
+    for name in ["blob_40", "comb_14", "holes_66", "holes_98", "near_holes_45"] {
+        let plan = planned(&format!("hybrid_crossing_{name}.stl"), "hybrid");
+        is_sound(&plan, name);
+        let islands: usize = plan.layers.iter().map(|layer| layer.islands.len()).sum();
+        assert!(plan.summary.metrics.passes <= 6 * islands, "{name}: {}", plan.summary.metrics.passes);
+        assert!(plan.summary.metrics.coverage() > 0.9, "{name}: {}", plan.summary.metrics.coverage());
+    }
+}
+
+/// Bare strips at the rim are said, however narrow the part.
+#[test]
+#[cfg_attr(no_models, ignore = "no shared cases")]
+fn what_is_left_bare_is_said() {
+    for name in ["bare_near_boxes_4", "bare_near_boxes_60", "bare_near_holes_37", "bare_slivers_99"] {
+        for strategy in ["loop", "hybrid", "zigzag"] {
+            let plan = planned(&format!("{name}.stl"), strategy);
+            for layer in &plan.layers {
+                let said = |w: &beadwright::warning::Warning| {
+                    [WarningKind::Bare, WarningKind::ThinFeature, WarningKind::IslandTooSmall].contains(&w.kind)
+                };
+                let left = 1.0 - layer.planned_area / layer.slice_area;
+                assert!(left < 0.03 || layer.warnings.iter().any(said), "{name} by {strategy}: {left:.3} bare");
+            }
+        }
+    }
 }
 
 /// Lengths and areas of a plan: what must not depend on where the part lies or how its file is ordered.

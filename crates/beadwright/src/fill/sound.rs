@@ -9,6 +9,7 @@ use planar::boxes::{Boxes, Piece};
 use planar::polyline::distance_squared_to_segment;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 /// Centre-lines may leave the outline by this much, mm: coordinates are rounded.
 pub const TOLERANCE_MM: f64 = 0.01;
@@ -45,7 +46,7 @@ pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault>
     let (mut cuts, mut found): (BTreeMap<Number, Vec<f64>>, Vec<_>) = (BTreeMap::new(), Vec::new());
     boxes.pairs(|i, j| match (i.checked_sub(edges.len()), j.checked_sub(edges.len())) {
         (None, None) => {}
-        (Some(i), Some(j)) => found.extend(crossing((numbers[i], laid[i]), (numbers[j], laid[j]))),
+        (Some(i), Some(j)) => found.extend(crossing(&lines, numbers[i], numbers[j])),
         (Some(piece), None) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[j])),
         (None, Some(piece)) => note(&mut cuts, numbers[piece], cut(laid[piece], edges[i])),
     });
@@ -114,7 +115,7 @@ const LEAST_SAMPLES: f64 = 8.0;
 const MOST_SAMPLES: f64 = 4000.0;
 
 /// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
-/// Neighbouring pieces, and touching ends, do not count.
+/// Neighbouring pieces, and lines that touch, do not count.
 pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DVec2)> {
     let mut found = crossing_pieces(lines);
     found.sort_by(by_line);
@@ -125,8 +126,8 @@ pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DV
 pub(super) fn crossing_pieces(lines: &[Vec<DVec2>]) -> Vec<Crossing> {
     let (numbers, pieces) = pieces(lines);
     let mut found = Vec::new();
-    let boxes = Boxes::new(pieces.clone());
-    boxes.pairs(|i, j| found.extend(crossing((numbers[i], pieces[i]), (numbers[j], pieces[j]))));
+    let boxes = Boxes::new(pieces);
+    boxes.pairs(|i, j| found.extend(crossing(lines, numbers[i], numbers[j])));
     found
 }
 
@@ -155,18 +156,52 @@ fn pieces(lines: &[Vec<DVec2>]) -> (Vec<Number>, Vec<Piece>) {
     lines.iter().enumerate().flat_map(of).unzip()
 }
 
-/// Where two pieces cross, their ends not counted; neighbours on one line do not count.
-fn crossing(((i, k), [p, q]): (Number, Piece), ((j, l), [r, s]): (Number, Piece)) -> Option<Crossing> {
+/// Where two pieces cross, or where their lines do at an end of a piece; neighbours on one line do not count.
+fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Crossing> {
     const INNER: f64 = 1e-6;
     if (j, l) > (i, k) {
-        return crossing(((j, l), [r, s]), ((i, k), [p, q]));
+        return crossing(lines, (j, l), (i, k));
     }
     if j == i && l + 1 >= k {
         return None;
     }
-    let (u, v) = (q - p, s - r);
+    let (p, r) = (lines[i][k], lines[j][l]);
+    let (u, v) = (lines[i][k + 1] - p, lines[j][l + 1] - r);
     let across = u.perp_dot(v);
     let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
-    let inside = |x: f64| (INNER..1.0 - INNER).contains(&x);
-    (across != 0.0 && inside(t) && inside(w)).then(|| Crossing { pieces: [(i, k), (j, l)], place: p + u * t })
+    let within = |by: f64| [t, w].iter().all(|x| (by..1.0 - by).contains(x));
+    if across == 0.0 || !within(-INNER) {
+        return None;
+    }
+    let place = p + u * t;
+    let through = || Bend::of(&lines[i], k, place)?.is_crossed_by(&Bend::of(&lines[j], l, place)?).then_some(());
+    (within(INNER) || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
+}
+
+/// The ways in which a line leaves a place on it, backwards and forwards.
+struct Bend([DVec2; 2]);
+
+impl Bend {
+    /// Of the piece of a number; `None` at an end of the line.
+    fn of(line: &[DVec2], piece: usize, place: DVec2) -> Option<Self> {
+        let closed = line.first() == line.last();
+        let points = line.len() - usize::from(closed);
+        // How far around a closed line.
+        let (before, after) = if closed { (points, points) } else { (piece + 1, points - piece - 1) };
+        let away = |p: DVec2| (p.distance_squared(place) > TOLERANCE_MM * TOLERANCE_MM).then(|| p - place);
+        let back = (0..before).find_map(|n| away(line[(piece + points - n) % points]))?;
+        let on = (0..after).find_map(|n| away(line[(piece + 1 + n) % points]))?;
+        Some(Self([back, on]))
+    }
+
+    /// Whether another line goes from one side of this one to the other.
+    fn is_crossed_by(&self, other: &Self) -> bool {
+        /// Lines that leave in the same way to this angle, radians, lie on each other.
+        const SAME: f64 = 1e-6;
+        let from_back = |way: DVec2| self.0[0].angle_to(way).rem_euclid(TAU);
+        let on = from_back(self.0[1]);
+        let [a, b] = other.0.map(from_back);
+        let beside = |angle: f64| angle.min(TAU - angle) > SAME && (angle - on).abs() > SAME;
+        beside(a) && beside(b) && (a < on) != (b < on)
+    }
 }

@@ -12,6 +12,7 @@
 //! | [`ant_colony`] | the ant colony of Han et al. 2018 (2.2) |
 //! | [`local_search`] | 2-opt, Or-opt and start points together; the default |
 //! | [`exact`] | the optimum by dynamic programming, for few stops |
+//! | `seams` | starts of closed passes off those of the layers below |
 //! | `direction` | passes reversed on every second layer |
 
 pub mod ant_colony;
@@ -19,10 +20,12 @@ mod direction;
 pub mod exact;
 pub mod local_search;
 pub mod nearest;
+mod seams;
 pub mod tour;
 
 use crate::fill::{Fill, Path};
 use glam::DVec2;
+use seams::Seams;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use tour::{Ends, Stop, Visit};
@@ -139,10 +142,12 @@ pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Optio
     ordered
 }
 
-/// The order of the last layers whose passes other layers have too: what begins at the same place is not searched again.
+/// What the layers of a part know of those below: the order of passes that other layers have too, so that what begins at the
+/// same place is not searched again, and where they begin.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
     known: VecDeque<Known>,
+    seams: Seams,
 }
 
 #[derive(Debug, Clone)]
@@ -158,8 +163,22 @@ struct Known {
 const REMEMBERED: usize = 6;
 
 impl Memory {
-    /// [`order`]; `shared` tells that other layers have the same passes.
+    /// [`order`], with starts of closed passes off those of the layers below; `shared` tells that other layers have the same
+    /// passes.
     pub fn order(
+        &mut self,
+        islands: Vec<Fill>,
+        shared: bool,
+        settings: &OrderSettings,
+        torch: &mut Option<DVec2>,
+    ) -> Vec<Path> {
+        let ordered = self.known(islands, shared, settings, torch);
+        let settled = self.seams.settle(ordered, settings);
+        *torch = settled.last().and_then(last_point).or(*torch);
+        settled
+    }
+
+    fn known(
         &mut self,
         islands: Vec<Fill>,
         shared: bool,
