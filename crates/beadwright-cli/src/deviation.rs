@@ -36,10 +36,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     scan.points.iter_mut().for_each(|point| *point *= millimetres);
     let compared = deviation(&part.mesh, &scan.points, profile.fill.machining_allowance, &task);
     bar.finish_and_clear();
-    let Deviation { figures, doubts, .. } = compared.with_context(context)?;
+    let Deviation { figures, plate, doubts, .. } = compared.with_context(context)?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let value = serde_json::json!({ "format": scan.format, "figures": figures, "doubts": doubts });
+        let value = serde_json::json!({ "format": scan.format, "figures": figures, "plate": plate, "doubts": doubts });
         return Ok(writeln!(out, "{value:#}")?);
     }
     for doubt in &doubts {
@@ -47,6 +47,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let (scan, format) = (arguments.scan.display(), scan.format);
     writeln!(out, "{scan} beside {}: {format} of {} points", arguments.model.model.display(), figures.points)?;
+    if plate > 0 {
+        writeln!(out, "{plate} points of the plate beside the part are left out")?;
+    }
     print(&mut out, &figures)
 }
 

@@ -26,6 +26,11 @@ const SEEN: RangeInclusive<f64> = 0.5..=1.05;
 /// A scan is not where the part is if half its points lie farther off than this part of its size.
 const FAR: f64 = 0.1;
 
+/// A scan shows the plate up to this height, and from this distance to the part on, mm; nearer, metal and plate are not told
+/// apart.
+const PLATE_MM: f64 = 0.5;
+const BESIDE_MM: f64 = 1.0;
+
 /// Points between two looks at whether the task was cancelled.
 const BATCH: usize = 50_000;
 
@@ -34,8 +39,10 @@ const BATCH: usize = 50_000;
 pub struct Deviation {
     /// Distance of each point from the surface, mm: above 0 outside the part, below 0 inside.
     pub distances: Vec<f64>,
-    /// What they come to.
+    /// What they come to, the plate left out.
     pub figures: Figures,
+    /// Number of points that show the plate on z = 0 beside a part that stands on it.
+    pub plate: usize,
     /// What speaks against comparing the two as they are.
     pub doubts: Vec<Doubt>,
 }
@@ -126,9 +133,20 @@ pub fn deviation(part: &Mesh, points: &[DVec3], allowance: f64, task: &Task) -> 
         task.check()?;
         distances.par_extend(batch.par_iter().map(|point| surface.signed_distance(*point)));
     }
-    let figures = figures(points, &distances, allowance).ok_or(DeviationError::NoPoints)?;
-    let doubts = doubts(part, points, &distances);
-    Ok(Deviation { distances, figures, doubts })
+    let (shown, of_part) = without_plate(part, points, &distances);
+    let figures = figures(&shown, &of_part, allowance).ok_or(DeviationError::NoPoints)?;
+    let (doubts, plate) = (doubts(part, &shown, &of_part), points.len() - shown.len());
+    Ok(Deviation { distances, figures, plate, doubts })
+}
+
+/// The points that do not show the plate, with their distances; all of a scan that shows nothing else, which is rather in
+/// another unit.
+fn without_plate(part: &Mesh, points: &[DVec3], distances: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
+    let stands = part.bounds().0.z.abs() < ON_SURFACE_MM;
+    let is_plate = |(point, distance): &(DVec3, f64)| stands && point.z <= PLATE_MM && *distance > BESIDE_MM;
+    let all = || points.iter().copied().zip(distances.iter().copied());
+    let shown: (Vec<DVec3>, Vec<f64>) = all().filter(|point| !is_plate(point)).unzip();
+    if shown.0.is_empty() { all().unzip() } else { shown }
 }
 
 fn figures(points: &[DVec3], distances: &[f64], allowance: f64) -> Option<Figures> {

@@ -136,6 +136,24 @@ fn an_open_scan_of_the_upper_face_is_read_and_compared() {
 }
 
 #[test]
+fn the_plate_around_a_part_is_none_of_it() {
+    let part = imported(&split(&split(&cuboid([0.0; 3], [40.0, 30.0, 20.0])))).mesh;
+    let scan: Vec<DVec3> = part.vertices.iter().filter(|v| v.z > 0.6).map(|v| v + DVec3::new(0.0, 0.0, 0.2)).collect();
+    let alone = compared(&part, &scan);
+    // A plate of 200 × 200 mm with the scanner's noise, up to the part's foot.
+    let noise = |i: i32, k: i32| f64::from((7 * i + 13 * k).rem_euclid(11) - 5) * 0.05;
+    let plate = (-80..=120).flat_map(|i| (-85..=115).map(move |k| (i, k)));
+    let beside = plate.filter(|(i, k)| !(-1..=41).contains(i) || !(-1..=31).contains(k));
+    let plate: Vec<DVec3> = beside.map(|(i, k)| DVec3::new(f64::from(i), f64::from(k), noise(i, k))).collect();
+    let both = compared(&part, &[&scan[..], &plate].concat());
+    assert_eq!((both.plate, both.figures), (plate.len(), alone.figures));
+    assert_eq!((alone.plate, both.doubts), (0, vec![]));
+    // A scan of the plate alone is no scan of this part.
+    let nothing_else = compared(&part, &plate);
+    assert!(nothing_else.plate == 0 && !nothing_else.doubts.is_empty());
+}
+
+#[test]
 fn wrong_units_and_a_wrong_place_are_doubted() {
     let part = example::find("propeller").unwrap().mesh();
     let scaled = |factor: f64| part.vertices.iter().map(|v| *v * factor).collect::<Vec<_>>();
