@@ -1,9 +1,9 @@
-//! A better place for the part: a search over x, y, z and rotation for the greatest least margin.
+//! A better place for the part: a search over x, y, z and rotation for the greatest least margin near where the part was.
 //!
 //! A grid over the space in front of the robot, then smaller and smaller steps from its best place. A place is judged
 //! by the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
 
-use super::arm::{Arm, Branch, Frame};
+use super::arm::{Arm, Branch, Frame, turned_near};
 use super::cell::{Cell, PartPlace};
 use super::part_from_tool;
 use super::track::Track;
@@ -21,6 +21,9 @@ const COARSE: usize = 12;
 const FINE: usize = super::turn::ANGLES;
 /// Least gain in margin that is worth moving a part, °.
 pub(super) const WORTH_MOVING: f64 = 5.0;
+/// What a part is moved, mm, or turned, °, must gain a degree of margin: of places alike the nearest one is taken.
+const MM_PER_DEGREE: f64 = 100.0;
+const TURN_PER_DEGREE: f64 = 45.0;
 /// Steps of the refinement, mm and °; the last ones are the resolution of the answer.
 const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
 
@@ -68,21 +71,32 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     // Collected in order: the first of equal ones wins, whatever the threads do.
     let judged: Vec<Option<Suggestion>> = places.into_par_iter().map(|p| rated(p, COARSE)).collect();
     let here = fine(start);
+    let better = |best: Option<Suggestion>, tried: Vec<Option<Suggestion>>| better(start, best, tried);
     let mut best = better(None, judged).and_then(|found| better(here, vec![fine(found.place)]))?;
     for (mm, degrees) in STEPS {
         // Every step gains some margin, so this ends.
         loop {
             let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(fine).collect();
-            let Some(found) = better(Some(best), tried).filter(|f| f.margin > best.margin + 0.05) else { break };
+            let Some(found) = better(Some(best), tried).filter(|f| worth(f, start) > worth(&best, start) + 0.05) else {
+                break;
+            };
             best = found;
         }
     }
     Some(Suggestion { now: here.map(|s| s.margin), ..best })
 }
 
-fn better(best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
+/// The margin of a place, less what it takes to bring the part there, °.
+fn worth(found: &Suggestion, start: PartPlace) -> f64 {
+    let moved = DVec3::from(found.place.position).distance(DVec3::from(start.position));
+    let turned = turned_near(found.place.rotation - start.rotation, 0.0).abs();
+    found.margin - moved / MM_PER_DEGREE - turned / TURN_PER_DEGREE
+}
+
+/// The first of the best places.
+fn better(start: PartPlace, best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
     let better = |best: Option<Suggestion>, new: Suggestion| match best {
-        Some(old) if old.margin >= new.margin => Some(old),
+        Some(old) if worth(&old, start) >= worth(&new, start) => Some(old),
         _ => Some(new),
     };
     tried.into_iter().flatten().fold(best, better)
@@ -97,7 +111,7 @@ fn grid(arm: &Arm, rotation: f64) -> Vec<PartPlace> {
             for z in 0..8 {
                 for turn in 0..4 {
                     let position = [0.3 + 0.1 * f64::from(x), y, 0.1 * f64::from(z)].map(part_of_reach);
-                    let rotation = super::arm::turned_near(rotation + 45.0 * f64::from(turn), 0.0);
+                    let rotation = turned_near(rotation + 45.0 * f64::from(turn), 0.0);
                     places.push(PartPlace { position, rotation });
                 }
             }
