@@ -87,9 +87,12 @@ fn print(
         )?;
     }
     let last = history.layers.iter().rev().find_map(|layer| layer.hottest_start()).unwrap_or_default();
+    let at = history.hottest_ahead().unwrap_or((layer, pass, hottest));
+    let ahead = at.2;
     let percent = |part: f64| 100.0 * part / history.supplied.max(1e-9);
     let rows = [
         ("hottest start", format!("{hottest:.0} °C (layer {}, pass {})", layer + 1, pass + 1)),
+        ("hottest ahead of torch", format!("{ahead:.0} °C (layer {}, pass {})", at.0 + 1, at.1 + 1)),
         ("starts of the last layer", format!("up to {last:.0} °C")),
         ("waits for cooling", format!("{:.1} min", history.waits() / 60.0)),
         ("whole time", format!("{:.1} min", history.seconds / 60.0)),

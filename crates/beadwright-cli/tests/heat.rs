@@ -57,6 +57,13 @@ fn programs_wait_for_the_limit() {
     let starts = heat["layers"].as_array().unwrap().iter().flat_map(|l| l["passes"].as_array().unwrap());
     let hottest = starts.map(|pass| pass["start"].as_f64().unwrap()).fold(0.0, f64::max);
     assert!((140.0..151.0).contains(&hottest), "{hottest} °C");
+    // What a pass meets ahead of it is hotter than where it begins, and said with its place.
+    let ahead_of_it = with["warnings"].as_array().unwrap().iter().find(|w| w["kind"] == "hot-ahead").unwrap().clone();
+    let ahead = heat["layers"].as_array().unwrap().iter().flat_map(|l| l["passes"].as_array().unwrap().clone());
+    let ahead = ahead.flat_map(|pass| pass["along"].as_array().unwrap().clone());
+    let peak = ahead.map(|t| t.as_f64().unwrap()).fold(0.0, f64::max);
+    let told = ahead_of_it["largest"]["size"].as_f64().unwrap();
+    assert!(peak > hottest + 5.0 && (told - peak).abs() < 2.0, "{told} {peak}");
     // The report knows how warm it is where each pass begins, and how long each layer waits.
     let report = |plan: &str| fs::read_to_string(at.join(plan).join("report.html")).unwrap();
     let warmth = |report: &str| -> Vec<serde_json::Value> {

@@ -26,10 +26,10 @@ pub enum WarningKind {
     /// Part of the slice is narrower than the narrowest bead and gets such a bead, which reaches outside; the size is
     /// its area, mm².
     ThinWall,
-    /// The strategy could not fill an island (its passes left it, crossed, or were none), and contours fill it instead; the
-    /// size is its area, mm².
+    /// The strategy could not fill an island (its passes left it, crossed, or were none), and another one does; the size is
+    /// its area, mm².
     Refilled,
-    /// Beads leave part of an island bare, its rim not counted; the size is that area, mm².
+    /// Beads leave part of an island bare that one could reach; the size is that area, mm².
     Bare,
     /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
     Unsound,
@@ -53,6 +53,8 @@ pub enum WarningKind {
     PassTooShort,
     /// Metal does not cool to interpass.max_temperature before a pass; the size is its temperature, °C.
     NeverCools,
+    /// A pass that begins within interpass.max_temperature meets hotter metal on its way; the size is its temperature, °C.
+    HotAhead,
     /// Metal is colder than interpass.min_temperature where a pass begins; the size is its temperature, °C.
     TooCold,
     /// A layer between the lowest and the highest holds nothing.
@@ -167,7 +169,7 @@ impl WarningSummary {
             ),
             WarningKind::Refilled => format!(
                 "{layers}: {} that the strategy could not fill without leaving the outline or crossing its own passes, \
-                 filled with contours instead, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
+                 filled by another strategy, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::PassTooShort => format!(
@@ -223,6 +225,11 @@ impl WarningSummary {
                 "{layers}: {} on metal that does not cool to interpass.max_temperature in ten hours; at most {size:.0} °C \
                  {place}.",
                 times("pass begins", "passes begin")
+            ),
+            WarningKind::HotAhead => format!(
+                "{layers}: {} hotter metal ahead of the torch than interpass.max_temperature allows where it begins, at most \
+                 {size:.0} °C {place}. Waits cool the places where passes begin.",
+                times("pass meets", "passes meet")
             ),
             WarningKind::TooCold => format!(
                 "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}: heat the plate \

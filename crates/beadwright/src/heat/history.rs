@@ -37,6 +37,14 @@ impl History {
         starts.max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
+    /// The hottest metal that a pass meets ahead of the torch: index of layer and pass, °C.
+    pub fn hottest_ahead(&self) -> Option<(usize, usize, f64)> {
+        let ahead = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
+            heat.passes.iter().enumerate().map(move |(pass, heat)| (layer, pass, heat.peak(0.0).1))
+        });
+        ahead.max_by(|a, b| a.2.total_cmp(&b.2))
+    }
+
     /// Seconds for which the torch waits for metal to cool.
     pub fn waits(&self) -> f64 {
         self.layers.iter().map(LayerHeat::wait).sum()

@@ -77,6 +77,11 @@ impl<S: Sink> Emitter<'_, S> {
         }
         let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
+            let (way, peak) = heat.peak(build.spacing());
+            if heat.start <= limits.max_temperature + NOISE && peak > limits.max_temperature + NOISE {
+                let place = place_on(pass, way);
+                layer.warnings.push(Warning { kind: WarningKind::HotAhead, layer: layer.index, place, size: peak });
+            }
             let kind = if pass.wait >= LONGEST_WAIT {
                 WarningKind::NeverCools
             } else if limits.min_temperature.is_some_and(|least| heat.start < least) {
@@ -143,6 +148,16 @@ fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile:
     };
     paths.into_iter().map(lift).collect()
 }
+
+/// The place at a distance along a pass, mm, seen from above.
+fn place_on(pass: &Pass, way: f64) -> DVec2 {
+    let ends = pass.segments().map(|piece| piece.to.truncate());
+    let line: Vec<DVec2> = pass.start().map(|start| start.truncate()).into_iter().chain(ends).collect();
+    planar::polyline::point_at(&line, way).or(line.first().copied()).unwrap_or_default()
+}
+
+/// A limit of temperature is kept to this, °C.
+const NOISE: f64 = 1.0;
 
 /// A gap below a layer counts from this part of its thickness on.
 const LARGE_GAP: f64 = 0.25;

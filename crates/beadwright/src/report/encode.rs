@@ -184,7 +184,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::ContoursUnited => format!("contours united, {size:.1} mm² changed"),
         WarningKind::ThinFeature => format!("{size:.1} mm² narrower than a bead left empty"),
         WarningKind::ThinWall => format!("{size:.1} mm² of wall thinner than the narrowest bead"),
-        WarningKind::Refilled => format!("island of {size:.1} mm² filled with contours instead"),
+        WarningKind::Refilled => format!("island of {size:.1} mm² filled by another strategy"),
         WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
         WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
         WarningKind::Bare => format!("{size:.1} mm² of an island left bare"),
@@ -198,6 +198,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::ManyPoints => format!("{size:.0} points, more than check.max_points"),
         WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
         WarningKind::NeverCools => format!("does not cool, {size:.0} °C"),
+        WarningKind::HotAhead => format!("{size:.0} °C ahead of the torch"),
         WarningKind::TooCold => format!("too cold, {size:.0} °C"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),
     }

@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -35,6 +35,7 @@ impl WarningKind {
         Self::Sliver,
         Self::PassTooShort,
         Self::NeverCools,
+        Self::HotAhead,
         Self::TooCold,
         Self::EmptyLayer,
     ];
@@ -50,7 +51,7 @@ impl WarningKind {
             Self::OpenContourDropped => (
                 "open-contour-dropped",
                 "the surface has a hole or a slit, so a contour does not close and is left out",
-                "mend the model (`inspect --repair --fill-holes MM`), or bridge wider gaps with slice.close_gap",
+                "mend the model (`inspect --repair --fill-holes MM`), bridge wider gaps with slice.close_gap, or say what the surface stands for (`plan --surface`)",
             ),
             Self::ContoursUnited => (
                 "contours-united",
@@ -72,12 +73,14 @@ impl WarningKind {
             ),
             Self::Refilled => (
                 "refilled",
-                "the strategy would have left the outline or crossed itself there, so contours fill the island",
-                "nothing, if contours will do; else take another strategy",
+                "the strategy would have left the outline or crossed itself there, so another one fills the island, the best by the deposit model",
+                "look at the picture of the layer; if it will not do, take another strategy",
             ),
-            Self::Bare => {
-                ("bare", "beads do not reach part of an island", "compare strategies; hybrid and loop leave the least")
-            }
+            Self::Bare => (
+                "bare",
+                "beads do not reach part of an island",
+                "see what other strategies leave (`beadwright compare`)",
+            ),
             Self::Unsound => (
                 "unsound",
                 "passes leave the part or cross each other, and nothing could replace them",
@@ -135,6 +138,11 @@ impl WarningKind {
                 "never-cools",
                 "metal stays above interpass.max_temperature for ten hours",
                 "raise the limit, preheat less (substrate.preheat), or take a thicker plate or better contact",
+            ),
+            Self::HotAhead => (
+                "hot-ahead",
+                "a long pass comes back to metal that it has heated itself, and no wait within a pass lets that cool",
+                "wait longer before passes (a lower interpass.max_temperature), or take a strategy with shorter passes",
             ),
             Self::TooCold => (
                 "too-cold",
