@@ -25,10 +25,10 @@ use std::path::{Path, PathBuf};
 /// How a program is read.
 #[derive(clap::Args, Default)]
 pub(crate) struct Reading {
-    /// Words that strike the arc, besides those of the language and of the profile, such as --arc-on "M64 P1".
+    /// Words that strike the arc, instead of those of the profile and of M3 and M4 in G-code, such as --arc-on "M64 P1".
     #[arg(long, value_name = "CODE")]
     arc_on: Vec<String>,
-    /// Words that end the arc, besides those of the language and of the profile.
+    /// Words that end the arc, instead of those of the profile and of M5 in G-code.
     #[arg(long, value_name = "CODE")]
     arc_off: Vec<String>,
     /// Bead width, mm, instead of the one from the program or the profile.
@@ -228,10 +228,9 @@ fn told_profile(text: &str) -> Option<&'static str> {
 impl Reading {
     /// What switches the arc: the words given, or those of the profile.
     fn codes(&self, templates: ArcCodes) -> ArcCodes {
-        ArcCodes {
-            on: self.arc_on.iter().cloned().chain(templates.on).collect(),
-            off: self.arc_off.iter().cloned().chain(templates.off).collect(),
-        }
+        let given = |words: &[String], templates| if words.is_empty() { templates } else { words.to_vec() };
+        let alone = !self.arc_on.is_empty() || !self.arc_off.is_empty();
+        ArcCodes { on: given(&self.arc_on, templates.on), off: given(&self.arc_off, templates.off), alone }
     }
 }
 

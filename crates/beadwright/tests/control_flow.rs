@@ -26,7 +26,7 @@ fn looped(inside: [&str; 3]) -> [String; 3] {
 fn read_looped(text: &str) -> Result<ReadProgram, ReadError> {
     let [on, off] = [["SetDO doArc,1", "set_digital_out(1, True)"], ["SetDO doArc,0", "set_digital_out(1, False)"]]
         .map(|codes| codes.map(str::to_owned).to_vec());
-    read(text, &mut |_| None, &Options { arc: ArcCodes { on, off }, ..Options::default() })
+    read(text, &mut |_| None, &Options { arc: ArcCodes { on, off, alone: false }, ..Options::default() })
 }
 
 #[test]

@@ -189,6 +189,7 @@ fn what_the_project_reads_is_the_same() {
         arc: ArcCodes {
             on: vec!["$OUT[2] = TRUE".to_owned(), "SetDO doArc,1".to_owned()],
             off: vec!["$OUT[2] = FALSE".to_owned(), "SetDO doArc,0".to_owned()],
+            ..ArcCodes::default()
         },
         ..Options::default()
     };

@@ -96,7 +96,7 @@ fn the_job_reads_back_as_planned() {
         assert!(speeds.iter().zip([8.0, 7.6, 7.2, 6.2]).all(|(a, b)| (a - b).abs() < 1e-9), "{speeds:?}");
 
         let options = Options {
-            arc: ArcCodes { on: vec!["SetDO doArc,1".to_owned()], off: vec!["SetDO doArc,0".to_owned()] },
+            arc: ArcCodes { on: vec!["SetDO doArc,1".to_owned()], off: vec!["SetDO doArc,0".to_owned()], alone: false },
             ..Options::default()
         };
         let mut find = |name: &str| files.get(&format!("{name}.mod")).cloned();

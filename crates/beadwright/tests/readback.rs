@@ -25,7 +25,7 @@ fn with_modules(text: &str, modules: &[(&str, &str)]) -> Result<ReadProgram, Rea
 }
 
 fn arc_codes(on: &str, off: &str) -> Options {
-    Options { arc: ArcCodes { on: vec![on.to_owned()], off: vec![off.to_owned()] }, ..Options::default() }
+    Options { arc: ArcCodes { on: vec![on.to_owned()], off: vec![off.to_owned()], alone: false }, ..Options::default() }
 }
 
 #[track_caller]

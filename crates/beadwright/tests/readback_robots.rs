@@ -24,7 +24,7 @@ fn options() -> Options {
     let words = |words: [&str; 3]| words.map(str::to_owned).to_vec();
     let on = words(["$OUT[2] = TRUE", "SetDO doArc,1", "set_standard_digital_out(1, True)"]);
     let off = words(["$OUT[2] = FALSE", "SetDO doArc,0", "set_standard_digital_out(1, False)"]);
-    Options { arc: ArcCodes { on, off }, ..Options::default() }
+    Options { arc: ArcCodes { on, off, alone: false }, ..Options::default() }
 }
 
 fn try_read(text: &str) -> Result<ReadProgram, ReadError> {

@@ -195,6 +195,7 @@ impl Sections {
         ArcCodes {
             on: lines_of(".arc_on").into_iter().filter_map(|codes| codes.last().cloned()).collect(),
             off: lines_of(".arc_off").into_iter().filter_map(|codes| codes.first().cloned()).collect(),
+            alone: false,
         }
     }
 }

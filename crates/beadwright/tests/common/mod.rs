@@ -77,7 +77,7 @@ pub(crate) fn read_back(files: &BTreeMap<String, String>, main: &str) -> Result<
         let names = ["", ".src", ".dat", ".mod", ".ls", ".jbi"].map(|end| format!("{name}{end}"));
         names.iter().find_map(|name| files.get(name)).cloned()
     };
-    read(&files[main], &mut find, &Options { arc: ArcCodes { on, off }, ..Options::default() })
+    read(&files[main], &mut find, &Options { arc: ArcCodes { on, off, ..ArcCodes::default() }, ..Options::default() })
 }
 
 /// Where the shared models lie. Tests that need them are ignored where the folder is missing, but fail under CI=true

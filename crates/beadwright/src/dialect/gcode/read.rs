@@ -141,7 +141,8 @@ impl Reader {
     fn new(hints: &hints::Hints, options: &Options) -> Self {
         let diameter = options.filament_diameter.or(hints.diameter).unwrap_or(1.75);
         let codes = |own: &[&str], more: &[String]| {
-            let own = own.iter().copied().filter(|_| !hints.printer);
+            let replaced = options.arc.alone && !more.is_empty();
+            let own = own.iter().copied().filter(|_| !hints.printer && !replaced);
             own.chain(more.iter().map(String::as_str)).filter(|c| !c.trim().is_empty()).map(Code::new).collect()
         };
         Self {
@@ -372,6 +373,8 @@ impl Reader {
         let across = arc || to.truncate() != start.truncate();
         let metal = match laid > 0.0 && across {
             true => Metal::Volume(laid),
+            // Whatever the arc does, no bead is laid in a rapid.
+            false if motion == 0 && !self.printer => Metal::Off,
             false => self.trace.metal(),
         };
         let mut step = Step { speed: 0.0, metal, width: self.width, line };

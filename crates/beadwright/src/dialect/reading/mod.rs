@@ -77,7 +77,7 @@ pub struct ReadProgram {
     pub faults: Vec<Fault>,
 }
 
-/// Codes that light and end the arc, besides those that a dialect knows by itself.
+/// Codes that light and end the arc, besides those that a dialect knows by itself, or in their place.
 ///
 /// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`,
 /// `SetDO doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
@@ -87,6 +87,8 @@ pub struct ArcCodes {
     pub on: Vec<String>,
     /// Codes that end the arc.
     pub off: Vec<String>,
+    /// Whether M3, M4 and M5 of G-code switch no arc where other codes do: a spindle or a laser, say.
+    pub alone: bool,
 }
 
 impl ReadProgram {
