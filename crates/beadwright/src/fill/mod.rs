@@ -85,6 +85,11 @@ pub trait Strategy: Sync {
         None
     }
 
+    /// Settings with which the strategy lays a simpler fill, the better first, for islands where it cannot with those given.
+    fn simpler<'a>(&self, _settings: &FillSettings<'a>) -> Vec<FillSettings<'a>> {
+        Vec::new()
+    }
+
     /// The region of an island that is filled with scan lines; empty where none are laid.
     fn infill(&self, _island: &Polygon, _settings: &FillSettings) -> Region {
         Region::default()

@@ -1,8 +1,8 @@
 //! A slice with its passes, and the places in it that a bead cannot reach.
 
+use super::candidates;
 use super::scan_lines::Planned;
-use crate::deposit::RIM;
-use crate::fill::contour::{Contour, rings_only};
+use crate::fill::contour::rings_only;
 use crate::fill::coverage::{Bare, Coverage};
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
@@ -133,7 +133,7 @@ fn fill_layer(
             slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
         }
         let mut own = if thin || reached > 0.0 {
-            sound_fill(fill(i, island), island, settings, reached, &mut slice.warnings)
+            sound_fill(fill(i, island), island, strategy, profile, settings, reached, &mut slice.warnings)
         } else {
             Fill::default()
         };
@@ -161,7 +161,7 @@ fn fill_layer(
 /// What beads leave bare is told when it is more than this part of an island.
 const WORTH_TELLING: f64 = 0.01;
 
-/// Area of an island that its beads cover, mm², and what they leave bare inside its rim, if that is worth telling.
+/// Area of an island that its beads cover, mm², and what they leave bare of what one could reach, if that is worth telling.
 fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Option<Bare>) {
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
     if profile.fill.infill_density < 1.0 && !paths.is_empty() {
@@ -171,24 +171,41 @@ fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f
     let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
     let Some(coverage) = Coverage::of(&paths, &whole, width) else { return (0.0, None) };
     let bare = coverage.bare(&whole).area;
-    let least = WORTH_TELLING * area;
-    // At the rim the deposit model does not count voids either: beads are flat there.
-    let inner = (bare > least).then(|| coverage.bare(&whole.offset(-RIM * width, Join::ROUND)));
-    ((area - bare).max(0.0), inner.filter(|inner| inner.area > least))
+    // What no bead reaches, as sharp corners, is not left bare by the strategy.
+    let (unreached, least) = ((area - reached).max(0.0), WORTH_TELLING * area);
+    let left = bare - unreached;
+    let told = (left > least).then(|| {
+        let inner = coverage.bare(&whole.offset(-FLANK * width, Join::ROUND));
+        let told = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
+        Bare { area: told, ..inner }
+    });
+    ((area - bare).max(0.0), told.filter(|told| told.area > least))
 }
 
-/// The fill of an island by its strategy, or, where that cannot be welded, by contours, with a warning.
+/// Strips along the outline count, too, from this part of an island on.
+const FLANKS_TOO: f64 = 0.02;
+
+/// A bead is so flat over this part of its width that strips of it along the outline make little difference.
+const FLANK: f64 = 0.1;
+
+/// The fill of an island by its strategy, or, where that cannot be welded, a simpler one of its own, or, with a warning, the
+/// best by another strategy.
 fn sound_fill(
     fill: Fill,
     island: &Polygon,
+    strategy: &dyn Strategy,
+    profile: &Profile,
     settings: &FillSettings,
     reached: f64,
     warnings: &mut Vec<Warning>,
 ) -> Fill {
     let Some(place) = unsound(&fill, island, settings, reached) else { return fill };
-    let sound = |fill: &Fill| unsound(fill, island, settings, reached).is_none();
+    let is_sound = |fill: &Fill| unsound(fill, island, settings, reached).is_none();
+    if let Some(simpler) = candidates::simpler(strategy, island, settings, is_sound) {
+        return simpler;
+    }
     warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });
-    let fill = Some(Contour.fill(island, settings)).filter(sound).unwrap_or_else(|| rings_only(island, settings));
+    let fill = candidates::best(island, settings, profile, is_sound).unwrap_or_else(|| rings_only(island, settings));
     if let Some(place) = unsound(&fill, island, settings, 0.0) {
         // No known part comes here.
         warnings.push(Warning { kind: WarningKind::Unsound, layer: settings.layer, place, size: island.area() });

@@ -131,6 +131,18 @@ impl Strategy for OneLoop {
         passes.into_iter().map(fill_of).collect()
     }
 
+    /// Without a spiral, and without relaxation.
+    fn simpler<'a>(&self, settings: &FillSettings<'a>) -> Vec<FillSettings<'a>> {
+        let given = settings.one_loop;
+        let without = |one_loop: LoopOptions| FillSettings { one_loop, ..*settings };
+        let plain = LoopOptions { rounds: 0, ..given };
+        [LoopOptions { spirals: false, ..given }, plain, LoopOptions { spirals: false, ..plain }]
+            .into_iter()
+            .filter(|options| *options != given)
+            .map(without)
+            .collect()
+    }
+
     /// Flips and spirals take turns.
     fn period(&self) -> Option<usize> {
         Some(2 * flips::TURNS as usize)
