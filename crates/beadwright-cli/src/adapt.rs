@@ -4,7 +4,7 @@ use crate::{file, profile, program, progress};
 use anyhow::Context;
 use beadwright::adapt::scan::{self, Scan};
 use beadwright::adapt::{self, Align, Aligned, Followed, Rules, Seen, Spread};
-use beadwright::files::{Folder, PlanFiles, Programs, Start, Written};
+use beadwright::files::{Folder, PlanFiles, Programs, Selection, Written};
 use beadwright::layer::{Extent, Layer};
 use beadwright::metrics::Metrics;
 use beadwright::model::RepairReport;
@@ -204,7 +204,7 @@ impl Adapted<'_> {
             &header,
             self.profile,
             self.programs(arguments)?,
-            Start { layer: self.number, ..Start::default() },
+            Selection { from: self.number, ..Selection::default() },
         )?;
         folder.extend(chunks)?;
         let mut metrics = Metrics::new(self.profile);

@@ -1,12 +1,11 @@
 //! `beadwright compare`: strategies and programs side by side.
 
-use crate::plan::{deposit_settings, parse_grid, say_size};
+use crate::plan::{deposit_settings, parse_grid, parse_layers, say_size};
 use crate::{model, profile, program, progress};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
 use beadwright::files::write_file;
 use beadwright::fill;
-use beadwright::plan::MAX_LAYERS;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -41,20 +40,6 @@ pub(crate) struct Arguments {
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
-}
-
-fn parse_layers(text: &str) -> Result<Chosen, String> {
-    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|n| (1..=MAX_LAYERS).contains(n));
-    let range = |part: &str| {
-        let (from, to) = part.split_once('-').unwrap_or((part, part));
-        let (from, to) = number(from).zip(number(to))?;
-        (from <= to).then_some(from - 1..to)
-    };
-    let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
-    let ranges = ranges.ok_or_else(|| {
-        format!("layers are counted from 1 to at most {MAX_LAYERS}, the lower first, such as 1,5,10-20")
-    })?;
-    Ok(Some(ranges.into_iter().flatten().collect()))
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {

@@ -2,6 +2,7 @@
 
 use crate::memory;
 use anyhow::Context;
+use beadwright::example;
 use beadwright::files::write_file;
 use std::fs;
 use std::io::{Read, Write};
@@ -38,6 +39,12 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
         about.len() as f64 / 1e9
     );
     fs::read(path).with_context(context)
+}
+
+/// The bytes of a model: of a file, or of the example part of that name where there is no such file.
+pub(crate) fn model(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let example = path.to_str().and_then(example::find).filter(|_| !path.exists());
+    example.map_or_else(|| read(path), |example| Ok(example.stl()))
 }
 
 /// All of standard input.

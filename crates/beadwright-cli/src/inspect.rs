@@ -42,7 +42,7 @@ fn parse_size(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let bytes = file::read(&arguments.file)?;
+    let bytes = file::model(&arguments.file)?;
     let bytes = &*decoded(&bytes).with_context(|| format!("{}", arguments.file.display()))?;
     if let Some(file) = model::read_iges(&arguments.file, bytes)? {
         return Ok(curves(&file, arguments)?);

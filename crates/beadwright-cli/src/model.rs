@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Which model, and how it is placed.
 #[derive(clap::Args, Clone)]
 pub(crate) struct Model {
-    /// The model, or - for standard input: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
+    /// The model, - for standard input, or the name of an example part, such as propeller: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
     /// centre-lines of walls, and DXF and SVG with outlines (--height).
     pub(crate) model: PathBuf,
     #[command(flatten)]
@@ -106,7 +106,7 @@ impl Model {
     pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
         let context = || format!("{}", self.model.display());
         let read = if self.placing.accept_damaged { model::Model::read_damaged } else { model::Model::read };
-        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
+        let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
         let model = read(&bytes, task).with_context(context)?;
         let placement = self.placing.placement();
         let part = model.place(&placement, height, bead_width).with_context(context)?;
@@ -130,7 +130,7 @@ impl Model {
     pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
         let context = || format!("{}", self.model.display());
         let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
-        let bytes = convert::solid(&self.model, file::read(&self.model)?)?;
+        let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
         let import = import(&bytes, task).with_context(context)?;
         let placement = self.placing.placement();
         let part = if self.placing.turns() {

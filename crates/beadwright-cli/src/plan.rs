@@ -4,14 +4,15 @@ use crate::several::{Build, Order, Several};
 use crate::{model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::check::{self, Found};
-use beadwright::compare::MAP_PIXELS;
+use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge};
-use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Start, Written};
+use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
 use beadwright::layer::Layer;
+use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
 use beadwright::model::{Mesh, Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
-use beadwright::plan::{self, Expected, Header, PlanError, Sink, Summary};
+use beadwright::plan::{self, Expected, Header, MAX_LAYERS, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
 use beadwright::profile::Profile;
 use beadwright::report::{self, rows};
@@ -36,6 +37,10 @@ pub(crate) struct Arguments {
     pub(crate) height: Option<f64>,
     #[arg(long, short, value_name = "NAME", help = strategy_help())]
     pub(crate) strategy: Option<String>,
+    /// What an open surface stands for: the skin of a solid, whose contours are filled, or a wall, along which one bead is
+    /// laid.
+    #[arg(long, value_name = "solid|wall", value_parser = ["solid", "wall"])]
+    surface: Option<String>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
@@ -47,9 +52,9 @@ pub(crate) struct Arguments {
     /// Plan only what lies above this height of the placed part, mm: the cut comes to lie on the table.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     pub(crate) from_z: Option<f64>,
-    /// Write the programs of these layers only, counted from 1, such as 10-20; plan.json and the report keep all layers.
-    #[arg(long, value_name = "FIRST-LAST", value_parser = parse_layers, conflicts_with = "from_layer")]
-    layers: Option<(u32, u32)>,
+    /// Write the programs of these layers only, counted from 1, such as 3,10-20; plan.json and the report keep all layers.
+    #[arg(long, value_name = "LIST", value_parser = parse_layers, conflicts_with = "from_layer")]
+    layers: Option<Chosen>,
     /// Write the programs from this layer on, counted from 1, to continue a build that was stopped; plan.json and the
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
@@ -105,10 +110,18 @@ pub(crate) fn parse_height(text: &str) -> Result<f64, String> {
     }
 }
 
-fn parse_layers(text: &str) -> Result<(u32, u32), String> {
-    let ends = text.split_once('-').and_then(|(first, last)| Some((first.parse().ok()?, last.parse().ok()?)));
-    ends.filter(|(first, last)| (1..=*last).contains(first))
-        .ok_or_else(|| "the first and the last layer are expected, counted from 1, such as 10-20".to_owned())
+pub(crate) fn parse_layers(text: &str) -> Result<Chosen, String> {
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|n| (1..=MAX_LAYERS).contains(n));
+    let range = |part: &str| {
+        let (from, to) = part.split_once('-').unwrap_or((part, part));
+        let (from, to) = number(from).zip(number(to))?;
+        (from <= to).then_some(from - 1..to)
+    };
+    let ranges: Option<Vec<_>> = text.split(',').map(range).collect();
+    let ranges = ranges.ok_or_else(|| {
+        format!("layers are counted from 1 to at most {MAX_LAYERS}, the lower first, such as 1,5,10-20")
+    })?;
+    Ok(Some(ranges.into_iter().flatten().collect()))
 }
 
 pub(crate) fn parse_grid(text: &str) -> Result<f64, String> {
@@ -166,7 +179,8 @@ impl Arguments {
     fn settings(&self) -> Vec<String> {
         let strategy = self.strategy.iter().map(|s| format!("fill.strategy=\"{s}\""));
         let literal = self.literal.then(|| "hybrid.literal=true".to_owned());
-        self.set.iter().cloned().chain(strategy).chain(literal).collect()
+        let surface = self.surface.iter().map(|surface| format!("slice.surface=\"{surface}\""));
+        self.set.iter().cloned().chain(strategy).chain(surface).chain(literal).collect()
     }
 }
 
@@ -190,11 +204,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
-    let (first, last) = arguments.layers.unwrap_or((arguments.from_layer, u32::MAX));
-    let start = Start { layer: first as usize - 1, pass: arguments.from_pass as usize - 1, last: last as usize - 1 };
+    let selection = Selection {
+        layers: arguments.layers.clone().flatten(),
+        from: arguments.from_layer as usize - 1,
+        pass: arguments.from_pass as usize - 1,
+    };
     let judge = (!arguments.no_deposit).then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let files = Files::new(&arguments.output, programs, &profile)?.judged(judge);
-    let mut files = Files { start, pictures: &arguments.picture, ..files };
+    let mut files = Files { selection: selection.clone(), pictures: &arguments.picture, ..files };
     let planned = match arguments.several.order {
         Order::Layers => plan::plan_into(&part, &model, &profile, &task, &mut files),
         Order::Parts => {
@@ -204,12 +221,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     bar.finish_and_clear();
     let mut summary = planned.map_err(|error| refused(error, &arguments.model.model))?;
-    anyhow::ensure!(
-        start.layer < summary.metrics.layers,
-        "{} {first} lies above the part, which has {} layers",
-        if arguments.layers.is_some() { "--layers" } else { "--from-layer" },
-        summary.metrics.layers
-    );
+    selection_exists(&selection, summary.metrics.layers)?;
     if let Some(missing) = arguments.picture.iter().find(|number| **number == 0 || **number > summary.metrics.layers) {
         anyhow::bail!("--picture {missing}: the part has the layers 1 to {}", summary.metrics.layers);
     }
@@ -222,19 +234,38 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
     let found = files.check(&task)?;
-    let figures = files.figures();
+    let (figures, totals) = (files.figures(), files.totals());
     let written = files.finish(&summary, &model.repair())?;
 
     if arguments.json {
         let mut json = summary.json(figures.as_ref());
         json["findings"] = serde_json::json!(found);
+        if let Some(totals) = &totals {
+            json["programs"] = serde_json::json!(totals);
+        }
         writeln!(std::io::stdout(), "{}", serde_json::to_string_pretty(&json)?)?;
         return Ok(());
     }
     print_head(&mut say::done(false), &part, &profile, &model, &places)?;
     print_found(&found, &summary)?;
     print_warnings(&profile, &model, &summary)?;
-    Ok(print_summary(&mut say::done(false), &arguments.output, &summary, figures.as_ref(), &written)?)
+    let mut out = say::done(false);
+    if let Some(totals) = &totals {
+        writeln!(out, "\nthe programs weld {} of {} layers:", totals.layers, summary.metrics.layers)?;
+        print_rows(&mut out, rows::totals(totals))?;
+        write!(out, "\nthe whole plan:")?;
+    }
+    Ok(print_summary(&mut out, &arguments.output, &summary, figures.as_ref(), &written)?)
+}
+
+/// Fails where a plan has none of the layers that its programs should weld.
+fn selection_exists(selection: &Selection, layers: usize) -> anyhow::Result<()> {
+    let Selection { layers: chosen, from, .. } = selection;
+    anyhow::ensure!(*from < layers, "--from-layer {} lies above the part, which has {layers} layers", from + 1);
+    if let Some(beyond) = chosen.iter().flatten().find(|layer| **layer >= layers) {
+        anyhow::bail!("--layers: layer {} lies above the part, which has {layers} layers", beyond + 1);
+    }
+    Ok(())
 }
 
 /// Says before a large plan is made how large it will be.
@@ -286,15 +317,15 @@ pub(crate) struct Files<'a> {
     pictures: &'a [usize],
     profile: &'a Profile,
     judge: Option<Judge>,
-    /// Index of the first layer of the programs.
-    start: Start,
+    /// What the programs weld.
+    selection: Selection,
 }
 
 impl<'a> Files<'a> {
     /// Files for a folder, of all layers and without judgement.
     pub(crate) fn new(folder: &Path, programs: Programs, profile: &'a Profile) -> anyhow::Result<Self> {
         let (folder, programs) = (Folder::new(folder)?, Some(programs));
-        Ok(Self { folder, programs, files: None, pictures: &[], profile, judge: None, start: Start::default() })
+        Ok(Self { folder, programs, files: None, pictures: &[], profile, judge: None, selection: Selection::default() })
     }
 
     /// The same, judged by the deposit model.
@@ -305,6 +336,11 @@ impl<'a> Files<'a> {
     /// What the deposit model says of all layers.
     pub(crate) fn figures(&self) -> Option<Figures> {
         self.judge.as_ref().map(|judge| *judge.total())
+    }
+
+    /// Totals of what the programs weld, where that is not the whole plan.
+    fn totals(&self) -> Option<Metrics> {
+        self.files.as_ref().and_then(PlanFiles::totals).cloned()
     }
 
     /// What people must know about the programs: sentences.
@@ -342,7 +378,7 @@ impl Sink for Files<'_> {
 
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
-        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.start)?;
+        let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.selection.clone())?;
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }
@@ -352,7 +388,7 @@ impl Sink for Files<'_> {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
         }
-        let Start { layer: index, pass, .. } = self.start;
+        let Selection { from: index, pass, .. } = self.selection;
         anyhow::ensure!(
             layer.index != index || pass == 0 || pass < layer.passes.len(),
             "--from-pass {}: the passes of layer {} are numbered 1 to {}",
@@ -425,17 +461,21 @@ pub(crate) fn print_summary(
     figures: Option<&Figures>,
     written: &Written,
 ) -> std::io::Result<()> {
-    let m = &summary.metrics;
     writeln!(out)?;
-    for (name, value) in rows::totals(m).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()) {
-        writeln!(out, "  {name:<22} {value}")?;
-    }
+    print_rows(
+        out,
+        rows::totals(&summary.metrics).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()),
+    )?;
     writeln!(out)?;
     let Written { files, removed } = written;
     if !removed.is_empty() {
         writeln!(out, "{} files of an earlier plan removed: {}", removed.len(), shorten(removed))?;
     }
     writeln!(out, "{} files in {}: {}", files.len(), folder.display(), shorten(files))
+}
+
+fn print_rows(out: &mut impl Write, rows: impl IntoIterator<Item = (&'static str, String)>) -> std::io::Result<()> {
+    rows.into_iter().try_for_each(|(name, value)| writeln!(out, "  {name:<22} {value}"))
 }
 
 /// All names, or the first and the last of many.

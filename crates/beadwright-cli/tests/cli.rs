@@ -486,6 +486,24 @@ fn a_build_is_resumed_at_a_layer() {
     // All but the way to the first pass is the same.
     let tail = |files: &BTreeMap<String, Vec<u8>>| String::from_utf8(files["CROSS_L005.src"].clone()).unwrap();
     assert_eq!(tail(&all), tail(&rest));
+    // Totals are of what remains, and of the whole.
+    let metrics = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&files(&folder.path().join(name))["metrics.json"]).unwrap()
+    };
+    let (whole, part) = (metrics("all"), metrics("rest")["programs"].clone());
+    assert!(whole.get("programs").is_none() && part["layers"] == 7, "{part}");
+    ok(folder.path(), &[&plan[..], &["-o", "some", "--layers", "2,4-5"]].concat());
+    let (some, chosen) = (files(&folder.path().join("some")), metrics("some")["programs"].clone());
+    let layers: Vec<&String> = some.keys().filter(|name| name.contains("_L0")).collect();
+    assert_eq!(layers, ["CROSS_L002.src", "CROSS_L004.src", "CROSS_L005.src"]);
+    let wire = |totals: &serde_json::Value| totals["wire_length_m"].as_f64().unwrap();
+    assert!((wire(&part) / wire(&whole) - 0.7).abs() < 0.01 && (wire(&chosen) / wire(&whole) - 0.3).abs() < 0.01);
+    let said = ok(folder.path(), &[&plan[..], &["-o", "rest", "--from-layer", "4"]].concat());
+    assert!(said.contains("the programs weld 7 of 10 layers") && said.contains("the whole plan:"), "{said}");
+    assert!(
+        refused(folder.path(), &[&plan[..], &["-o", "x", "--layers", "3,11"]].concat(), 1)
+            .contains("layer 11 lies above")
+    );
     let last = ["-o", "last", "--from-layer", "4", "--from-pass", "3"];
     ok(folder.path(), &[&plan[..], &last].concat());
     let resumed = String::from_utf8(files(&folder.path().join("last"))["CROSS_L004.src"].clone()).unwrap();
@@ -496,6 +514,42 @@ fn a_build_is_resumed_at_a_layer() {
     );
     let said = refused(folder.path(), &[&plan[..], &["-o", "none", "--from-layer", "99"]].concat(), 1);
     assert!(said.contains("lies above the part") && !folder.path().join("none").join("plan.json").exists(), "{said}");
+}
+
+/// An example part is planned by its name, files go into folders that are not there yet, and open surfaces are asked about.
+#[test]
+fn what_people_type_first_works() {
+    let folder = TempDir::new().unwrap();
+    let said = ok(folder.path(), &["plan", "star", "--no-deposit"]);
+    assert!(said.starts_with("star ") && folder.path().join("beadwright-out/plan.json").exists(), "{said}");
+    ok(folder.path(), &["export", "beadwright-out/plan.json", "-o", "new/folder/beads.csv"]);
+    assert!(folder.path().join("new/folder/beads.csv").exists());
+    // A file of that name comes first.
+    fs::write(folder.path().join("gear"), "no model").unwrap();
+    assert!(refused(folder.path(), &["plan", "gear"], 1).contains("gear"));
+    assert!(refused(folder.path(), &["plan", "no_such_part"], 1).contains("no_such_part"));
+    // A roof without walls: two triangles.
+    let roof = "v 0 0 0\nv 90 0 0\nv 90 0 60\nv 0 0 60\nf 1 2 3\nf 1 3 4\n";
+    fs::write(folder.path().join("sheet.obj"), roof).unwrap();
+    assert!(refused(folder.path(), &["plan", "sheet.obj"], 1).contains("--surface wall"));
+    let said = ok(folder.path(), &["plan", "sheet.obj", "--surface", "wall", "--no-deposit"]);
+    assert!(said.contains("strategy wall"), "{said}");
+}
+
+/// With words of one's own the arc is theirs alone, and a rapid lays nothing.
+#[test]
+fn words_that_are_given_replace_those_of_the_language() {
+    let folder = TempDir::new().unwrap();
+    let program = "G21\nM3 S1000\nG0 X0 Y0 Z2\nM64 P1\nG1 X50 F600\nG0 X60\nG1 X90 F600\nM65 P1\nG1 X95\nM5\nM2\n";
+    fs::write(folder.path().join("a.nc"), program).unwrap();
+    let length = |more: &[&str]| {
+        let said = ok(folder.path(), &[&["simulate", "a.nc", "--json", "-o", "a.html"], more].concat());
+        let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+        said["totals"]["deposited_length_mm"].as_f64().unwrap()
+    };
+    assert!((length(&["--arc-on", "M64 P1", "--arc-off", "M65 P1"]) - 80.0).abs() < 1e-6);
+    // M3 to M5, the rapids apart.
+    assert!((length(&[]) - 85.0).abs() < 1e-6);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::planned::Planned;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::Judge;
 use beadwright::dialect::DialectError;
-use beadwright::files::{Folder, FolderError, METRICS, PLAN, PlanFiles, Post, Programs, REPORT, Start};
+use beadwright::files::{Folder, FolderError, METRICS, PLAN, PlanFiles, Post, Programs, REPORT, Selection};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Stage, Task};
@@ -46,7 +46,7 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
     let settings = plan::deposit_settings_over(profile, planned.part.bounds());
     let mut judge = wanted.deposit.then(|| Judge::new(settings).with_pictures(MAP_PIXELS).without_patches());
     let mut folder = Folder::new(wanted.folder)?;
-    let (mut files, chunks) = PlanFiles::begin(&planned.header, profile, programs, Start::default())?;
+    let (mut files, chunks) = PlanFiles::begin(&planned.header, profile, programs, Selection::default())?;
     folder.extend(chunks)?;
     for (done, layer) in planned.layers.iter().enumerate() {
         task.step(Stage::Deposit, done as f64 / planned.layers.len() as f64)?;
@@ -67,7 +67,7 @@ pub(crate) fn programs(
     posts: &[Post],
 ) -> Result<BTreeMap<String, String>, DialectError> {
     let programs = Programs::of(posts, &profile.job(&planned.header.part))?;
-    let (mut files, mut chunks) = PlanFiles::begin(&planned.header, profile, programs, Start::default())?;
+    let (mut files, mut chunks) = PlanFiles::begin(&planned.header, profile, programs, Selection::default())?;
     planned.layers.iter().for_each(|layer| chunks.extend(files.layer(layer, None)));
     chunks.extend(files.end(&planned.summary, &planned.part.repair(), None)?);
     let mut texts = BTreeMap::<String, String>::new();

@@ -3,7 +3,7 @@
 use crate::disk;
 use crate::state::PlanState;
 use beadwright::dialect::{self, Chunk};
-use beadwright::files::{PLAN, PlanFiles, Programs, Start};
+use beadwright::files::{PLAN, PlanFiles, Programs, Selection};
 use beadwright::plan::Summary;
 use std::path::Path;
 
@@ -93,7 +93,7 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     let posts = disk::posts(dialects)?;
     let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
     let (mut files, mut chunks) =
-        PlanFiles::begin(header, profile, programs, Start::default()).map_err(|error| error.to_string())?;
+        PlanFiles::begin(header, profile, programs, Selection::default()).map_err(|error| error.to_string())?;
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }

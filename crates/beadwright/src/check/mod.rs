@@ -129,7 +129,8 @@ pub struct LayerFigures {
     pub growth: Vec<Growth>,
 }
 
-/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`.
+/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`. How the
+/// stack grows is known from the judge's own, or else from a grid twice as coarse.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -140,22 +141,49 @@ pub fn judge_layers<L: Borrow<Layer>>(
     task: &Task,
     mut each: impl FnMut(usize, Judgement),
 ) -> Result<LayerFigures, Cancelled> {
-    let passes = || layers.iter().flat_map(|l| &l.borrow().passes);
-    let points = passes().flat_map(|p| &p.points).filter(|p| p.is_finite());
-    if let Some(bounds) = Bounds::of(points.map(|p| p.truncate())) {
-        judge = judge.with_stack(&bounds);
-    }
     let mut figures = Vec::with_capacity(layers.len());
     for (i, layer) in layers.iter().map(L::borrow).enumerate() {
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
-        // Points that are not finite numbers are found by a check of their own; the deposit model cannot handle them.
-        let sound = layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-        let judgement = sound.then(|| judge.layer(&plan::welded(layer, profile)));
+        let judgement = is_finite(layer).then(|| judge.layer(&plan::welded(layer, profile)));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
-    let growth = judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
+    let growth = match judge.stack() {
+        Some(stack) => stack.growth().to_vec(),
+        None => growth(layers, profile, *judge.settings(), task)?,
+    };
     Ok(LayerFigures { figures, total: *judge.total(), growth })
+}
+
+/// How the stack of a plan grows from layer to layer, on a grid twice as coarse as the settings': towers are wider than that.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn growth<L: Borrow<Layer>>(
+    layers: &[L],
+    profile: &Profile,
+    settings: DepositSettings,
+    task: &Task,
+) -> Result<Vec<Growth>, Cancelled> {
+    let Some(bounds) = extent(layers) else { return Ok(Vec::new()) };
+    let coarse = DepositSettings { step: 2.0 * settings.step, ..settings };
+    let mut judge = Judge::new(coarse).without_patches().with_stack(&bounds);
+    for layer in layers.iter().map(L::borrow).filter(|layer| is_finite(layer)) {
+        task.check()?;
+        judge.layer(&plan::welded(layer, profile));
+    }
+    Ok(judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default())
+}
+
+/// Where passes lie, seen from above.
+pub(crate) fn extent<L: Borrow<Layer>>(layers: &[L]) -> Option<Bounds> {
+    let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
+    Bounds::of(points.filter(|p| p.is_finite()).map(|p| p.truncate()))
+}
+
+/// Points that are not finite numbers are found by a check of their own; the deposit model cannot handle them.
+fn is_finite(layer: &Layer) -> bool {
+    layer.passes.iter().flat_map(|pass| &pass.points).all(|p| p.is_finite())
 }
 
 /// Runs all checks on a plan.

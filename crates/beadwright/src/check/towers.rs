@@ -1,6 +1,7 @@
 //! Places that grow out of the part.
 
 use super::{Check, Finding, Subject};
+use crate::pass::PassKind;
 
 pub(super) const CHECK: Check = Check {
     name: "towers",
@@ -13,7 +14,7 @@ pub(super) const CHECK: Check = Check {
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let clearance = subject.profile.travel.clearance;
-    if clearance <= 0.0 {
+    if clearance <= 0.0 || is_all_wall(subject) {
         return Vec::new();
     }
     let mut mean = 0.0;
@@ -29,4 +30,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         }
     }
     Vec::new()
+}
+
+/// Whether there is nothing but walls whose layers lie as high as their beads grow: of a wall, a bead's crest adds no more than
+/// its mean height, since it is laid on the crest below and spreads over it.
+fn is_all_wall(subject: &Subject<'_>) -> bool {
+    let walls = subject.layers.iter().flat_map(|layer| &layer.passes).all(|pass| pass.kind == PassKind::Wall);
+    walls && subject.profile.wall_bead().is_ok_and(|wall| wall.is_some())
 }

@@ -261,6 +261,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
             let to = fs::read_link(path)?;
             return Err(io::Error::other(format!("it is a link to {}; name that file itself", to.display())));
         }
+        fs::create_dir_all(folder)?;
         let mut builder = tempfile::Builder::new();
         let permissions = behind.map(|there| there.permissions()).ok().or_else(usual);
         if let Some(permissions) = permissions {

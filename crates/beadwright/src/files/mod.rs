@@ -16,11 +16,12 @@ pub use folder::{Folder, FolderError, Written, write_file};
 #[cfg(feature = "files")]
 pub use own_folder::posts;
 
-use crate::check::{self, Finding, Found};
+use crate::check::{self, Found, LayerFigures};
 use crate::deposit::{Figures, Judgement};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
 use crate::layer::{Extent, Layer};
+use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::plan::{self, Header, Summary};
 use crate::plan_file;
@@ -137,20 +138,27 @@ impl Programs {
     }
 }
 
-/// Where programs begin and end: elsewhere than at the beginning, a build goes on that was stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Start {
-    /// Index of the layer, from 0.
-    pub layer: usize,
-    /// Index of the pass in it, from 0.
+/// What programs weld: all of a plan, or less where a build goes on that was stopped.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Selection {
+    /// Indices of the layers, from 0; `None` for all from the first one on.
+    pub layers: Option<BTreeSet<usize>>,
+    /// Index of the first layer, from 0.
+    pub from: usize,
+    /// Index of the first pass in it, from 0.
     pub pass: usize,
-    /// Index of the last layer, from 0; layers above it are in no program.
-    pub last: usize,
 }
 
-impl Default for Start {
-    fn default() -> Self {
-        Self { layer: 0, pass: 0, last: usize::MAX }
+impl Selection {
+    /// Whether it is all of a plan.
+    pub fn is_all(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The first pass of a layer; `None` where it is in no program.
+    fn first_pass(&self, layer: usize) -> Option<usize> {
+        let chosen = self.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
+        (chosen && layer >= self.from).then_some(if layer == self.from { self.pass } else { 0 })
     }
 }
 
@@ -162,16 +170,19 @@ pub struct PlanFiles {
     programs: Programs,
     report: Report,
     profile: Profile,
-    /// The layers so far, of a plan that is not too large to be checked.
+    /// The layers so far, of a plan that is not too large to be checked, and their figures.
     layers: Vec<Layer>,
+    figures: Vec<Figures>,
     points: usize,
     found: Option<Vec<Found>>,
-    start: Start,
+    selection: Selection,
+    /// Totals of what the programs weld.
+    totals: Metrics,
     names: BTreeSet<String>,
 }
 
 impl PlanFiles {
-    /// Begins the files of a plan and returns their first text; the programs begin at `start`.
+    /// Begins the files of a plan and returns their first text; the programs weld what `selection` says.
     ///
     /// # Errors
     /// [`DialectError`] where a post cannot write a part as large as this.
@@ -179,7 +190,7 @@ impl PlanFiles {
         header: &Header,
         profile: &Profile,
         mut programs: Programs,
-        start: Start,
+        selection: Selection,
     ) -> Result<(Self, Vec<Chunk>), DialectError> {
         let mut chunks = vec![Chunk::new(PLAN, plan_file::head(header, profile))];
         chunks.extend(programs.begin(&header.extent));
@@ -187,8 +198,20 @@ impl PlanFiles {
             return Err(failure);
         }
         let report = Report::new(header, profile);
+        let totals = Metrics::new(profile);
         let (profile, layers, names) = (profile.clone(), Vec::new(), BTreeSet::new());
-        let mut files = Self { programs, report, profile, layers, points: 0, found: None, start, names };
+        let mut files = Self {
+            programs,
+            report,
+            profile,
+            layers,
+            figures: Vec::new(),
+            points: 0,
+            found: None,
+            selection,
+            totals,
+            names,
+        };
         files.note(&chunks);
         Ok((files, chunks))
     }
@@ -197,20 +220,31 @@ impl PlanFiles {
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
         self.points += layer.passes.iter().map(|pass| pass.points.len()).sum::<usize>();
-        if judgement.is_none() || self.points > MOST_CHECKED {
-            self.layers.clear();
-        } else {
-            self.layers.push(layer.clone());
+        match judgement.filter(|_| self.points <= MOST_CHECKED) {
+            Some(judgement) => {
+                self.layers.push(layer.clone());
+                self.figures.push(judgement.figures);
+            }
+            None => self.layers.clear(),
         }
         let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
-        if (self.start.layer..=self.start.last).contains(&layer.index) {
-            let first = if layer.index == self.start.layer { self.start.pass } else { 0 };
-            chunks.extend(self.programs.layer(layer, first));
-        } else {
-            self.programs.pass_over(layer);
+        match self.selection.first_pass(layer.index) {
+            Some(first) => {
+                chunks.extend(self.programs.layer(layer, first));
+                if !self.selection.is_all() {
+                    let passes = layer.passes.iter().skip(first).cloned().collect();
+                    self.totals.add(&Layer { passes, ..layer.clone() });
+                }
+            }
+            None => self.programs.pass_over(layer),
         }
         self.note(&chunks);
         chunks
+    }
+
+    /// Totals of what the programs weld, where that is not the whole plan.
+    pub fn totals(&self) -> Option<&Metrics> {
+        (!self.selection.is_all()).then_some(&self.totals)
     }
 
     /// What people must know about the programs, once all layers are written: sentences.
@@ -227,10 +261,14 @@ impl PlanFiles {
     /// [`Cancelled`].
     pub fn check(&mut self, task: &Task) -> Result<&[Found], Cancelled> {
         if self.found.is_none() {
-            let layers = std::mem::take(&mut self.layers);
-            let settings = plan::deposit_settings_of(&self.profile, &layers);
-            let findings: Vec<Finding> =
-                if layers.is_empty() { Vec::new() } else { check::check(&layers, &self.profile, settings, task)? };
+            let (layers, figures) = (std::mem::take(&mut self.layers), std::mem::take(&mut self.figures));
+            let mut findings = Vec::new();
+            if !layers.is_empty() {
+                let settings = plan::deposit_settings_of(&self.profile, &layers);
+                let growth = check::growth(&layers, &self.profile, settings, task)?;
+                let judged = LayerFigures { figures, growth, ..LayerFigures::default() };
+                findings = check::check_figures(&layers, &self.profile, settings.nominal.rise, judged);
+            }
             self.found = Some(check::found(&findings));
         }
         Ok(self.found.as_deref().unwrap_or_default())
@@ -248,6 +286,7 @@ impl PlanFiles {
     ) -> Result<Vec<Chunk>, DialectError> {
         // Nobody stops a task of its own.
         let found = self.check(&Task::new()).map(<[Found]>::to_vec).unwrap_or_default();
+        let totals = self.totals().cloned();
         let mut chunks = self.programs.end();
         if let Some(failure) = self.programs.failure() {
             return Err(failure);
@@ -258,6 +297,9 @@ impl PlanFiles {
         let mut metrics = summary.json(total);
         // So that the next plan in this folder knows which files are those of this one.
         metrics["files"] = serde_json::json!(names);
+        if let Some(totals) = &totals {
+            metrics["programs"] = serde_json::json!(totals);
+        }
         metrics["findings"] = serde_json::json!(found);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &found)));

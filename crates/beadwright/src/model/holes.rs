@@ -106,6 +106,50 @@ fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
     (loops, touching)
 }
 
+/// The edge of an open surface, or a hole in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Opening {
+    /// How wide it is: the radius of a round one, the width of a slit.
+    pub width: f64,
+    /// Length of its edges.
+    pub length: f64,
+    /// A place on it.
+    pub place: DVec3,
+}
+
+/// The openings of a surface, the widest first, lengths in its units. Open edges that touch make one opening.
+pub fn openings(mesh: &Mesh) -> Vec<Opening> {
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    for (corners, across) in mesh.triangles.iter().zip(&mesh.neighbours) {
+        let open = (0..3).filter(|&edge| across[edge] == NO_NEIGHBOUR);
+        edges.extend(open.map(|edge| [corners[edge], corners[(edge + 1) % 3]]));
+    }
+    let mut at: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (i, edge) in edges.iter().enumerate() {
+        edge.iter().for_each(|corner| at.entry(*corner).or_default().push(i));
+    }
+    let place = |corner: u32| mesh.vertices[corner as usize];
+    let (mut seen, mut found) = (vec![false; edges.len()], Vec::new());
+    for first in 0..edges.len() {
+        let (mut next, mut length, mut area) = (vec![first], 0.0, DVec3::ZERO);
+        let origin = place(edges[first][0]);
+        while let Some(i) = next.pop() {
+            if std::mem::replace(&mut seen[i], true) {
+                continue;
+            }
+            let [a, b] = edges[i].map(place);
+            length += a.distance(b);
+            area += (a - origin).cross(b - origin) / 2.0;
+            next.extend(edges[i].iter().filter_map(|corner| at.get(corner)).flatten().filter(|i| !seen[**i]));
+        }
+        if length > 0.0 {
+            found.push(Opening { width: 2.0 * area.length() / length, length, place: origin });
+        }
+    }
+    found.sort_by(|a, b| b.width.total_cmp(&a.width));
+    found
+}
+
 /// Diagonal of the box around a loop.
 fn extent(mesh: &Mesh, corners: &[u32]) -> f64 {
     let places = || corners.iter().map(|&corner| mesh.vertices[corner as usize]);

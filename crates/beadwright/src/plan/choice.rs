@@ -1,10 +1,12 @@
 //! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
 
-use crate::model::{Mesh, Part};
+use crate::fill::wall::Wall;
+use crate::fill::{Path, Strategy, sound};
+use crate::model::{Mesh, NO_NEIGHBOUR, Part};
 use crate::profile::Profile;
-use crate::slice::{Slab, Slicer};
+use crate::slice::{Slab, Slicer, Surface};
 use crate::task::{Cancelled, Task};
-use planar::{Join, Region};
+use planar::{Join, Polygon, Region};
 
 /// The profile that a part is planned with.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +22,7 @@ const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
 
-/// Chooses the strategy. Curves are always welded with `wall`. A solid is too, if the profile says `loop` and the whole
+/// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the profile says `loop` and the whole
 /// part is thin wall, unless the strategy is to be `kept`.
 ///
 /// # Errors
@@ -30,6 +32,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     let mut note = None;
     match part {
         Part::Curves { .. } => "wall".clone_into(&mut profile.fill.strategy),
+        Part::Mesh(_) if is_wall_surface(part, &profile) => "wall".clone_into(&mut profile.fill.strategy),
         Part::Mesh(import) if !kept && profile.fill.strategy == "loop" && all_thin(&import.mesh, &profile, task)? => {
             "wall".clone_into(&mut profile.fill.strategy);
             note = Some(
@@ -42,18 +45,41 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     Ok(Choice { profile, note })
 }
 
-/// Whether a part has room for one bead everywhere and for two hardly anywhere.
+/// Whether a part is an open surface along which one bead is laid.
+fn is_wall_surface(part: &Part, profile: &Profile) -> bool {
+    let open = |mesh: &Mesh| mesh.neighbours.iter().flatten().any(|&across| across == NO_NEIGHBOUR);
+    profile.slice.surface == Some(Surface::Wall) && part.mesh().is_some_and(open)
+}
+
+/// Whether a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its middle.
 fn all_thin(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<bool, Cancelled> {
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
     let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
-    let radius = profile.fill_settings(0).double() / 2.0;
+    let settings = profile.fill_settings(0);
+    let radius = settings.double() / 2.0;
+    let slices = slicer.all(task)?;
     let (mut all, mut thick) = (0.0, 0.0);
-    for slice in slicer.all(task)? {
-        let region = Region::from_normalised(slice.islands);
+    for slice in &slices {
+        let region = Region::from_normalised(slice.islands.clone());
         all += region.area();
         thick += region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).area();
     }
-    Ok(all > 0.0 && thick <= JUNCTIONS * all)
+    if all == 0.0 || thick > JUNCTIONS * all {
+        return Ok(false);
+    }
+    // Teeth and ribs that are thin in some place make no wall.
+    let is_wall = |island: &Polygon| {
+        let fill = Wall.fill(island, &settings);
+        let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+        sound::fault(&paths, island, settings.machining_allowance).is_none()
+    };
+    for slice in &slices {
+        task.check()?;
+        if !slice.islands.iter().all(is_wall) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }

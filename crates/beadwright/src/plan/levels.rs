@@ -7,11 +7,11 @@
 
 use crate::bead::wall::WallBead;
 use crate::model::Mesh;
-use crate::model::wall_curves::WallCurves;
+use crate::model::wall_curves::{Section, WallCurves};
 use crate::plan::MAX_LAYERS;
 use crate::plan::warm::Warmth;
 use crate::profile::Profile;
-use crate::slice::{self, Slab, Slice, Slicer};
+use crate::slice::{self, Lines, Slab, Slice, Slicer, Surface};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::Ring;
@@ -38,15 +38,20 @@ pub(super) fn of_mesh(
     let slabs = slice::even_slabs(mesh, step);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let mut rises = Vec::with_capacity(slicer.layer_count());
-    let mut below: Option<Slice> = None;
+    let mut below: Option<Vec<Vec<DVec2>>> = None;
     for batch in 0..slicer.batch_count() {
-        let slices: Vec<Slice> = below.take().into_iter().chain(slicer.batch(batch, task)?).collect();
-        rises.par_extend(slices.par_windows(2).map(|pair| {
-            let upper: Vec<(DVec2, DVec2)> = rings(&pair[1]).flat_map(Ring::edges).collect();
+        let lines = match profile.slice.surface {
+            Some(Surface::Wall) => slicer.lines(batch, task)?.into_iter().map(of_sections).collect::<Vec<_>>(),
+            _ => slicer.batch(batch, task)?.iter().map(of_outlines).collect(),
+        };
+        let layers: Vec<_> = below.take().into_iter().chain(lines).collect();
+        rises.par_extend(layers.par_windows(2).map(|pair| {
+            let edges = |line: &Vec<DVec2>| line.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
+            let upper: Vec<(DVec2, DVec2)> = pair[1].iter().flat_map(edges).collect();
             let lean = |p: DVec2| (to_nearest(p, &upper) / step).atan();
-            rise(wall, rings(&pair[0]).flat_map(evenly).map(lean))
+            rise(wall, pair[0].iter().flat_map(|line| evenly(line)).map(lean))
         }));
-        below = slices.into_iter().last();
+        below = layers.into_iter().last();
     }
     // Slices lie at (k + ½) · step.
     let rise = |z: f64| {
@@ -65,15 +70,25 @@ fn rise(wall: &WallBead, leans: impl Iterator<Item = f64>) -> f64 {
     leans.iter().rev().nth(aside).map_or(wall.rise(), |lean| wall.rise_leaning(*lean))
 }
 
-fn rings(slice: &Slice) -> impl Iterator<Item = &Ring> {
-    slice.islands.iter().flat_map(|island| island.rings())
+/// The outlines of a layer; a closed line ends where it begins.
+fn of_outlines(slice: &Slice) -> Vec<Vec<DVec2>> {
+    let ring = |ring: &Ring| ring.points().iter().chain(ring.points().first()).copied().collect();
+    slice.islands.iter().flat_map(|island| island.rings()).map(ring).collect()
 }
 
-/// Points at equal distances along a ring.
-fn evenly(ring: &Ring) -> Vec<DVec2> {
-    let line: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
-    let length = planar::polyline::length(&line);
-    (0..POINTS).filter_map(|k| planar::polyline::point_at(&line, length * k as f64 / POINTS as f64)).collect()
+/// The lines of a layer of an open surface.
+fn of_sections(lines: Lines) -> Vec<Vec<DVec2>> {
+    let line = |Section { points, closed }: Section| {
+        let again = points.first().copied().filter(|_| closed);
+        points.into_iter().chain(again).collect()
+    };
+    lines.sections.into_iter().map(line).collect()
+}
+
+/// Points at equal distances along a line.
+fn evenly(line: &[DVec2]) -> Vec<DVec2> {
+    let length = planar::polyline::length(line);
+    (0..POINTS).filter_map(|k| planar::polyline::point_at(line, length * k as f64 / POINTS as f64)).collect()
 }
 
 /// Distance from a point to the nearest edge, mm; 0 where there is none, as above the top of a wall.

@@ -8,9 +8,10 @@
 //! | --- | --- |
 //! | [`clearance`] | whether the torch has room beside parts that stand |
 //! | `parts` | parts that are welded one after another |
+//! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
-//! | [`expected`](expected()) | about how much a plan will hold |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
+//! | [`expected`](expected()) | about how much a plan will hold |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
@@ -18,11 +19,12 @@
 //! | `support` | whether passes lie on the metal below |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
+mod candidates;
 pub mod choice;
 pub mod clearance;
+mod emitter;
 mod expected;
 mod filled;
-mod emitter;
 mod levels;
 mod parts;
 mod preview;
@@ -42,19 +44,20 @@ use crate::fill::wall::{self, graph::Line};
 use crate::fill::{self, Path, Strategy, coverage};
 use crate::layer::{self, Extent, Layer};
 use crate::metrics::Metrics;
+use crate::model::holes::{self, Opening};
 use crate::model::wall_curves::{Section, WallCurves};
-use crate::model::{Mesh, NO_NEIGHBOUR, PartRef};
+use crate::model::{Mesh, PartRef};
 use crate::order;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, LayerFit, Slab, Slice, Slicer};
+use crate::slice::{self, BATCH, LayerFit, Lines, Slab, Slice, Slicer, Surface};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{Warning, WarningKind, WarningSummary, Warnings};
 use crate::weld;
+use emitter::Emitter;
 use filled::{Filled, drop_short};
 use glam::{DVec2, DVec3};
-use emitter::Emitter;
-use planar::medial::Node;
 use planar::Bounds;
+use planar::medial::Node;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -167,6 +170,18 @@ pub enum PlanError<E> {
     /// The bead gives no wall.
     #[error(transparent)]
     Wall(#[from] WallError),
+    /// A surface that is not closed, of which nobody said what it stands for.
+    #[error(
+        "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm by {width:.1} mm. If it is the skin of a solid, close it \
+         (`inspect --repair --fill-holes MM`), or say --surface solid (slice.surface), which fills what its contours enclose and leaves \
+         out those that do not close. If it stands for a wall, say --surface wall, which lays one bead along it.", .place.x, .place.y, .place.z
+    )]
+    Open {
+        /// Width of the widest opening, mm.
+        width: f64,
+        /// A place on it, mm.
+        place: DVec3,
+    },
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]
     Empty(String),
@@ -295,6 +310,12 @@ fn plan_mesh<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
+    let opening = holes::openings(mesh).into_iter().next();
+    let wide = opening.filter(|opening| opening.width > profile.bead.width);
+    let surface = match (profile.slice.surface, wide) {
+        (None, Some(Opening { width, place, .. })) => return Err(PlanError::Open { width, place }),
+        (surface, _) => surface.filter(|_| opening.is_some()),
+    };
     let slabs = slabs_at(warmth, mesh, profile, task)?;
     let left = left_over(mesh, &slabs, profile);
     let (low, high) = mesh.bounds();
@@ -302,6 +323,9 @@ fn plan_mesh<S: Sink + Send>(
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
+        if surface == Some(Surface::Wall) {
+            return Ok(slicer.lines(batch, task)?.into_par_iter().map(|lines| weld_lines(lines, profile)).collect());
+        }
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
         filled::fill_batch(planned, strategy, profile, datum, task)
     };
@@ -311,12 +335,24 @@ fn plan_mesh<S: Sink + Send>(
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
-    let closed = mesh.neighbours.iter().flatten().all(|&across| across != NO_NEIGHBOUR);
-    summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| closed && *volume > 0.0);
-    let volumes = other_volume(&summary, mesh.volume(), left.is_some());
+    summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| opening.is_none() && *volume > 0.0);
+    let volumes =
+        if surface == Some(Surface::Wall) { None } else { other_volume(&summary, mesh.volume(), left.is_some()) };
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
+    if surface.is_none() {
+        let torn = |w: &&WarningSummary| {
+            w.kind == WarningKind::OpenContourDropped && w.largest.size > TORN * profile.bead.width
+        };
+        let torn = summary.warnings.summaries().find(torn).map(WarningSummary::sentence);
+        summary
+            .forbidden
+            .extend(torn.map(|torn| format!("{torn} --surface solid goes on without what does not close.")));
+    }
     Ok(summary)
 }
+
+/// A contour that does not close and is longer than this, in bead widths, is a part of the solid that would be missing.
+const TORN: f64 = 4.0;
 
 /// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
 /// elsewhere than the part.
@@ -512,14 +548,34 @@ fn run<S: Sink + Send>(
     Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
 }
 
-/// The centre-lines of a layer as passes; the area they cover stands in for the slice.
+/// The lines in which a layer cuts an open surface as passes.
+fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profile: &Profile) -> Filled {
+    let half = profile.bead.width / 2.0;
+    let mut filled = weld_sections(&sections, |_| half, index, slab, profile);
+    filled.slice.warnings.splice(0..0, warnings);
+    filled
+}
+
+/// The centre-lines of a layer as passes.
 fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
-    let (settings, width) = (profile.fill_settings(index), profile.bead.width);
-    let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
-    let sections = curves.at(slab.z - slab.height / 2.0, settings.wall.chord_error);
+    let sections = curves.at(slab.z - slab.height / 2.0, profile.fill_settings(index).wall.chord_error);
     let leans = levels::leans(curves, slab);
     // A layer cuts a leaning wall aslant: it is wider there.
-    let node = |&at: &DVec2| Node { at, radius: width / 2.0 / levels::lean_at(&leans, at).cos() };
+    let half = |at: DVec2| profile.bead.width / 2.0 / levels::lean_at(&leans, at).cos();
+    weld_sections(&sections, half, index, slab, profile)
+}
+
+/// Centre-lines of walls, half as wide as `half` says of a place (mm), as passes; the area they cover stands in for the slice.
+fn weld_sections(
+    sections: &[Section],
+    half: impl Fn(DVec2) -> f64,
+    index: usize,
+    slab: Slab,
+    profile: &Profile,
+) -> Filled {
+    let (settings, width) = (profile.fill_settings(index), profile.bead.width);
+    let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
+    let node = |&at: &DVec2| Node { at, radius: half(at) };
     let line = |section: &Section| Line { nodes: section.points.iter().map(node).collect(), closed: section.closed };
     let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
     for stage in &mut fill.stages {

@@ -300,7 +300,7 @@ impl Profile {
 
     /// How slicing is done.
     pub fn slice_options(&self) -> SliceOptions {
-        let SliceSection { close_gap, simplify } = self.slice;
+        let SliceSection { close_gap, simplify, .. } = self.slice;
         SliceOptions { layer_height: self.layers.height, close_gap, simplify }
     }
 

@@ -1,6 +1,7 @@
 //! The section `[slice]`.
 
 use crate::limit::{Limit, limits};
+use crate::slice::Surface;
 use serde::{Deserialize, Serialize};
 
 /// Slicing tolerances.
@@ -12,11 +13,15 @@ pub struct SliceSection {
     pub close_gap: f64,
     /// Contour vertices closer than this to the simplified line are dropped, mm; default 0.01.
     pub simplify: f64,
+    /// What a surface that is not closed stands for: `solid`, whose contours are filled, or `wall`, along which one bead is
+    /// laid; optional. Where it is left out, a part with an opening wider than a bead is not planned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Surface>,
 }
 
 impl Default for SliceSection {
     fn default() -> Self {
-        Self { close_gap: 0.5, simplify: 0.01 }
+        Self { close_gap: 0.5, simplify: 0.01, surface: None }
     }
 }
 

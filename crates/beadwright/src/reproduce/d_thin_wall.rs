@@ -278,7 +278,10 @@ impl Frame {
     fn new(layers: &[Layer], profile: &Profile, task: &Task) -> Result<Self, ReproduceError> {
         let settings = plan::deposit_settings(profile);
         let mut picture = None;
-        let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
+        let mut judge = Judge::new(settings).with_pictures(MAP_PIXELS);
+        if let Some(bounds) = check::extent(layers) {
+            judge = judge.with_stack(&bounds);
+        }
         let judged = check::judge_layers(layers, profile, judge, task, |layer, judgement| {
             if layer == 0 {
                 picture = judgement.picture;

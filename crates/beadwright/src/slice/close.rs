@@ -1,8 +1,7 @@
 //! Open contours of a broken mesh: ends that lie within the gap are joined, nearest pair first.
 
-use crate::warning::WarningKind;
 use glam::DVec2;
-use planar::{Ring, polyline};
+use planar::Ring;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -16,13 +15,13 @@ struct End {
     last: bool,
 }
 
-/// Joins open chains into rings; what stays open is dropped. `tell` is called with the widest gap and with every drop.
+/// Joins open chains into rings, and returns what stays open. `tell` is called with every gap: a place and its width, mm.
 pub(super) fn close(
     chains: Vec<Vec<DVec2>>,
     gap: f64,
     rings: &mut Vec<Ring>,
-    mut tell: impl FnMut(WarningKind, DVec2, f64),
-) {
+    mut tell: impl FnMut(DVec2, f64),
+) -> Vec<Vec<DVec2>> {
     let mut partner: Vec<[Option<End>; 2]> = vec![[None; 2]; chains.len()];
     for (distance, a, b) in candidate_pairs(&chains, gap) {
         let free = |e: End| partner[e.chain][usize::from(e.last)].is_none();
@@ -30,18 +29,17 @@ pub(super) fn close(
             partner[a.chain][usize::from(a.last)] = Some(b);
             partner[b.chain][usize::from(b.last)] = Some(a);
             if distance > 1e-3 {
-                tell(WarningKind::GapClosed, point(&chains, a), distance);
+                tell(point(&chains, a), distance);
             }
         }
     }
-    let mut used = vec![false; chains.len()];
+    let (mut used, mut open) = (vec![false; chains.len()], Vec::new());
     // Chains with a loose end first: they cannot become rings.
     let loose = |i: &usize| partner[*i].iter().any(Option::is_none);
     for start in (0..chains.len()).filter(loose) {
         if !used[start] {
             let enter = End { chain: start, last: partner[start][0].is_some() };
-            let points = follow(&chains, &partner, enter, &mut used);
-            tell(WarningKind::OpenContourDropped, points[points.len() / 2], polyline::length(&points));
+            open.push(follow(&chains, &partner, enter, &mut used));
         }
     }
     for start in 0..chains.len() {
@@ -50,6 +48,7 @@ pub(super) fn close(
             rings.push(Ring::new(points));
         }
     }
+    open
 }
 
 fn point(chains: &[Vec<DVec2>], end: End) -> DVec2 {

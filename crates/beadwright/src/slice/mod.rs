@@ -15,6 +15,7 @@ mod close;
 mod trace;
 
 use crate::model::Mesh;
+use crate::model::wall_curves::Section;
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{SLIVER_MM, Warning, WarningKind};
 use glam::DVec2;
@@ -68,6 +69,30 @@ pub struct Slab {
     pub z: f64,
     /// Thickness, mm; the layer is cut at its middle.
     pub height: f64,
+}
+
+/// The lines in which a layer cuts an open surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lines {
+    /// Index from 0.
+    pub index: usize,
+    /// Where the layer lies.
+    pub slab: Slab,
+    /// The lines.
+    pub sections: Vec<Section>,
+    /// Gaps that were bridged.
+    pub warnings: Vec<Warning>,
+}
+
+/// What a surface that is not closed stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Surface {
+    /// The skin of a solid: what its contours enclose is filled, and those that do not close are left out.
+    Solid,
+    /// A wall: one bead is laid along it.
+    Wall,
 }
 
 /// How layers fit the height of a part.
@@ -185,11 +210,37 @@ impl<'a> Slicer<'a> {
         self.planes.len().div_ceil(BATCH)
     }
 
+    /// The lines in which one batch of layers cuts an open surface.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn lines(&self, batch: usize, task: &Task) -> Result<Vec<Lines>, Cancelled> {
+        self.each(batch, task, |index, triangles| {
+            let (Trace { rings, open }, warnings) = self.traced(index, triangles);
+            let simplify = self.options.simplify;
+            let rings = rings.into_iter().filter_map(|ring| planar::polyline::simplify_ring(ring, simplify));
+            let closed = rings.map(|ring| Section { points: ring.into_points(), closed: true });
+            let open = open.into_iter().filter(|line| line.len() > 1);
+            let open = open.map(|line| Section { points: planar::polyline::simplify(&line, simplify), closed: false });
+            Lines { index, slab: self.slabs[index], sections: closed.chain(open).collect(), warnings }
+        })
+    }
+
     /// Cuts one batch of layers in parallel.
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
     pub fn batch(&self, batch: usize, task: &Task) -> Result<Vec<Slice>, Cancelled> {
+        self.each(batch, task, |index, triangles| self.cut(index, triangles))
+    }
+
+    /// Something of each layer of a batch, in parallel.
+    fn each<T: Send>(
+        &self,
+        batch: usize,
+        task: &Task,
+        of: impl Fn(usize, &[u32]) -> T + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(self.planes.len());
         let by_layer = self.triangles_by_layer(batch, layers.clone());
         layers
@@ -197,7 +248,7 @@ impl<'a> Slicer<'a> {
             .zip(by_layer)
             .map(|(index, triangles)| {
                 task.check()?;
-                Ok(self.cut(index, &triangles))
+                Ok(of(index, &triangles))
             })
             .collect()
     }
@@ -226,9 +277,8 @@ impl<'a> Slicer<'a> {
         by_layer
     }
 
-    fn cut(&self, index: usize, triangles: &[u32]) -> Slice {
-        let (Slab { z, height }, SliceOptions { close_gap, simplify, .. }) = (self.slabs[index], self.options);
-        let mut layer = Slice { index, z, height, ..Slice::default() };
+    /// The contours of a layer, those that do not close apart, and warnings of gaps.
+    fn traced(&self, index: usize, triangles: &[u32]) -> (Trace, Vec<Warning>) {
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
         let Trace { mut rings, open } =
@@ -237,11 +287,23 @@ impl<'a> Slicer<'a> {
         if let Ok(mut pool) = self.scratch.lock() {
             pool.push(scratch);
         }
-        if !open.is_empty() {
-            close::close(open, close_gap, &mut rings, |kind, place, size| {
-                layer.warnings.push(Warning { kind, layer: index, place, size });
-            });
-        }
+        let mut gaps = Vec::new();
+        let open = close::close(open, self.options.close_gap, &mut rings, |place, size| {
+            gaps.push(Warning { kind: WarningKind::GapClosed, layer: index, place, size });
+        });
+        (Trace { rings, open }, gaps)
+    }
+
+    fn cut(&self, index: usize, triangles: &[u32]) -> Slice {
+        let (Slab { z, height }, simplify) = (self.slabs[index], self.options.simplify);
+        let (Trace { rings, open }, warnings) = self.traced(index, triangles);
+        let mut layer = Slice { index, z, height, warnings, ..Slice::default() };
+        let dropped = |line: &Vec<DVec2>| {
+            let (kind, place, size) =
+                (WarningKind::OpenContourDropped, line[line.len() / 2], planar::polyline::length(line));
+            Warning { kind, layer: index, place, size }
+        };
+        layer.warnings.extend(open.iter().filter(|line| !line.is_empty()).map(dropped));
         let rings: Vec<Ring> = rings.into_iter().filter_map(|r| planar::polyline::simplify_ring(r, simplify)).collect();
         let region = Region::from_rings(&rings, FillRule::NonZero);
         layer.warnings.extend(area_balance(index, &rings, &region));
