@@ -67,11 +67,10 @@ impl PassHeat {
         if told.is_empty() { self.start } else { told.iter().sum::<f64>() / told.len() as f64 }
     }
 
-    /// The hottest place ahead of the torch: how far along the pass, mm, where temperatures are told every `spacing` (mm),
-    /// and its temperature, °C.
-    pub fn peak(&self, spacing: f64) -> (f64, f64) {
-        let places = self.along.iter().enumerate().map(|(i, ahead)| (i as f64 * spacing, *ahead));
-        places.fold((0.0, self.start), |hottest, place| if place.1 > hottest.1 { place } else { hottest })
+    /// The hottest place ahead of the torch: its index in `along`, and its temperature, °C.
+    pub fn peak(&self) -> (usize, f64) {
+        let places = self.along.iter().copied().enumerate();
+        places.fold((0, self.start), |hottest, place| if place.1 > hottest.1 { place } else { hottest })
     }
 }
 

@@ -40,7 +40,7 @@ impl History {
     /// The hottest metal that a pass meets ahead of the torch: index of layer and pass, °C.
     pub fn hottest_ahead(&self) -> Option<(usize, usize, f64)> {
         let ahead = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
-            heat.passes.iter().enumerate().map(move |(pass, heat)| (layer, pass, heat.peak(0.0).1))
+            heat.passes.iter().enumerate().map(move |(pass, heat)| (layer, pass, heat.peak().1))
         });
         ahead.max_by(|a, b| a.2.total_cmp(&b.2))
     }

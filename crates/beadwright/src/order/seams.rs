@@ -7,9 +7,9 @@ use planar::polyline::point_at;
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
-/// So many layers below are looked at.
+/// Number of layers below whose starts are avoided.
 const LAYERS: usize = 5;
-/// Starts keep so far apart, in bead widths.
+/// Least distance between starts, in bead widths.
 const APART: f64 = 0.5;
 /// Places tried per bead width.
 const PLACES: f64 = 10.0;

@@ -22,8 +22,8 @@ const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
 
-/// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the profile says `loop` and the whole
-/// part is thin wall, unless the strategy is to be `kept`.
+/// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the
+/// profile says `loop` and the whole part is thin wall, unless the strategy is to be `kept`.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -32,7 +32,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     let mut note = None;
     match part {
         Part::Curves { .. } => "wall".clone_into(&mut profile.fill.strategy),
-        Part::Mesh(_) if is_wall_surface(part, &profile) => "wall".clone_into(&mut profile.fill.strategy),
+        Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => "wall".clone_into(&mut profile.fill.strategy),
         Part::Mesh(import) if !kept && profile.fill.strategy == "loop" && all_thin(&import.mesh, &profile, task)? => {
             "wall".clone_into(&mut profile.fill.strategy);
             note = Some(
@@ -45,10 +45,10 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     Ok(Choice { profile, note })
 }
 
-/// Whether a part is an open surface along which one bead is laid.
-fn is_wall_surface(part: &Part, profile: &Profile) -> bool {
-    let open = |mesh: &Mesh| mesh.neighbours.iter().flatten().any(|&across| across == NO_NEIGHBOUR);
-    profile.slice.surface == Some(Surface::Wall) && part.mesh().is_some_and(open)
+/// Whether a mesh is an open surface along which one bead is laid.
+pub(super) fn is_wall_surface(mesh: &Mesh, profile: &Profile) -> bool {
+    profile.slice.surface == Some(Surface::Wall)
+        && mesh.neighbours.iter().flatten().any(|&across| across == NO_NEIGHBOUR)
 }
 
 /// Whether a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its middle.

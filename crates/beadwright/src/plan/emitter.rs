@@ -77,9 +77,9 @@ impl<S: Sink> Emitter<'_, S> {
         }
         let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
-            let (way, peak) = heat.peak(build.spacing());
+            let (place, peak) = heat.peak();
             if heat.start <= limits.max_temperature + NOISE && peak > limits.max_temperature + NOISE {
-                let place = place_on(pass, way);
+                let place = place_on(pass, place as f64 * build.spacing());
                 layer.warnings.push(Warning { kind: WarningKind::HotAhead, layer: layer.index, place, size: peak });
             }
             let kind = if pass.wait >= LONGEST_WAIT {

@@ -174,12 +174,12 @@ fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f
     // What no bead reaches, as sharp corners, is not left bare by the strategy.
     let (unreached, least) = ((area - reached).max(0.0), WORTH_TELLING * area);
     let left = bare - unreached;
-    let told = (left > least).then(|| {
+    let worst = (left > least).then(|| {
         let inner = coverage.bare(&whole.offset(-FLANK * width, Join::ROUND));
-        let told = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
-        Bare { area: told, ..inner }
+        let area = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
+        Bare { area, ..inner }
     });
-    ((area - bare).max(0.0), told.filter(|told| told.area > least))
+    ((area - bare).max(0.0), worst.filter(|worst| worst.area > least))
 }
 
 /// Strips along the outline count, too, from this part of an island on.

@@ -9,9 +9,10 @@ use crate::bead::wall::WallBead;
 use crate::model::Mesh;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::plan::MAX_LAYERS;
+use crate::plan::choice::is_wall_surface;
 use crate::plan::warm::Warmth;
 use crate::profile::Profile;
-use crate::slice::{self, Lines, Slab, Slice, Slicer, Surface};
+use crate::slice::{self, Lines, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::Ring;
@@ -37,12 +38,14 @@ pub(super) fn of_mesh(
     let (step, top) = (wall.rise(), mesh.bounds().1.z.max(0.0));
     let slabs = slice::even_slabs(mesh, step);
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let is_surface = is_wall_surface(mesh, profile);
     let mut rises = Vec::with_capacity(slicer.layer_count());
     let mut below: Option<Vec<Vec<DVec2>>> = None;
     for batch in 0..slicer.batch_count() {
-        let lines = match profile.slice.surface {
-            Some(Surface::Wall) => slicer.lines(batch, task)?.into_iter().map(of_sections).collect::<Vec<_>>(),
-            _ => slicer.batch(batch, task)?.iter().map(of_outlines).collect(),
+        let lines: Vec<_> = if is_surface {
+            slicer.lines(batch, task)?.into_iter().map(of_sections).collect()
+        } else {
+            slicer.batch(batch, task)?.iter().map(of_outlines).collect()
         };
         let layers: Vec<_> = below.take().into_iter().chain(lines).collect();
         rises.par_extend(layers.par_windows(2).map(|pair| {

@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | [`clearance`] | whether the torch has room beside parts that stand |
 //! | `parts` | parts that are welded one after another |
+//! | `centre_lines` | walls of one bead by their centre-lines |
 //! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
@@ -20,6 +21,7 @@
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 mod candidates;
+mod centre_lines;
 pub mod choice;
 pub mod clearance;
 mod emitter;
@@ -40,24 +42,23 @@ pub use scan_lines::{ToFill, raster_angle};
 
 use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
-use crate::fill::wall::{self, graph::Line};
-use crate::fill::{self, Path, Strategy, coverage};
+use crate::fill::{self, Strategy};
 use crate::layer::{self, Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::holes::{self, Opening};
-use crate::model::wall_curves::{Section, WallCurves};
+use crate::model::wall_curves::WallCurves;
 use crate::model::{Mesh, PartRef};
 use crate::order;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, LayerFit, Lines, Slab, Slice, Slicer, Surface};
+use crate::slice::{self, BATCH, LayerFit, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
-use crate::warning::{Warning, WarningKind, WarningSummary, Warnings};
+use crate::warning::{WarningKind, WarningSummary, Warnings};
 use crate::weld;
+use centre_lines::{weld_curves, weld_lines};
 use emitter::Emitter;
-use filled::{Filled, drop_short};
+use filled::Filled;
 use glam::{DVec2, DVec3};
 use planar::Bounds;
-use planar::medial::Node;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -312,10 +313,11 @@ fn plan_mesh<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let opening = holes::openings(mesh).into_iter().next();
     let wide = opening.filter(|opening| opening.width > profile.bead.width);
-    let surface = match (profile.slice.surface, wide) {
-        (None, Some(Opening { width, place, .. })) => return Err(PlanError::Open { width, place }),
-        (surface, _) => surface.filter(|_| opening.is_some()),
-    };
+    let unsaid = profile.slice.surface.is_none();
+    if let Some(Opening { width, place, .. }) = wide.filter(|_| unsaid) {
+        return Err(PlanError::Open { width, place });
+    }
+    let is_wall = choice::is_wall_surface(mesh, profile);
     let slabs = slabs_at(warmth, mesh, profile, task)?;
     let left = left_over(mesh, &slabs, profile);
     let (low, high) = mesh.bounds();
@@ -323,7 +325,7 @@ fn plan_mesh<S: Sink + Send>(
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
-        if surface == Some(Surface::Wall) {
+        if is_wall {
             return Ok(slicer.lines(batch, task)?.into_par_iter().map(|lines| weld_lines(lines, profile)).collect());
         }
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
@@ -336,10 +338,9 @@ fn plan_mesh<S: Sink + Send>(
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
     summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| opening.is_none() && *volume > 0.0);
-    let volumes =
-        if surface == Some(Surface::Wall) { None } else { other_volume(&summary, mesh.volume(), left.is_some()) };
+    let volumes = if is_wall { None } else { other_volume(&summary, mesh.volume(), left.is_some()) };
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
-    if surface.is_none() {
+    if unsaid {
         let torn = |w: &&WarningSummary| {
             w.kind == WarningKind::OpenContourDropped && w.largest.size > TORN * profile.bead.width
         };
@@ -547,62 +548,6 @@ fn run<S: Sink + Send>(
     let large = large.map(|most| format!("The plan has {points} points; {most} are the most (check.max_plan_points)."));
     Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
 }
-
-/// The lines in which a layer cuts an open surface as passes.
-fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profile: &Profile) -> Filled {
-    let half = profile.bead.width / 2.0;
-    let mut filled = weld_sections(&sections, |_| half, index, slab, profile);
-    filled.slice.warnings.splice(0..0, warnings);
-    filled
-}
-
-/// The centre-lines of a layer as passes.
-fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
-    let sections = curves.at(slab.z - slab.height / 2.0, profile.fill_settings(index).wall.chord_error);
-    let leans = levels::leans(curves, slab);
-    // A layer cuts a leaning wall aslant: it is wider there.
-    let half = |at: DVec2| profile.bead.width / 2.0 / levels::lean_at(&leans, at).cos();
-    weld_sections(&sections, half, index, slab, profile)
-}
-
-/// Centre-lines of walls, half as wide as `half` says of a place (mm), as passes; the area they cover stands in for the slice.
-fn weld_sections(
-    sections: &[Section],
-    half: impl Fn(DVec2) -> f64,
-    index: usize,
-    slab: Slab,
-    profile: &Profile,
-) -> Filled {
-    let (settings, width) = (profile.fill_settings(index), profile.bead.width);
-    let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
-    let node = |&at: &DVec2| Node { at, radius: half(at) };
-    let line = |section: &Section| Line { nodes: section.points.iter().map(node).collect(), closed: section.closed };
-    let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
-    for stage in &mut fill.stages {
-        drop_short(stage, profile, index, &mut slice.warnings);
-    }
-    let along = |closed: bool| {
-        let lines = sections.iter().filter(|section| section.closed == closed).map(|section| section.points.clone());
-        planar::buffer(&lines.collect::<Vec<_>>(), closed, width / 2.0, COVER_TOLERANCE_MM)
-    };
-    let covered = along(true).union(&along(false));
-    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-    let bare = coverage::bare(&paths, &covered, width);
-    // Where a curve was too short or vanished in a junction.
-    if bare.area > BARE_CURVE * width * width {
-        let (kind, layer) = (WarningKind::Bare, index);
-        slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
-    }
-    let planned_area = (covered.area() - bare.area).max(0.0);
-    slice.islands = covered.into_polygons();
-    Filled { slice, fills: vec![fill], planned_area, known: 0, shared: false }
-}
-
-/// What is left bare of curves is told from this area on, in squared bead widths.
-const BARE_CURVE: f64 = 0.5;
-
-/// Accuracy of the round ends of the area that a curve covers, mm.
-const COVER_TOLERANCE_MM: f64 = 0.02;
 
 fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
     let (height, layer_height) = (mesh.size().z, profile.layers.height);

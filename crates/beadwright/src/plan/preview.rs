@@ -1,10 +1,11 @@
 //! One layer ahead of the others, to look at while the rest is planned.
 
+use super::centre_lines::weld_curves;
 use super::emitter::Emitter;
 use super::filled::{Filled, fill_planned};
 use super::support::Support;
 use super::warm::{Heat, Warmth};
-use super::{Layer, PlanError, Sink, levels, scan_lines, slabs_at, strategy_of, weld_curves};
+use super::{Layer, PlanError, Sink, levels, scan_lines, slabs_at, strategy_of};
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
 use crate::order::Memory;

@@ -77,7 +77,7 @@ fn rows(layers: &[Layer], history: &History) -> Vec<Row> {
         let (layer, heat) = (layers.get(index)?, history.layers.get(index)?);
         let starts = || heat.passes.iter().map(|pass| pass.start);
         let least = starts().min_by(f64::total_cmp)?;
-        let peak = heat.passes.iter().map(|pass| pass.peak(0.0).1).fold(f64::MIN, f64::max);
+        let peak = heat.passes.iter().map(|pass| pass.peak().1).fold(f64::MIN, f64::max);
         let values = [heat.below, least, heat.hottest_start()?, peak, heat.wait(), heat.end / 60.0];
         let cells = values.into_iter().map(|value| format!("{value:.0}"));
         Some([format!("{}", layer.index + 1)].into_iter().chain(cells).map(|text| (text, false)).collect())

@@ -1,0 +1,68 @@
+//! Walls of one bead by their centre-lines: curves, or the lines in which layers cut an open surface.
+
+use super::filled::{Filled, drop_short};
+use super::levels;
+use crate::fill::wall::{self, graph::Line};
+use crate::fill::{Path, coverage};
+use crate::model::wall_curves::{Section, WallCurves};
+use crate::profile::Profile;
+use crate::slice::{Lines, Slab, Slice};
+use crate::warning::{Warning, WarningKind};
+use glam::DVec2;
+use planar::medial::Node;
+
+/// The lines in which a layer cuts an open surface as passes.
+pub(super) fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profile: &Profile) -> Filled {
+    let half = profile.bead.width / 2.0;
+    let mut filled = weld_sections(&sections, |_| half, index, slab, profile);
+    filled.slice.warnings.splice(0..0, warnings);
+    filled
+}
+
+/// The centre-lines of a layer as passes.
+pub(super) fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
+    let sections = curves.at(slab.z - slab.height / 2.0, profile.fill_settings(index).wall.chord_error);
+    let leans = levels::leans(curves, slab);
+    // A layer cuts a leaning wall aslant: it is wider there.
+    let half = |at: DVec2| profile.bead.width / 2.0 / levels::lean_at(&leans, at).cos();
+    weld_sections(&sections, half, index, slab, profile)
+}
+
+/// Centre-lines of walls, half as wide as `half` says of a place (mm), as passes; the area they cover stands in for the slice.
+fn weld_sections(
+    sections: &[Section],
+    half: impl Fn(DVec2) -> f64,
+    index: usize,
+    slab: Slab,
+    profile: &Profile,
+) -> Filled {
+    let (settings, width) = (profile.fill_settings(index), profile.bead.width);
+    let mut slice = Slice { index, z: slab.z, height: slab.height, ..Slice::default() };
+    let node = |&at: &DVec2| Node { at, radius: half(at) };
+    let line = |section: &Section| Line { nodes: section.points.iter().map(node).collect(), closed: section.closed };
+    let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
+    for stage in &mut fill.stages {
+        drop_short(stage, profile, index, &mut slice.warnings);
+    }
+    let along = |closed: bool| {
+        let lines = sections.iter().filter(|section| section.closed == closed).map(|section| section.points.clone());
+        planar::buffer(&lines.collect::<Vec<_>>(), closed, width / 2.0, COVER_TOLERANCE_MM)
+    };
+    let covered = along(true).union(&along(false));
+    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+    let bare = coverage::bare(&paths, &covered, width);
+    // Where a curve was too short or vanished in a junction.
+    if bare.area > BARE_CURVE * width * width {
+        let (kind, layer) = (WarningKind::Bare, index);
+        slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
+    }
+    let planned_area = (covered.area() - bare.area).max(0.0);
+    slice.islands = covered.into_polygons();
+    Filled { slice, fills: vec![fill], planned_area, known: 0, shared: false }
+}
+
+/// What is left bare of curves is told from this area on, in squared bead widths.
+const BARE_CURVE: f64 = 0.5;
+
+/// Accuracy of the round ends of the area that a curve covers, mm.
+const COVER_TOLERANCE_MM: f64 = 0.02;
