@@ -50,6 +50,18 @@ fn half_a_circle_has_a_closed_form() {
 }
 
 #[test]
+fn a_flat_bead_rises_as_its_enlargement_does() {
+    // The first two once lost digits, through the cosine of an angle near π/2.
+    let cases = (0..4000).map(|step| (0.2 + 0.01 * f64::from(step), 49.9 - 0.01 * f64::from(step)));
+    let found = [(18.412292986942457, 3.821226067792077_f64.exp()), (9.316604270137224, 3.2265252049767947_f64.exp())];
+    for (width, ratio) in found.into_iter().chain(cases) {
+        let (bead, scaled) = (wall(width, width / ratio), wall(3.0 * width, 3.0 * (width / ratio)));
+        let off = scaled.rise() / (3.0 * bead.rise()) - 1.0;
+        assert!(off.abs() < 1e-13, "width {width} mm, ratio {ratio}: {off:e}");
+    }
+}
+
+#[test]
 fn the_papers_angle_is_ours_where_it_holds() {
     for ratio in [2.0, 2.5, 3.0, 10.0, 50.0] {
         let (b, h): (f64, f64) = (4.0, 4.0 / ratio);

@@ -11,7 +11,7 @@
 //! The wire decides: [`WallBead::for_wall`] takes the metal of a bead and the thickness of the wall, so that the metal
 //! fed is the metal of the wall, and finds B₁ and h₁. The wall's mean thickness is 0.98 to 1.03 B₁ for λ from 2 to 2.7.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 /// A bead on the substrate, and the wall of such beads on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,7 +108,8 @@ impl WallBead {
 
     fn solved(width: f64, height: f64) -> Self {
         let mut bead = Self { width, height, rise: 0.0 };
-        bead.rise = 2.0 * bead.radius() * bead.overlap_angle().cos();
+        // 2R cos θn, where the cosine of an angle near π/2 would lose the digits of a flat bead.
+        bead.rise = 2.0 * bead.radius() * lens_complement(unit_cap(bead.cap_angle())).sin();
         bead
     }
 
@@ -251,7 +252,7 @@ fn unit_cap(theta: f64) -> f64 {
 }
 
 /// δ = π/2 − θn from eq (6), which is 2δ + sin 2δ = `area`, for areas from 0 to π. Newton's steps kept in a bracket:
-/// the left side rises all the way, with slope 0 only at its end. Exact to about 1e-15 in the area.
+/// the left side rises all the way, with slope 0 only at its end. Exact to a few roundings of δ, however flat the bead.
 fn lens_complement(area: f64) -> f64 {
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     let mut delta = (area / 4.0).min(high);
@@ -259,8 +260,8 @@ fn lens_complement(area: f64) -> f64 {
         let miss = 2.0 * delta + (2.0 * delta).sin() - area;
         *(if miss > 0.0 { &mut high } else { &mut low }) = delta;
         let step = delta - miss / (2.0 + 2.0 * (2.0 * delta).cos());
-        let next = if step > low && step < high { step } else { 0.5 * (low + high) };
-        if (next - delta).abs() <= f64::EPSILON * PI {
+        let next = if (low..=high).contains(&step) { step } else { 0.5 * (low + high) };
+        if (next - delta).abs() <= f64::EPSILON * next {
             return next;
         }
         delta = next;
