@@ -109,18 +109,20 @@ impl Planned<'_> {
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
         let found = files.check(&Task::new())?;
+        let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {
             let mut value = summary.json(figures.as_ref());
             value["part"] = name.into();
             value["findings"] = serde_json::json!(found);
+            value["built"] = serde_json::json!(built);
             return Ok(Some(value));
         }
         let place: Vec<Place> = places.iter().filter(|(part, _)| part == name).cloned().collect();
         print_head(&mut say::done(false), name, profile, model, &place)?;
         print_found(&found, &summary)?;
         print_warnings(profile, model, &summary)?;
-        print_summary(&mut say::done(false), &folder, &summary, figures.as_ref(), &written)?;
+        print_summary(&mut say::done(false), &folder, &summary, (figures.as_ref(), built.as_ref()), &written)?;
         writeln!(say::done(false))?;
         Ok(None)
     }

@@ -5,7 +5,7 @@ use crate::{model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::check::{self, Found};
 use beadwright::compare::{Chosen, MAP_PIXELS};
-use beadwright::deposit::{DepositSettings, Figures, Judge};
+use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
@@ -234,12 +234,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
     let found = files.check(&task)?;
-    let (figures, totals) = (files.figures(), files.totals());
+    let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 
     if arguments.json {
         let mut json = summary.json(figures.as_ref());
         json["findings"] = serde_json::json!(found);
+        json["built"] = serde_json::json!(built);
         if let Some(totals) = &totals {
             json["programs"] = serde_json::json!(totals);
         }
@@ -255,7 +256,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         print_rows(&mut out, rows::totals(totals))?;
         write!(out, "\nthe whole plan:")?;
     }
-    Ok(print_summary(&mut out, &arguments.output, &summary, figures.as_ref(), &written)?)
+    Ok(print_summary(&mut out, &arguments.output, &summary, (figures.as_ref(), built.as_ref()), &written)?)
 }
 
 /// Fails where a plan has none of the layers that its programs should weld.
@@ -341,6 +342,11 @@ impl<'a> Files<'a> {
     /// Totals of what the programs weld, where that is not the whole plan.
     fn totals(&self) -> Option<Metrics> {
         self.files.as_ref().and_then(PlanFiles::totals).cloned()
+    }
+
+    /// How the built part ends against the plan, once checked.
+    pub(crate) fn built(&self) -> Option<Growth> {
+        self.files.as_ref().and_then(PlanFiles::built).copied()
     }
 
     /// What people must know about the programs: sentences.
@@ -458,14 +464,12 @@ pub(crate) fn print_summary(
     out: &mut impl Write,
     folder: &Path,
     summary: &Summary,
-    figures: Option<&Figures>,
+    (figures, built): (Option<&Figures>, Option<&Growth>),
     written: &Written,
 ) -> std::io::Result<()> {
     writeln!(out)?;
-    print_rows(
-        out,
-        rows::totals(&summary.metrics).into_iter().chain(figures.map(rows::deposit).into_iter().flatten()),
-    )?;
+    let judged = figures.map(rows::deposit).into_iter().flatten().chain(built.map(rows::built));
+    print_rows(out, rows::totals(&summary.metrics).into_iter().chain(judged))?;
     writeln!(out)?;
     let Written { files, removed } = written;
     if !removed.is_empty() {

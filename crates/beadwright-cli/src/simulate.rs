@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let layers: Vec<_> = entry.layers.iter().map(|l| serde_json::json!({ "index": l.index, "z": l.z, "figures": l.figures.summary(), "voids": l.voids, "peaks": l.peaks })).collect();
-        let value = serde_json::json!({ "totals": entry.totals, "deposit": entry.figures.summary(), "layers": layers, "growth": entry.growth, "notes": loaded.notes });
+        let value = serde_json::json!({ "totals": entry.totals, "deposit": entry.figures.summary(), "layers": layers, "growth": entry.growth, "built": entry.built, "notes": loaded.notes });
         writeln!(out, "{value:#}")?;
         return Ok(());
     }
@@ -120,16 +120,22 @@ fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
         let counts: Vec<String> = causes.iter().map(|(name, n)| format!("{name} {n}")).collect();
         writeln!(out, "    by cause: {}", counts.join(", "))?;
     }
-    if let Some(last) = entry.growth.last().filter(|_| entry.growth.len() > 1) {
+    if let Some(built) = entry.built.filter(|_| entry.growth.len() > 1) {
         writeln!(
             out,
-            "\n  after all layers the highest point stands {:.2} mm above the nominal height (x {:.1} y {:.1}),",
-            last.peak, last.peak_place.x, last.peak_place.y
+            "\n  bead laid on bead, {:.1} % of the area ends within one layer height of the last layers, on average {:+.2} mm off,",
+            100.0 * built.within,
+            built.mean
         )?;
         writeln!(
             out,
-            "  the deepest {:.2} mm below it (x {:.1} y {:.1})",
-            last.hollow, last.hollow_place.x, last.hollow_place.y
+            "  at most {:.2} mm above (x {:.1} y {:.1}) and {:.2} mm below (x {:.1} y {:.1})",
+            built.peak,
+            built.peak_place.x,
+            built.peak_place.y,
+            built.hollow,
+            built.hollow_place.x,
+            built.hollow_place.y
         )?;
     }
     Ok(())

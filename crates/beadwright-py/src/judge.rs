@@ -37,14 +37,13 @@ impl Judged {
     /// Arc starts, lengths, times and metal; the figures; those of each layer with its voids and peaks; how the stack grows.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let Entry { totals, figures, layers, growth, .. } = &self.entry;
+        let Entry { totals, figures, layers, growth, built, .. } = &self.entry;
         let layer = |l: &library::JudgedLayer| {
             let (index, figures) = (l.index, l.figures.summary());
             serde_json::json!({ "index": index, "z": l.z, "figures": figures, "voids": l.voids, "peaks": l.peaks })
         };
         let layers: Vec<_> = layers.iter().map(layer).collect();
-        let value =
-            serde_json::json!({ "totals": totals, "deposit": figures.summary(), "layers": layers, "growth": growth });
+        let value = serde_json::json!({ "totals": totals, "deposit": figures.summary(), "layers": layers, "growth": growth, "built": built });
         Ok(pythonize::pythonize(py, &value)?)
     }
 

@@ -1,6 +1,6 @@
 //! Strategies and programs side by side: what each lays, and what the deposit model says of it.
 
-use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, stack::Growth};
+use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, Stack, stack::Growth};
 use crate::dialect::reading::ReadTotals;
 use crate::layer::Layer;
 use crate::metrics::Metrics;
@@ -34,8 +34,10 @@ pub struct Entry {
     pub figures: Figures,
     /// The judged layers.
     pub layers: Vec<JudgedLayer>,
-    /// How the stack grows over the judged layers.
+    /// How the part grows, layer by layer; empty where only some layers are judged.
     pub growth: Vec<Growth>,
+    /// How it ends; `None` where only some layers are judged.
+    pub built: Option<Growth>,
 }
 
 /// Arc starts, lengths, times and metal of a strategy or program.
@@ -96,7 +98,9 @@ struct EntryBuilder<'a> {
 
 impl<'a> EntryBuilder<'a> {
     fn new(settings: DepositSettings, bounds: &Bounds, chosen: &'a Chosen) -> Self {
-        let judge = Judge::new(settings).with_stack(bounds).with_pictures(MAP_PIXELS);
+        let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
+        // Beads are laid on all that lie below.
+        let judge = if chosen.is_none() { judge.with_stack(bounds) } else { judge };
         Self { judge, chosen, layers: Vec::new(), turns: 0 }
     }
 
@@ -114,8 +118,10 @@ impl<'a> EntryBuilder<'a> {
     }
 
     fn entry(self, name: &str, totals: Totals) -> Entry {
-        let growth = self.judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default();
-        Entry { name: name.to_owned(), totals, figures: *self.judge.total(), layers: self.layers, growth }
+        let stack = self.judge.stack();
+        let (growth, built) =
+            (stack.map_or_else(Vec::new, |stack| stack.growth().to_vec()), stack.and_then(Stack::built));
+        Entry { name: name.to_owned(), totals, figures: *self.judge.total(), layers: self.layers, growth, built }
     }
 }
 

@@ -234,23 +234,6 @@ fn peaks_and_voids_have_places_and_causes() {
 }
 
 #[test]
-fn the_stack_grows_where_beads_cross() {
-    let island = [rectangle((-20.0, -20.0), (20.0, 20.0))];
-    let cross = [open_pass(&[(-15.0, 0.0), (15.0, 0.0)]), open_pass(&[(0.0, -15.0), (0.0, 15.0)])];
-    let bounds = Bounds { min: DVec2::splat(-20.0), max: DVec2::splat(20.0) };
-    let mut judge = Judge::new(DepositSettings::new(NOMINAL, 0.0)).with_stack(&bounds);
-    for index in 0..4 {
-        judge.layer(&layer(index, &island, &cross));
-    }
-    let growth = judge.stack().unwrap().growth();
-    for (k, now) in growth.iter().enumerate() {
-        let layers = (k + 1) as f64;
-        assert!((now.peak - layers * (3.0 - 1.355)).abs() < 0.01 * layers && now.peak_place.length() < 0.2);
-        assert!((now.hollow - layers * 1.355).abs() < 1e-4 * layers);
-    }
-}
-
-#[test]
 fn a_turn_covers_an_area_twice() {
     // Right angle: r² (1 + π/4 − π/2).
     let expected = 2.5 * 2.5 * (1.0 - std::f64::consts::FRAC_PI_4);

@@ -23,7 +23,7 @@ class Judged:
 
     def __init__(self, core: _core.Judged) -> None:
         self._inner = core
-        #: All of it, as ``beadwright simulate --json`` prints it: totals, deposit, layers, growth.
+        #: All of it, as ``beadwright simulate --json`` prints it: totals, deposit, layers, growth, built.
         self.values: dict[str, Any] = core.values
 
     @property

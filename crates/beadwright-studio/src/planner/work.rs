@@ -96,7 +96,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
     };
     let judged = check::judge_layers(&layers, &profile, judge, task, each)?;
     let total = judged.total;
-    send(Event::Checked(total, check::check_figures(&layers, &profile, settings.nominal.rise, judged)));
+    send(Event::Checked(total, check::check_figures(&layers, &profile, judged)));
     Ok(())
 }
 

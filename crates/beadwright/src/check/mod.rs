@@ -6,6 +6,7 @@
 mod air;
 mod alternating_ends;
 mod bead_width;
+mod built_height;
 mod clearance;
 mod cooling;
 mod crossing;
@@ -30,7 +31,7 @@ mod wire_balance;
 
 pub use rehearsal::rehearse;
 
-use crate::deposit::{DepositSettings, Figures, Judge, Judgement, stack::Growth};
+use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
 use crate::layer::Layer;
 use crate::plan::{self, Summary};
 use crate::profile::Profile;
@@ -42,7 +43,7 @@ use serde::Serialize;
 use std::borrow::Borrow;
 
 /// The checks.
-pub const CHECKS: [Check; 23] = [
+pub const CHECKS: [Check; 24] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
@@ -61,6 +62,7 @@ pub const CHECKS: [Check; 23] = [
     overfill::CHECK,
     outside::CHECK,
     overhang::CHECK,
+    built_height::CHECK,
     towers::CHECK,
     stacked_starts::CHECK,
     alternating_ends::CHECK,
@@ -110,12 +112,12 @@ pub struct Finding {
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
     profile: &'a Profile,
-    /// Nominal rise of a layer in the deposit model, mm.
-    rise: f64,
     /// What the deposit model says of each layer.
     figures: Vec<Figures>,
-    /// How the stack grows.
+    /// How the part grows from layer to layer.
     growth: Vec<Growth>,
+    /// What stands in the end.
+    built: Option<Growth>,
 }
 
 /// What the deposit model says of a plan.
@@ -125,12 +127,20 @@ pub struct LayerFigures {
     pub figures: Vec<Figures>,
     /// The figures of all layers together.
     pub total: Figures,
-    /// How the stack grows.
-    pub growth: Vec<Growth>,
+    /// How the part grows.
+    pub grown: Grown,
 }
 
-/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`. How the
-/// stack grows is known from the judge's own, or else from a grid twice as coarse.
+/// How a part grows, bead laid on bead.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Grown {
+    /// After each layer, where that layer lies.
+    pub layers: Vec<Growth>,
+    /// In the end, everywhere; `None` where nothing is laid.
+    pub built: Option<Growth>,
+}
+
+/// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -148,31 +158,27 @@ pub fn judge_layers<L: Borrow<Layer>>(
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
-    let growth = match judge.stack() {
-        Some(stack) => stack.growth().to_vec(),
-        None => growth(layers, profile, *judge.settings(), task)?,
-    };
-    Ok(LayerFigures { figures, total: *judge.total(), growth })
+    let grown = grown(layers, profile, *judge.settings(), task)?;
+    Ok(LayerFigures { figures, total: *judge.total(), grown })
 }
 
-/// How the stack of a plan grows from layer to layer, on a grid twice as coarse as the settings': towers are wider than that.
+/// How a plan grows from layer to layer as it is welded.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn growth<L: Borrow<Layer>>(
+pub fn grown<L: Borrow<Layer>>(
     layers: &[L],
     profile: &Profile,
     settings: DepositSettings,
     task: &Task,
-) -> Result<Vec<Growth>, Cancelled> {
-    let Some(bounds) = extent(layers) else { return Ok(Vec::new()) };
-    let coarse = DepositSettings { step: 2.0 * settings.step, ..settings };
-    let mut judge = Judge::new(coarse).without_patches().with_stack(&bounds);
+) -> Result<Grown, Cancelled> {
+    let Some(bounds) = extent(layers) else { return Ok(Grown::default()) };
+    let mut stack = Stack::new(&bounds, settings);
     for layer in layers.iter().map(L::borrow).filter(|layer| is_finite(layer)) {
         task.check()?;
-        judge.layer(&plan::welded(layer, profile));
+        stack.add(&plan::welded(layer, profile));
     }
-    Ok(judge.stack().map(|stack| stack.growth().to_vec()).unwrap_or_default())
+    Ok(Grown { layers: stack.growth().to_vec(), built: stack.built() })
 }
 
 /// Where passes lie, seen from above.
@@ -197,19 +203,14 @@ pub fn check<L: Borrow<Layer>>(
     task: &Task,
 ) -> Result<Vec<Finding>, Cancelled> {
     let judged = judge_layers(layers, profile, Judge::new(settings), task, |_, _| ())?;
-    Ok(check_figures(layers, profile, settings.nominal.rise, judged))
+    Ok(check_figures(layers, profile, judged))
 }
 
-/// Runs all checks on a plan that has been judged; `rise` is the nominal rise of a layer, mm.
-pub fn check_figures<L: Borrow<Layer>>(
-    layers: &[L],
-    profile: &Profile,
-    rise: f64,
-    judged: LayerFigures,
-) -> Vec<Finding> {
-    let LayerFigures { figures, growth, .. } = judged;
+/// Runs all checks on a plan that has been judged.
+pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: LayerFigures) -> Vec<Finding> {
+    let LayerFigures { figures, grown: Grown { layers: growth, built }, .. } = judged;
     let layers = layers.iter().map(L::borrow).collect();
-    let subject = Subject { layers, profile, rise, figures, growth };
+    let subject = Subject { layers, profile, figures, growth, built };
     CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
 }
 

@@ -58,6 +58,12 @@ impl Grid {
         up(column(low))..(column(high) as usize + 1).min(self.columns)
     }
 
+    /// The rows whose points lie from `low` to `high` (mm).
+    pub fn rows_between(&self, low: f64, high: f64) -> Range<usize> {
+        let row = |y: f64| self.row_at(y).clamp(0.0, self.rows as f64);
+        up(row(low))..(row(high) as usize + 1).min(self.rows)
+    }
+
     /// Rows of one band.
     pub(super) fn band_rows(&self) -> usize {
         (BAND_POINTS / self.columns.max(1)).clamp(1, self.rows.max(1))

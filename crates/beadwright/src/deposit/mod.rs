@@ -130,9 +130,9 @@ impl Judge {
         self
     }
 
-    /// Also adds up the layers, to see how peaks grow; `bounds` holds all layers.
+    /// Also lays the layers on each other, to see how the part grows; `bounds` holds all layers.
     pub fn with_stack(mut self, bounds: &Bounds) -> Self {
-        self.stack = Some(Stack::new(Grid::covering(bounds, self.settings.nominal.bead.width, self.settings.step)));
+        self.stack = Some(Stack::new(bounds, self.settings));
         self
     }
 
@@ -153,7 +153,7 @@ impl Judge {
         &self.total
     }
 
-    /// The layers added up.
+    /// The layers on each other.
     pub fn stack(&self) -> Option<&Stack> {
         self.stack.as_ref()
     }
@@ -165,8 +165,10 @@ impl Judge {
 
     /// Judges the next layer.
     pub fn layer(&mut self, layer: &Layer) -> Judgement {
-        // The stack needs the heights of every layer.
-        let repeats = !self.every_point && self.stack.is_none();
+        if let Some(stack) = &mut self.stack {
+            stack.add(layer);
+        }
+        let repeats = !self.every_point;
         let near = repeat::NEAR * self.settings.step;
         let known = self.known.find(layer, near).filter(|_| repeats);
         let judgement = known.unwrap_or_else(|| self.look(layer));
@@ -177,22 +179,18 @@ impl Judge {
         judgement
     }
 
-    fn look(&mut self, layer: &Layer) -> Judgement {
+    fn look(&self, layer: &Layer) -> Judgement {
         let nominal = self.settings.nominal;
         let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
         let Some(grid) = grid_of(layer, &strokes, self.settings.step) else { return Judgement::nothing() };
         let eye = Eye {
             mask: &Mask::new(&layer.islands, &self.settings, &grid),
             canvas: self.picture_pixels.map(|pixels| Canvas::new(&grid, pixels, &nominal)),
-            keeps: self.stack.is_some(),
             patches: self.patches,
             nominal: &nominal,
             grid: &grid,
         };
-        let mut seen = if self.every_point { eye.every_point(&strokes) } else { eye.quick(&strokes) };
-        if let Some(stack) = &mut self.stack {
-            stack.add(&grid, seen.iter_mut().flat_map(|seen| seen.excess.drain(..)));
-        }
+        let seen = if self.every_point { eye.every_point(&strokes) } else { eye.quick(&strokes) };
         let mut figures = Figures::default();
         seen.iter().for_each(|s| figures.add(&s.figures));
         figures.deposited_volume = strokes.iter().map(Stroke::volume).sum();
@@ -214,8 +212,6 @@ struct Eye<'a> {
     mask: &'a Mask,
     nominal: &'a Nominal,
     canvas: Option<Canvas>,
-    /// Whether the stack wants its heights.
-    keeps: bool,
     /// Whether its runs are joined to patches.
     patches: bool,
 }
@@ -226,7 +222,6 @@ struct Seen {
     figures: Figures,
     runs: Vec<Run>,
     picture: Option<picture::Strip>,
-    excess: Vec<stack::Excess>,
     work: usize,
 }
 
@@ -243,7 +238,7 @@ impl Eye<'_> {
     }
 
     fn quick(&self, strokes: &[Stroke]) -> Vec<Seen> {
-        let ridges = !self.keeps && self.canvas.as_ref().is_none_or(|canvas| canvas.side() >= BEADS_SHOWN);
+        let ridges = self.canvas.as_ref().is_none_or(|canvas| canvas.side() >= BEADS_SHOWN);
         let field = tiles::Field { grid: self.grid, mask: self.mask, nominal: self.nominal, ridges };
         field.look(
             strokes,
@@ -282,7 +277,6 @@ impl Eye<'_> {
         if let (Some(canvas), Some(strip)) = (&self.canvas, &mut seen.picture) {
             canvas.paint(strip, band, &seen.runs[begun..]);
         }
-        seen.excess.extend(self.keeps.then(|| stack::Excess::of(band, self.mask, self.nominal.rise)));
         seen.work += band.work;
     }
 }
@@ -307,7 +301,7 @@ pub(crate) struct Mask {
 }
 
 impl Mask {
-    fn new(islands: &[Polygon], settings: &DepositSettings, grid: &Grid) -> Self {
+    pub(crate) fn new(islands: &[Polygon], settings: &DepositSettings, grid: &Grid) -> Self {
         let whole = Region::from_normalised(islands.to_vec());
         let rows = |region: &Region| {
             let crossings = region.rows(grid.place(0, 0).y, grid.step, grid.rows);
@@ -320,7 +314,7 @@ impl Mask {
     }
 
     /// The columns of a row inside the outline less its rim, from left to right.
-    fn core(&self, row: usize) -> &[Range<usize>] {
+    pub(crate) fn core(&self, row: usize) -> &[Range<usize>] {
         self.core.row(row)
     }
 

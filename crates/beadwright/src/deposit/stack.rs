@@ -1,96 +1,276 @@
-//! Layers on top of each other: where metal is missing or piles up from layer to layer.
+//! The part as it grows: every bead laid on what lies below it.
+//!
+//! A bead keeps the shape of its crown and the metal that it is fed, and sinks or rises until both are true on the
+//! ground it meets: its top is max(ground, a + crown), and a is where the metal between top and ground is the metal fed.
+//! So a bead on a flat plate is the bead of [`stroke`](super::stroke), one between two others fills their valley, and
+//! one on the crest of a wall adds area over width (the equal areas of [`wall`](crate::bead::wall)). Where the ground
+//! falls away the bead hangs: its metal does not run down farther below its edge than a bead is high on average. Beyond that,
+//! nothing levels: neither remelting nor the flow along a bead is in the model.
 
-use super::Mask;
-use super::field::{Band, Grid, Height};
+use super::field::Grid;
+use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke, strokes};
+use super::{DepositSettings, Mask, RIM};
+use crate::bead::{Bead, Section};
+use crate::layer::Layer;
 use glam::DVec2;
-use serde::Serialize;
+use planar::Bounds;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// The sum over layers of height less the nominal rise, where the layers have metal to lay.
+/// Beads are laid in pieces from a quarter to half of their width long.
+const SHORTEST_PIECE: f64 = 0.25;
+const LONGEST_PIECE: f64 = 0.5;
+/// Pieces are joined where the chord is at least this fraction of the path.
+const STRAIGHT: f64 = 0.95;
+/// Grid points of a stack along a point of the layers' grid.
+const COARSER: f64 = 2.0;
+/// A piece may differ by this fraction from the metal that it is fed.
+const BALANCED: f64 = 1e-4;
+
+/// What stands on the plate.
 #[derive(Debug, Clone)]
 pub struct Stack {
     grid: Grid,
-    excess: Vec<f32>,
+    settings: DepositSettings,
+    /// Height of the metal, mm.
+    top: Vec<f32>,
+    /// Height that the plan wants inside the rim, mm; not a number beside it.
+    wanted: Vec<f32>,
+    swept: Vec<Swept>,
+    pieces: u32,
+    /// Where the lowest layer begins, mm.
+    plate: Option<f64>,
+    /// That of the last layer, mm.
+    layer_height: Option<f64>,
     growth: Vec<Growth>,
 }
 
-/// How far the stack stands above and below its nominal height after a layer, mm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// How far the pool has passed over a grid point.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swept {
+    /// The fraction of a bead that it got.
+    part: f32,
+    /// The last piece that reached it.
+    piece: u32,
+}
+
+/// How far the metal stands above and below the plan, mm, inside the outlines less their rim.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Growth {
-    /// The highest peak above the nominal height.
+    /// The farthest above the plan.
     pub peak: f64,
     /// Where it is.
     pub peak_place: DVec2,
-    /// The deepest hollow below the nominal height.
+    /// The farthest below the plan.
     pub hollow: f64,
     /// Where it is.
     pub hollow_place: DVec2,
+    /// Mean height over the plan; negative below it.
+    pub mean: f64,
+    /// The fraction of the area that is one layer height or less above or below the plan.
+    pub within: f64,
 }
 
 impl Stack {
-    pub(super) fn new(grid: Grid) -> Self {
-        Self { excess: vec![0.0; grid.points()], grid, growth: Vec::new() }
+    /// A bare plate below `bounds`.
+    pub fn new(bounds: &Bounds, settings: DepositSettings) -> Self {
+        let grid = Grid::covering(bounds, settings.nominal.bead.width, COARSER * settings.step);
+        let points = grid.points();
+        let (top, wanted, swept) = (vec![0.0; points], vec![f32::NAN; points], vec![Swept::default(); points]);
+        Self { grid, settings, top, wanted, swept, pieces: 1, plate: None, layer_height: None, growth: Vec::new() }
     }
 
-    /// The state after every layer, the lowest first.
+    /// The state after every layer, the lowest first, where that layer lies.
     pub fn growth(&self) -> &[Growth] {
         &self.growth
     }
 
-    /// Adds a layer from the excess of its parts.
-    pub(super) fn add(&mut self, layer: &Grid, parts: impl Iterator<Item = Excess>) {
-        let shift = layer.low - self.grid.low;
-        let (width, height) = (self.grid.columns as i64, self.grid.rows as i64);
-        for part in parts {
-            for (k, values) in part.values.chunks(part.columns.len().max(1)).enumerate() {
-                let (row, first) = (shift.y + (part.first + k) as i64, shift.x + part.columns.start as i64);
-                let inside = |(i, value): (usize, f32)| {
-                    let column = first + i as i64;
-                    ((0..width).contains(&column)).then_some(((row * width + column) as usize, value))
-                };
-                if (0..height).contains(&row) {
-                    let values = values.iter().copied().enumerate().filter_map(inside);
-                    values.for_each(|(at, value)| self.excess[at] += value);
+    /// The state of all that stands, each place by the highest layer there; `None` before the first layer.
+    pub fn built(&self) -> Option<Growth> {
+        let columns = self.grid.columns.max(1);
+        let all = self.wanted.chunks(columns).enumerate().map(|(row, wanted)| (row, 0..wanted.len()));
+        self.layer_height.map(|height| self.compared(all, height))
+    }
+
+    /// Height of the metal at the grid point nearest to a place, mm; `None` beyond the grid.
+    pub fn height_at(&self, place: DVec2) -> Option<f64> {
+        self.grid.nearest(place).map(|at| self.top[at].into())
+    }
+
+    /// The grid on which the metal lies.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Lays the passes of a layer as they are welded.
+    pub fn add(&mut self, layer: &Layer) {
+        self.layer_height = Some(layer.height);
+        let plate = *self.plate.get_or_insert(layer.z - layer.height);
+        for pass in &layer.passes {
+            // No sweep goes on from pass to pass.
+            self.pieces += 2;
+            for piece in pieces(strokes(pass, &self.settings.nominal)) {
+                self.lay(&piece);
+            }
+        }
+        let rim = RIM * self.settings.nominal.bead.width;
+        let beside = DepositSettings { machining_allowance: rim, ..self.settings };
+        let mask = Mask::new(&layer.islands, &beside, &self.grid);
+        for row in 0..self.grid.rows {
+            let at = row * self.grid.columns;
+            mask.allowed(row).iter().for_each(|c| self.wanted[at + c.start..at + c.end].fill(f32::NAN));
+            let wanted = (layer.z - plate) as f32;
+            mask.core(row).iter().for_each(|c| self.wanted[at + c.start..at + c.end].fill(wanted));
+        }
+        let core = (0..self.grid.rows).flat_map(|row| mask.core(row).iter().map(move |c| (row, c.clone())));
+        let growth = self.compared(core, layer.height);
+        self.growth.push(growth);
+    }
+
+    /// What stands against what is wanted, on some stretches of rows.
+    fn compared(&self, stretches: impl Iterator<Item = (usize, Range<usize>)>, layer_height: f64) -> Growth {
+        let (mut points, mut near, mut sum) = (0_usize, 0_usize, 0.0);
+        let mut growth = Growth::default();
+        for (row, columns) in stretches {
+            for column in columns {
+                let at = row * self.grid.columns + column;
+                let over = f64::from(self.top[at]) - f64::from(self.wanted[at]);
+                if over.is_nan() {
+                    continue;
+                }
+                (points, sum) = (points + 1, sum + over);
+                near += usize::from(over.abs() <= layer_height);
+                if over > growth.peak {
+                    (growth.peak, growth.peak_place) = (over, self.grid.place(column, row));
+                }
+                if -over > growth.hollow {
+                    (growth.hollow, growth.hollow_place) = (-over, self.grid.place(column, row));
                 }
             }
         }
-        self.growth.push(self.extremes());
+        if points > 0 {
+            (growth.mean, growth.within) = (sum / points as f64, near as f64 / points as f64);
+        }
+        growth
     }
 
-    fn extremes(&self) -> Growth {
-        let (mut low, mut high) = ((0.0, 0), (0.0, 0));
-        for (i, &value) in self.excess.iter().enumerate() {
-            if value > high.0 {
-                high = (value, i);
-            }
-            if value < low.0 {
-                low = (value, i);
+    fn lay(&mut self, piece: &Stroke) {
+        // Grid points that the edge of the bead crosses belong to it in part.
+        let wider = Bead { width: piece.bead.width + self.grid.step, ..piece.bead };
+        let Some((own, wide)) = piece.frame().zip(Stroke { bead: wider, ..*piece }.frame()) else { return };
+        let cells = match own.section {
+            Section::Parabola => self.reached::<Domed>(&own, &wide),
+            Section::Ellipse => self.reached::<Even>(&own, &wide),
+            Section::Stadium => self.reached::<Rimmed>(&own, &wide),
+        };
+        let metal = piece.volume() / (self.grid.step * self.grid.step);
+        let Some(edge) = edge_height(&cells, &piece.bead, metal) else { return };
+        for cell in &cells {
+            self.top[cell.at] += (cell.part * (edge + cell.crown - cell.ground).max(0.0)) as f32;
+        }
+        self.pieces += 1;
+    }
+
+    /// The grid points to which a piece brings metal, with how much of their bead is swept by it; `wide` is the piece half a
+    /// step wider on both sides.
+    fn reached<F: Footprint>(&mut self, own: &Frame, wide: &Frame) -> Vec<Cell> {
+        let (a, b) = (own.from.y, own.from.y + own.along.y * own.length);
+        let mut cells = Vec::new();
+        for row in self.grid.rows_between(a.min(b) - wide.a, a.max(b) + wide.a) {
+            let Some((low, high, ..)) = wide.row(self.grid.place(0, row).y) else { continue };
+            for column in self.grid.columns_between(low, high) {
+                let (place, at) = (self.grid.place(column, row), row * self.grid.columns + column);
+                let (whole, added) = (wide.passed_over::<F>(place), wide.height_of::<F>(place));
+                if added <= 0.0 || whole <= 0.0 {
+                    continue;
+                }
+                let beside = own.along.perp_dot(place - own.from).abs();
+                let covered = ((wide.a - beside) / self.grid.step).clamp(0.0, 1.0);
+                let swept = &mut self.swept[at];
+                let before = if self.pieces - swept.piece > 1 { 0.0 } else { f64::from(swept.part) };
+                let share = (added / whole).min(1.0);
+                // Of what the bead still has to bring here; a point swept to the end begins anew.
+                let (part, after) = if before + share < 1.0 {
+                    (share / (1.0 - before), before + share)
+                } else {
+                    (1.0, before + share - 1.0)
+                };
+                *swept = Swept { part: after as f32, piece: self.pieces };
+                let (crown, ground) = (own.passed_over::<F>(place), f64::from(self.top[at]));
+                cells.push(Cell { at, part: covered * part, left: 1.0 - before, crown, ground });
             }
         }
-        let place = |i: usize| self.grid.place(i % self.grid.columns.max(1), i / self.grid.columns.max(1));
-        Growth { peak: high.0.into(), peak_place: place(high.1), hollow: (-low.0).into(), hollow_place: place(low.1) }
+        cells
     }
 }
 
-/// Height less rise inside the outline less its rim, zero elsewhere, of a rectangle of a layer.
-pub(super) struct Excess {
-    first: usize,
-    columns: Range<usize>,
-    values: Vec<f32>,
+/// A grid point below a piece of bead.
+struct Cell {
+    at: usize,
+    /// What the piece brings of all that the bead still has to bring here.
+    part: f64,
+    /// The fraction of the bead that was not there yet.
+    left: f64,
+    /// Height of the bead over its edge, mm.
+    crown: f64,
+    /// Height of what lies there, mm.
+    ground: f64,
 }
 
-impl Excess {
-    pub(super) fn of<H: Height>(band: &Band<'_, H>, mask: &Mask, rise: f64) -> Self {
-        let (mut values, width) = (vec![0.0; band.heights.len()], band.columns.len());
-        for (k, (row, heights)) in band.rows().enumerate() {
-            for columns in band.parts(mask.core(row)) {
-                let target = &mut values[k * width..][columns.clone()];
-                target
-                    .iter_mut()
-                    .zip(&heights[columns])
-                    .for_each(|(value, height)| *value = (height.mm() - rise) as f32);
+/// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm over grid points).
+fn edge_height(cells: &[Cell], bead: &Bead, metal: f64) -> Option<f64> {
+    let highest = cells.iter().map(|cell| cell.ground).fold(f64::NEG_INFINITY, f64::max);
+    let lowest = cells.iter().map(|cell| cell.ground).fold(f64::INFINITY, f64::min);
+    let sag = bead.area() / bead.width;
+    let (mut low, mut high) = (lowest - bead.height, highest + bead.height);
+    let mut edge = lowest;
+    for _ in 0..50 {
+        let (mut sum, mut slope) = (-metal, 0.0);
+        for cell in cells {
+            let depth = edge + cell.crown - cell.ground;
+            if depth > 0.0 {
+                let most = cell.left * (cell.crown + sag);
+                sum += cell.part * depth.min(most);
+                slope += if depth < most { cell.part } else { 0.0 };
             }
         }
-        Self { first: band.first, columns: band.columns.clone(), values }
+        if sum.abs() <= BALANCED * metal {
+            break;
+        }
+        *(if sum > 0.0 { &mut high } else { &mut low }) = edge;
+        let step = edge - sum / slope;
+        edge = if step > low && step < high { step } else { 0.5 * (low + high) };
     }
+    (!cells.is_empty() && edge.is_finite()).then_some(edge)
+}
+
+/// A path in pieces of bead that are not longer than half of its width; pieces shorter than a quarter are joined where the
+/// path hardly turns.
+fn pieces(strokes: impl Iterator<Item = Stroke>) -> Vec<Stroke> {
+    let mut joined: Vec<Stroke> = Vec::new();
+    for stroke in strokes {
+        match joined.last_mut().and_then(|last| together(last, &stroke).map(|both| (last, both))) {
+            Some((last, both)) => *last = both,
+            None => joined.push(stroke),
+        }
+    }
+    let split = |piece: Stroke| {
+        let count = (piece.from.distance(piece.to) / (LONGEST_PIECE * piece.bead.width)).ceil().max(1.0);
+        let at = move |k: f64| piece.from.lerp(piece.to, k / count);
+        (0..count as usize).map(move |k| Stroke { from: at(k as f64), to: at(k as f64 + 1.0), ..piece })
+    };
+    joined.into_iter().flat_map(split).collect()
+}
+
+/// Two pieces of a path as one with their metal, if that is short and nearly as long as they are.
+fn together(first: &Stroke, second: &Stroke) -> Option<Stroke> {
+    let [a, b] = [first, second].map(|piece| piece.from.distance(piece.to));
+    let length = first.from.distance(second.to);
+    let width = (first.bead.width * a + second.bead.width * b) / (a + b);
+    if !(a + b <= SHORTEST_PIECE * width && length >= STRAIGHT * (a + b)) {
+        return None;
+    }
+    let section = first.bead.section;
+    let height = section.height_of(width, (first.volume() + second.volume()) / length);
+    Some(Stroke { from: first.from, to: second.to, bead: Bead { width, height, section } })
 }

@@ -17,7 +17,7 @@ pub use folder::{Folder, FolderError, Written, write_file};
 pub use own_folder::posts;
 
 use crate::check::{self, Found, LayerFigures};
-use crate::deposit::{Figures, Judgement};
+use crate::deposit::{Figures, Judgement, stack::Growth};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
 use crate::layer::{Extent, Layer};
@@ -175,6 +175,8 @@ pub struct PlanFiles {
     figures: Vec<Figures>,
     points: usize,
     found: Option<Vec<Found>>,
+    /// How the built part ends, once checked.
+    built: Option<Growth>,
     selection: Selection,
     /// Totals of what the programs weld.
     totals: Metrics,
@@ -208,6 +210,7 @@ impl PlanFiles {
             figures: Vec::new(),
             points: 0,
             found: None,
+            built: None,
             selection,
             totals,
             names,
@@ -247,6 +250,11 @@ impl PlanFiles {
         (!self.selection.is_all()).then_some(&self.totals)
     }
 
+    /// How far the built part ends above and below the plan, once the plan is checked.
+    pub fn built(&self) -> Option<&Growth> {
+        self.built.as_ref()
+    }
+
     /// What people must know about the programs, once all layers are written: sentences.
     pub fn notes(&self) -> Vec<String> {
         let unchecked = (self.points > MOST_CHECKED).then(|| {
@@ -265,9 +273,10 @@ impl PlanFiles {
             let mut findings = Vec::new();
             if !layers.is_empty() {
                 let settings = plan::deposit_settings_of(&self.profile, &layers);
-                let growth = check::growth(&layers, &self.profile, settings, task)?;
-                let judged = LayerFigures { figures, growth, ..LayerFigures::default() };
-                findings = check::check_figures(&layers, &self.profile, settings.nominal.rise, judged);
+                let grown = check::grown(&layers, &self.profile, settings, task)?;
+                self.built = grown.built;
+                let judged = LayerFigures { figures, grown, ..LayerFigures::default() };
+                findings = check::check_figures(&layers, &self.profile, judged);
             }
             self.found = Some(check::found(&findings));
         }
@@ -300,6 +309,7 @@ impl PlanFiles {
         if let Some(totals) = &totals {
             metrics["programs"] = serde_json::json!(totals);
         }
+        metrics["built"] = serde_json::json!(self.built);
         metrics["findings"] = serde_json::json!(found);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &found)));

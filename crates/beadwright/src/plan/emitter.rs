@@ -4,7 +4,7 @@
 use super::filled::Filled;
 use super::support::Support;
 use super::warm::{self, Heat};
-use super::{Sink, relight};
+use super::{Sink, level, relight};
 use crate::fill::{Fill, Path};
 use crate::heat::{LONGEST_WAIT, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
@@ -53,6 +53,9 @@ impl<S: Sink> Emitter<'_, S> {
         let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
         let mut layer =
             Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
+        if self.profile.is_level() {
+            level::share(&mut layer, self.profile);
+        }
         relight::relight(&mut layer, self.profile);
         self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);
         self.warm(&mut layer);
@@ -136,7 +139,7 @@ pub(super) fn passes(
 }
 
 /// Paths at the height of their layer; its top and its thickness, mm.
-fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
+pub(super) fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
     let lift = |path: Path| Pass {
         kind: path.kind,
         closed: path.closed,

@@ -27,6 +27,7 @@ pub mod clearance;
 mod emitter;
 mod expected;
 mod filled;
+mod level;
 mod levels;
 mod parts;
 mod preview;
@@ -465,6 +466,7 @@ fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> 
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
+        None if profile.is_level() => level::slabs(mesh, strategy_of(profile)?, profile, task)?,
         None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }

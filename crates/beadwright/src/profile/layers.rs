@@ -16,6 +16,11 @@ pub struct LayersSection {
     /// layers, each laid at the pace that fills it); default fixed. What is left over is told.
     #[serde(default)]
     pub fit: LayerFit,
+    /// Whether layers of solids are as high as the metal of their passes fills their slices, and the metal goes where the
+    /// slice needs it: more to beads at the rim, less to beads between others; default false. Without it, a part with few
+    /// beads side by side ends lower than planned.
+    #[serde(default)]
+    pub level: bool,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
     /// thickness apart: `auto` (for the strategy `wall` only), `always` or `never`; default auto.
     #[serde(default)]

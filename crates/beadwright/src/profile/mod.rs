@@ -241,6 +241,12 @@ impl Profile {
         foretold.then(|| self.single_wall()).transpose()
     }
 
+    /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, nor where an
+    /// infill leaves room on purpose.
+    pub fn is_level(&self) -> bool {
+        self.layers.level && self.fill.infill_density >= 1.0 && !self.wall_bead().is_ok_and(|wall| wall.is_some())
+    }
+
     /// The wall as thick as the bead is wide, one bead a layer, of the metal that a bead holds.
     ///
     /// # Errors
@@ -261,7 +267,7 @@ impl Profile {
     /// its walls, get the metal that fills them.
     pub fn pace_in(&self, index: usize, height: f64, kind: PassKind) -> impl Fn(f64) -> f64 + '_ {
         let (bead, nominal, rise) = (self.bead(), self.process.deposition_speed, self.wall_rise(index, height));
-        let fitted = self.layers.fit == LayerFit::Even && height > 0.0;
+        let fitted = self.layers.fit == LayerFit::Even && height > 0.0 && !self.is_level();
         let thinner = match rise {
             Some(rise) => bead.rise(self.stepover()) / rise,
             None if fitted => self.layers.height / height,

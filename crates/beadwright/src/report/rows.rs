@@ -1,6 +1,6 @@
 //! Totals as people read them, row by row: name and value with its unit.
 
-use crate::deposit::Figures;
+use crate::deposit::{Figures, stack::Growth};
 use crate::metrics::Metrics;
 use crate::number::hours;
 
@@ -24,6 +24,13 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
     rows.extend(m.cost.map(|cost| ("cost", format!("{cost:.2} {}", m.currency))));
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows
+}
+
+/// How the built part ends against the plan, bead laid on bead.
+pub fn built(built: &Growth) -> (&'static str, String) {
+    let Growth { within, mean, hollow, peak, .. } = built;
+    let percent = 100.0 * within;
+    ("built / planned top", format!("{percent:.1} % within a layer, mean {mean:+.2} mm (-{hollow:.2} to +{peak:.2})"))
 }
 
 /// What the deposit model says, as people read it.

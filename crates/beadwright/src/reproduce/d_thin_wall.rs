@@ -11,7 +11,9 @@ use crate::bead::wall::WallBead;
 use crate::bead::wire_area;
 use crate::check;
 use crate::compare::MAP_PIXELS;
-use crate::deposit::{Judge, Picture};
+use crate::deposit::field::{self, Grid};
+use crate::deposit::stroke::strokes;
+use crate::deposit::{DepositSettings, Judge, Mask, Picture};
 use crate::dialect;
 use crate::example;
 use crate::layer::Layer;
@@ -278,27 +280,43 @@ impl Frame {
     fn new(layers: &[Layer], profile: &Profile, task: &Task) -> Result<Self, ReproduceError> {
         let settings = plan::deposit_settings(profile);
         let mut picture = None;
-        let mut judge = Judge::new(settings).with_pictures(MAP_PIXELS);
-        if let Some(bounds) = check::extent(layers) {
-            judge = judge.with_stack(&bounds);
-        }
+        let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
         let judged = check::judge_layers(layers, profile, judge, task, |layer, judgement| {
             if layer == 0 {
                 picture = judgement.picture;
             }
         });
         let judged = judged.map_err(wrong)?;
-        let heights = JUDGED.map(|count| {
-            let (nominal, mean) = (settings.nominal.rise * count as f64, judged.total.mean() * count as f64);
-            let at = |growth: &crate::deposit::stack::Growth| Heights {
-                low: (nominal - growth.hollow).max(0.0) / mean,
-                high: (nominal + growth.peak) / mean,
-            };
-            judged.growth.get(count - 1).map_or(Heights { low: 0.0, high: f64::INFINITY }, at)
-        });
+        let heights = piled(layers, &settings, judged.total.mean());
         let starts = layers.iter().map(|layer| layer.passes.len()).max().unwrap_or_default();
         Ok(Self { starts, heights, picture })
     }
+}
+
+/// Lowest and highest point after so many layers, in multiples of their `mean` (mm), where the metal of a bead stays as it
+/// would lie on a plate: what the paper's welders saw at junctions, before metal flows.
+fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64) -> [Heights; 2] {
+    let Some(bounds) = check::extent(layers) else { return [Heights { low: 0.0, high: f64::INFINITY }; 2] };
+    let grid = Grid::covering(&bounds, settings.nominal.bead.width, settings.step);
+    let mut excess = vec![0.0; grid.points()];
+    let mut heights = [Heights { low: 0.0, high: f64::INFINITY }; 2];
+    for (k, layer) in layers.iter().enumerate() {
+        let strokes: Vec<_> = layer.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
+        let rows = field::bands(&strokes, &grid, |band| band.heights);
+        let (rows, mask): (Vec<f64>, _) = (rows.concat(), Mask::new(&layer.islands, settings, &grid));
+        for row in 0..grid.rows {
+            for at in mask.core(row).iter().flat_map(|c| row * grid.columns + c.start..row * grid.columns + c.end) {
+                excess[at] += rows[at] - settings.nominal.rise;
+            }
+        }
+        let (nominal, mean) = (settings.nominal.rise * (k + 1) as f64, mean * (k + 1) as f64);
+        let [low, high] = [f64::min, f64::max].map(|of| excess.iter().copied().fold(0.0, of));
+        let reached = JUDGED.iter().position(|count| *count == k + 1);
+        reached.into_iter().for_each(|at| {
+            heights[at] = Heights { low: (nominal + low).max(0.0) / mean, high: (nominal + high) / mean };
+        });
+    }
+    heights
 }
 
 /// The frame as the paper's initial plan: around, and straight through the middle, along and across.

@@ -1,0 +1,36 @@
+//! Parts that end above or below the plan.
+
+use super::{Check, Finding, Subject};
+
+pub(super) const CHECK: Check = Check {
+    name: "built-height",
+    what: "parts whose metal, bead laid on bead, ends more than a layer above or below the plan over a quarter of the area or more",
+    why: "the torch stays at the planned heights: its stick-out grows or shrinks with every layer, until the arc fails",
+    example: "after the last layer 35 % of the area lies within one layer height (2 mm) of the plan, on average 13.95 mm \
+              below it, at most 0.31 mm above and 23.78 mm below.",
+    remedy: "let layers be as high as their metal (layers.level = true) where they are not yet, or measure the layers as they \
+             are built and correct the rest (beadwright adapt)",
+    find,
+};
+
+/// The fraction of the area that may end elsewhere.
+const ELSEWHERE: f64 = 0.25;
+
+fn find(subject: &Subject<'_>) -> Vec<Finding> {
+    let Some((built, last)) = subject.built.zip(subject.layers.last()).filter(|(b, _)| b.within < 1.0 - ELSEWHERE)
+    else {
+        return Vec::new();
+    };
+    let side = if built.mean < 0.0 { "below" } else { "above" };
+    let text = format!(
+        "after the last layer {:.0} % of the area lies within one layer height ({} mm) of the plan, on average {:.2} mm {side} \
+         it, at most {:.2} mm above and {:.2} mm below.",
+        100.0 * built.within,
+        last.height,
+        built.mean.abs(),
+        built.peak,
+        built.hollow
+    );
+    let worst = if built.hollow > built.peak { built.hollow_place } else { built.peak_place };
+    vec![Finding { place: Some(worst.extend(last.z)), ..Finding::of_layer(&CHECK, last, text) }]
+}
