@@ -2,7 +2,8 @@
 
 use crate::say::Findings;
 use crate::{profile, program, progress, reach};
-use beadwright::check::{self, CHECKS, Finding};
+use beadwright::Finding;
+use beadwright::check::{self, CHECKS, Check};
 use beadwright::dialect::reading::{FAULTS, Fault};
 use beadwright::files::write_file;
 use beadwright::layer::Layer;
@@ -123,33 +124,34 @@ fn read_program(
     }
 }
 
-/// What the robot cannot do, as findings.
+/// What the robot cannot do.
 fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
     let track = Track::of(layers, profile);
     let place = robot::turn_table(cell, cell.part, &track).map_or(cell.part, |table| table.place);
-    let found = robot::reach(cell, place, &track).findings;
-    let finding =
-        |f: &robot::ReachFinding| Finding { check: REACH, layer: None, pass: None, place: None, text: f.sentence() };
-    found.iter().map(finding).collect()
+    robot::reach(cell, place, &track).findings.iter().map(Finding::from).collect()
 }
 
 /// Name of the check that asks the robot.
 const REACH: &str = "reach";
 
 fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
-    for check in &CHECKS {
-        let found: Vec<&Finding> = findings.iter().filter(|f| f.check == check.name).collect();
+    let mut checks: Vec<&Check> = CHECKS.iter().collect();
+    checks.sort_by_key(|check| check.severity());
+    for check in checks {
+        let found: Vec<&Finding> = findings.iter().filter(|f| f.kind == check.name).collect();
         if found.is_empty() {
             continue;
         }
-        writeln!(out, "{} ({}): {}.", check.name, found.len(), check.why)?;
-        found.iter().take(PRINTED).try_for_each(|finding| writeln!(out, "  {}", finding.sentence()))?;
+        let word = check.severity().word();
+        writeln!(out, "{word}: {} ({}): {}.", check.name, found.len(), check.why)?;
+        found.iter().take(PRINTED).try_for_each(|finding| writeln!(out, "  {}", finding.text))?;
         if found.len() > PRINTED {
             writeln!(out, "  … and {} more", found.len() - PRINTED)?;
         }
-        writeln!(out, "  Remedy: {}.", check.remedy)?;
+        // That of the first fits this plan.
+        found.first().and_then(|f| f.remedy.as_ref()).map_or(Ok(()), |remedy| writeln!(out, "  {remedy}"))?;
     }
-    let reach: Vec<&Finding> = findings.iter().filter(|f| f.check == REACH).collect();
+    let reach: Vec<&Finding> = findings.iter().filter(|f| f.kind == REACH).collect();
     if !reach.is_empty() {
         writeln!(out, "{REACH} ({}): the robot stops, turns faster than it can, or hits something.", reach.len())?;
         reach.iter().try_for_each(|finding| writeln!(out, "  {}", finding.text))?;

@@ -1,8 +1,9 @@
 //! Parts that are welded one after another, each with plan and programs of its own.
 
-use crate::plan::{self, Arguments, Files, Refused, print_found, print_head, print_summary, print_warnings, refused};
+use crate::plan::{self, Arguments, Files, Refused, print_findings, print_head, print_summary, refused};
 use crate::several::Programs;
 use crate::{progress, say};
+use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
 use beadwright::model::together::Place;
@@ -99,7 +100,8 @@ fn one<'a>(
     let mut watch = Watch { sink: &mut files, clearance, torch, width: profile.bead.width };
     let summary = plan_into(name, model, profile, task, &mut watch);
     let mut summary = summary.map_err(|error| refused(error, Path::new(name)))?;
-    summary.notes.splice(0..0, note.clone().into_iter().chain(files.notes()));
+    let own = model.notes().iter().cloned();
+    summary.notes.splice(0..0, own.chain(note.clone()).chain(files.notes()));
     let figures = files.figures();
     Ok(Planned { name, profile, model, folder, files, summary, figures })
 }
@@ -108,7 +110,7 @@ impl Planned<'_> {
     /// Writes the files and tells of them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
-        let found = files.check(&Task::new())?;
+        let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&Task::new())?);
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {
@@ -120,8 +122,7 @@ impl Planned<'_> {
         }
         let place: Vec<Place> = places.iter().filter(|(part, _)| part == name).cloned().collect();
         print_head(&mut say::done(false), name, profile, model, &place)?;
-        print_found(&found, &summary)?;
-        print_warnings(profile, model, &summary)?;
+        print_findings(&found)?;
         print_summary(&mut say::done(false), &folder, &summary, (figures.as_ref(), built.as_ref()), &written)?;
         writeln!(say::done(false))?;
         Ok(None)

@@ -3,7 +3,8 @@
 use crate::several::{Build, Order, Several};
 use crate::{model, profile, program, progress, say};
 use anyhow::Context;
-use beadwright::check::{self, Found};
+use beadwright::Finding;
+use beadwright::check;
 use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
@@ -232,8 +233,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let faults = check::rehearse(&profile).into_iter();
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
-    summary.notes.splice(0..0, faults.chain(note).chain(files.notes()));
-    let found = files.check(&task)?;
+    let own = model.notes().iter().cloned();
+    summary.notes.splice(0..0, own.chain(faults).chain(note).chain(files.notes()));
+    let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&task)?);
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 
@@ -248,8 +250,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(());
     }
     print_head(&mut say::done(false), &part, &profile, &model, &places)?;
-    print_found(&found, &summary)?;
-    print_warnings(&profile, &model, &summary)?;
+    print_findings(&found)?;
     let mut out = say::done(false);
     if let Some(totals) = &totals {
         writeln!(out, "\nthe programs weld {} of {} layers:", totals.layers, summary.metrics.layers)?;
@@ -355,9 +356,9 @@ impl<'a> Files<'a> {
     }
 
     /// What the checks find in the plan.
-    pub(crate) fn check(&mut self, task: &Task) -> anyhow::Result<Vec<Found>> {
-        let Some(files) = &mut self.files else { return Ok(Vec::new()) };
-        Ok(files.check(task)?.to_vec())
+    pub(crate) fn check(&mut self, task: &Task) -> anyhow::Result<&[Finding]> {
+        let Some(files) = &mut self.files else { return Ok(&[]) };
+        Ok(files.check(task)?)
     }
 
     /// Writes the report alone, in which the places are seen why there is no program; where it lies.
@@ -442,22 +443,18 @@ pub(crate) fn print_head(
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)
 }
 
-/// What is said even with `--quiet`.
-pub(crate) fn print_warnings(profile: &Profile, model: &Part, summary: &Summary) -> std::io::Result<()> {
+/// What is said even with `--quiet`: a line a finding, the worst first.
+pub(crate) fn print_findings(findings: &[Finding]) -> std::io::Result<()> {
     let mut out = say::warnings();
-    let events = summary.warnings.summaries().map(|w| w.sentence());
-    let told =
-        profile.forbidden().into_iter().chain(model.warnings()).chain(events).chain(summary.notes.iter().cloned());
-    for line in told {
-        writeln!(out, "warning: {line}")?;
+    for finding in findings {
+        let (word, sentence) = (finding.severity.word(), finding.sentence());
+        // The sentences of checks are short of their subject.
+        match check::by_name(finding.kind) {
+            Some(check) => writeln!(out, "{word}: {}: {sentence}", check.name)?,
+            None => writeln!(out, "{word}: {sentence}")?,
+        }
     }
     Ok(())
-}
-
-/// Prints what the checks found, a line each.
-pub(crate) fn print_found(found: &[Found], summary: &Summary) -> std::io::Result<()> {
-    let mut out = say::warnings();
-    found.iter().filter(|f| !f.is_warned_of(summary)).try_for_each(|f| writeln!(out, "check {}", f.sentence()))
 }
 
 pub(crate) fn print_summary(

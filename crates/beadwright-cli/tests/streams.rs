@@ -97,7 +97,10 @@ fn quiet_says_warnings_only_and_verbose_times() {
     let plan = ["plan", "propeller.stl", "--no-deposit", "-o", "out", "--set", "bead.height=1.5"];
     let [usual, silent] = said(&plan);
     let [none, warnings] = said(&[&plan[..], &["--quiet"]].concat());
-    let told: Vec<&str> = usual.lines().filter(|line| line.starts_with("warning: ")).collect();
+    let told: Vec<&str> = usual
+        .lines()
+        .filter(|line| ["serious: ", "warning: ", "note: "].iter().any(|word| line.starts_with(word)))
+        .collect();
     assert!(!told.is_empty() && silent.is_empty() && none.is_empty(), "{usual}");
     assert_eq!(warnings.lines().collect::<Vec<_>>(), told);
     // What is asked for is still said.

@@ -94,6 +94,17 @@ impl Plan {
         self.0.note.iter().chain(&self.0.summary.notes).cloned().collect()
     }
 
+    /// All that is to be said of the plan, the worst first, each with its sentence: as `beadwright plan` finds it.
+    fn findings<'py>(
+        &self,
+        py: Python<'py>,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Vec<(Bound<'py, PyAny>, String)>> {
+        let all = Running::new(threads, progress).run(py, None, |task| save::findings(&self.0, task))?;
+        all.iter().map(|finding| Ok((pythonize::pythonize(py, finding)?, finding.sentence()))).collect()
+    }
+
     /// Why its programs should not be written; nothing for a plan that can be welded.
     #[getter]
     fn forbidden(&self) -> Vec<String> {

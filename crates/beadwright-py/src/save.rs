@@ -1,6 +1,8 @@
 //! The files of a plan: the same bytes as the command writes.
 
 use crate::planned::Planned;
+use beadwright::Finding;
+use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::Judge;
 use beadwright::dialect::DialectError;
@@ -54,10 +56,21 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
         folder.extend(files.layer(layer, judgement.as_ref()))?;
     }
     let mut summary = planned.summary.clone();
-    let notes: Vec<String> = planned.note.iter().cloned().chain(files.notes()).collect();
+    let notes: Vec<String> = planned.part.notes().iter().chain(&planned.note).cloned().chain(files.notes()).collect();
     summary.notes.splice(0..0, notes);
     folder.extend(files.end(&summary, &planned.part.repair(), judge.as_ref().map(Judge::total))?)?;
     Ok(folder.commit()?.files)
+}
+
+/// All that is to be said of a plan, the worst first.
+pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, Cancelled> {
+    let (layers, profile) = (&planned.layers[..], &planned.profile);
+    let settings = plan::deposit_settings_over(profile, planned.part.bounds());
+    let judged = check::judge_layers(layers, profile, Judge::new(settings).without_patches(), task, |_, _| ())?;
+    let found = check::grouped(&check::check_figures(layers, profile, judged));
+    let mut summary = planned.summary.clone();
+    summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());
+    Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found))
 }
 
 /// The programs alone: the text of each file by its name.

@@ -27,7 +27,7 @@ use worker::Hand;
 
 use crate::project::Project;
 use crate::view3d::LayerBeads;
-use beadwright::check::Finding;
+use beadwright::Finding;
 use beadwright::deposit::{Figures, Judgement};
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, Part};

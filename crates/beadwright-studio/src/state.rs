@@ -2,7 +2,7 @@
 
 use crate::planner::{Event, Failure};
 use crate::view3d::Scene;
-use beadwright::check::Finding;
+use beadwright::Finding;
 use beadwright::deposit::{Figures, Judgement};
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, Part};

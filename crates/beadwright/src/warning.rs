@@ -5,8 +5,10 @@ mod about;
 
 pub use about::About;
 
+use crate::finding::{Finding, Severity};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// What happened.
@@ -68,6 +70,29 @@ impl WarningKind {
     /// Whether a program with such a fault is not written unless somebody insists.
     pub fn forbids(self) -> bool {
         matches!(self, Self::Unsound | Self::NothingBelow | Self::InTheAir)
+    }
+
+    /// How much a warning of this kind matters.
+    pub fn severity(self) -> Severity {
+        match self {
+            kind if kind.forbids() => Severity::Serious,
+            Self::GapClosed | Self::Sliver | Self::Refilled | Self::EmptyLayer => Severity::Note,
+            _ => Severity::Doubt,
+        }
+    }
+}
+
+impl From<&WarningSummary> for Finding {
+    fn from(warning: &WarningSummary) -> Self {
+        let largest = &warning.largest;
+        Self {
+            count: warning.count,
+            layer: Some(largest.layer),
+            place: Some(largest.place.extend(warning.z)),
+            size: Some(largest.size),
+            remedy: warning.remedy().map(Cow::Borrowed),
+            ..Self::new(warning.kind.about().name, warning.kind.severity(), warning.text())
+        }
     }
 }
 
@@ -134,8 +159,13 @@ impl Warnings {
 }
 
 impl WarningSummary {
-    /// One sentence with layer range, place, size and remedy.
+    /// What happened, with layer range, place and size, and what to do.
     pub fn sentence(&self) -> String {
+        Finding::from(self).sentence()
+    }
+
+    /// What happened, with layer range, place and size.
+    fn text(&self) -> String {
         let Self { count, largest, z, total, .. } = self;
         let (layers, place, size) = (self.layer_text(), place_text(largest, *z), largest.size);
         let times = |one: &str, many: &str| format!("{count} {}", if *count == 1 { one } else { many });
@@ -144,13 +174,11 @@ impl WarningSummary {
                 format!("{layers}: {} in the surface bridged, the widest {size:.3} mm {place}.", times("gap", "gaps"))
             }
             WarningKind::OpenContourDropped => format!(
-                "{layers}: {} dropped, the longest {size:.1} mm long {place}. The surface has a hole or a slit \
-                 there: mend the model, or bridge wider gaps (slice.close_gap, mm).",
+                "{layers}: {} dropped, the longest {size:.1} mm long {place}.",
                 times("open contour", "open contours")
             ),
             WarningKind::ContoursUnited => format!(
-                "{layers}: overlapping or wrongly wound contours united, changing at most {size:.1} mm² {place}. \
-                 Check the picture of the layer."
+                "{layers}: overlapping or wrongly wound contours united, changing at most {size:.1} mm² {place}."
             ),
             WarningKind::ThinFeature => format!(
                 "{layers}: {} narrower than a bead left empty, {total:.1} mm² in all, the largest {size:.1} mm² \
@@ -164,7 +192,7 @@ impl WarningSummary {
             ),
             WarningKind::IslandTooSmall => format!(
                 "{layers}: {} narrower than a bead left out, {total:.1} mm² in all, the largest {size:.1} mm² \
-                 {place}. A narrower bead or a larger part would be needed.",
+                 {place}.",
                 times("island", "islands")
             ),
             WarningKind::Refilled => format!(
@@ -186,12 +214,10 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::NothingBelow => format!(
-                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead {place}. \
-                 Cut the model off below, or take a narrower bead that fills what lies there."
+                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead {place}."
             ),
             WarningKind::InTheAir => format!(
-                "{layers}: {} less than half over metal, {total:.1} mm in all, the longest {size:.1} mm {place}. Turn the part \
-                 (--orient), begin above the place (--from-z), or add metal below that is machined off.",
+                "{layers}: {} less than half over metal, {total:.1} mm in all, the longest {size:.1} mm {place}.",
                 times("pass lies", "passes lie")
             ),
             WarningKind::HangingIsland => format!(
@@ -208,13 +234,11 @@ impl WarningSummary {
             ),
             WarningKind::Relit => format!(
                 "{layers}: {} longer than one program of the controller (max_points of its section), cut between programs: \
-                 the arc is lit again {total:.0} times on the end of the bead, first {place}. Let straight moves and arcs be \
-                 fitted (program.chord_tolerance, program.arcs), and fewer are cut.",
+                 the arc is lit again {total:.0} times on the end of the bead, first {place}.",
                 times("pass is", "passes are")
             ),
             WarningKind::ManyPoints => format!(
-                "{layers}: more points than check.max_points, at most {size:.0}. The controller may not load the program; \
-                 raise slice.simplify or let arcs be fitted."
+                "{layers}: more points than check.max_points, at most {size:.0}. The controller may not load the program."
             ),
             WarningKind::Sliver => format!(
                 "{layers}: {} thinner than {SLIVER_MM} mm left out, {total:.2} mm² in all, the largest {size:.2} mm² {place}: \
@@ -232,14 +256,34 @@ impl WarningSummary {
                 times("pass meets", "passes meet")
             ),
             WarningKind::TooCold => format!(
-                "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}: heat the plate \
-                 (substrate.preheat).",
+                "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}.",
                 times("pass begins", "passes begin")
             ),
             WarningKind::EmptyLayer => {
                 format!("{layers}: nothing to deposit: the part has a gap there, or all of its contours were dropped.")
             }
         }
+    }
+
+    /// What to do, as a sentence; `None` where that depends on the part.
+    fn remedy(&self) -> Option<&'static str> {
+        Some(match self.kind {
+            WarningKind::OpenContourDropped => {
+                "The surface has a hole or a slit there: mend the model, or bridge wider gaps (slice.close_gap, mm)."
+            }
+            WarningKind::ContoursUnited => "Check the picture of the layer.",
+            WarningKind::IslandTooSmall => "A narrower bead or a larger part would be needed.",
+            WarningKind::NothingBelow => "Cut the model off below, or take a narrower bead that fills what lies there.",
+            WarningKind::InTheAir => {
+                "Turn the part (--orient), begin above the place (--from-z), or add metal below that is machined off."
+            }
+            WarningKind::Relit => {
+                "Let straight moves and arcs be fitted (program.chord_tolerance, program.arcs), and fewer are cut."
+            }
+            WarningKind::ManyPoints => "Raise slice.simplify or let arcs be fitted.",
+            WarningKind::TooCold => "Heat the plate (substrate.preheat).",
+            _ => return None,
+        })
     }
 
     fn layer_text(&self) -> String {

@@ -24,7 +24,7 @@ fn planned(part: &str, profile: &Profile, layers: usize) -> Vec<Layer> {
 fn found(layers: &[Layer], profile: &Profile) -> Vec<&'static str> {
     let findings = check::check(layers, profile, plan::deposit_settings(profile), &Task::new()).unwrap();
     assert!(findings.iter().all(|f| f.sentence().ends_with('.')), "{findings:?}");
-    let mut names: Vec<&str> = findings.into_iter().map(|f| f.check).collect();
+    let mut names: Vec<&str> = findings.into_iter().map(|f| f.kind).collect();
     names.sort_unstable();
     names.dedup();
     names
@@ -316,10 +316,10 @@ fn every_seeded_fault_is_found_at_its_place() {
         let (mut layers, mut profile) = (clean.clone(), profile.clone());
         seed(&mut layers, &mut profile);
         let findings = all(&layers, &profile);
-        let own: Vec<_> = findings.iter().filter(|f| f.check == check).collect();
-        let there = |f: &&&check::Finding| f.layer == layer && (pass.is_none() || f.pass == pass);
+        let own: Vec<_> = findings.iter().filter(|f| f.kind == check).collect();
+        let there = |f: &&&beadwright::Finding| f.layer == layer && (pass.is_none() || f.pass == pass);
         assert!(own.iter().any(|f| there(&f)), "{what}: {own:?}");
-        assert!(!before.iter().any(|f| f.check == check), "{what}: {check} finds something in the clean plan");
+        assert!(!before.iter().any(|f| f.kind == check), "{what}: {check} finds something in the clean plan");
     }
 }
 
@@ -348,7 +348,7 @@ fn arcs_struck_on_craters_are_found() {
     assert!(!named(&wall(24, 0.0)));
     assert!(!named(&wall(30, 8.0)), "ends moved by more than a bead width");
     let findings = check::check(&wall(26, 0.0), &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
-    let of = findings.iter().filter(|f| f.check == "alternating-ends");
+    let of = findings.iter().filter(|f| f.kind == "alternating-ends");
     // Both ends of the wall, once each.
     assert_eq!(of.map(|f| (f.layer, f.place.unwrap().x)).collect::<Vec<_>>(), [(Some(24), 0.0), (Some(24), 60.0)]);
 }
@@ -383,7 +383,7 @@ fn whole_plans_are_clean_of_spikes_craters_and_low_travels() {
             let layers = planned(part, &profile, usize::MAX);
             let findings = check::check(&layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
             let ways = ["retraced", "alternating-ends", "low-travel", "cooling"];
-            let told: Vec<String> = findings.iter().filter(|f| ways.contains(&f.check)).map(|f| f.sentence()).collect();
+            let told: Vec<String> = findings.iter().filter(|f| ways.contains(&f.kind)).map(|f| f.sentence()).collect();
             assert_eq!(told, [""; 0], "{part} {strategy}");
         }
     }

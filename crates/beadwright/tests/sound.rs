@@ -72,7 +72,7 @@ fn case_1604_what_is_left_of_the_height_is_told() {
         profile.layers.fit = fit;
         let found = plan::plan("box", &mesh, &profile, &Task::new()).unwrap();
         assert!(!found.layers.iter().any(|layer| layer.passes.is_empty()));
-        let sound = |finding: &beadwright::Finding| finding.check != "wire-balance";
+        let sound = |finding: &beadwright::Finding| finding.kind != "wire-balance";
         let settings = plan::deposit_settings(&profile);
         assert!(beadwright::check(&found.layers, &profile, settings, &Task::new()).unwrap().iter().all(sound));
         found

@@ -210,7 +210,7 @@ fn a_part_with_few_beads_side_by_side_is_said_to_end_low() {
     assert!(ended.mean < -10.0 && ended.within < 0.5, "{ended:?}");
     let settings = plan::deposit_settings_of(&profile, &plan.layers);
     let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
-    let found = findings.iter().find(|finding| finding.check == "built-height").unwrap();
+    let found = findings.iter().find(|finding| finding.kind == "built-height").unwrap();
     assert!(found.text.contains("below it"), "{}", found.text);
     let top = plan.layers.last().unwrap().z;
     assert!(found.place.is_some_and(|place: DVec3| (place.z - top).abs() < 1e-9));

@@ -105,7 +105,7 @@ fn a_tall_wall_is_no_tower() {
     let mut profile = profile(Some(Surface::Wall));
     "wall".clone_into(&mut profile.fill.strategy);
     let found = check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
-    assert!(plan.layers.len() > 100 && found.iter().all(|finding| finding.check != "towers"), "{found:?}");
+    assert!(plan.layers.len() > 100 && found.iter().all(|finding| finding.kind != "towers"), "{found:?}");
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn brought(plan: &Plan, profile: &Profile) -> f64 {
 
 fn unbalanced(plan: &Plan, profile: &Profile) -> Vec<String> {
     let findings = check::check(&plan.layers, profile, plan::deposit_settings(profile), &Task::new()).unwrap();
-    findings.iter().filter(|f| f.check == "wire-balance").map(check::Finding::sentence).collect()
+    findings.iter().filter(|f| f.kind == "wire-balance").map(beadwright::Finding::sentence).collect()
 }
 
 #[test]

@@ -70,7 +70,7 @@ pub(super) fn plan(run: &Run, asked: &Asked<'_>, task: &Task) -> anyhow::Result<
     let mut kept = Kept { profile: &profile, judge, pictures: asked.pictures, middle: 0, picture: None };
     let summary = plan::plan_into(&model.part(), &part, &profile, task, &mut kept);
     let mut summary = summary.map_err(|error| refused(error, &run.file))?;
-    summary.notes.splice(0..0, note);
+    summary.notes.splice(0..0, part.notes().iter().cloned().chain(note));
     let figures = kept.judge.as_ref().map(|judge| *judge.total());
     Ok(Planned { strategy: profile.fill.strategy.clone(), summary, figures, picture: kept.picture })
 }

@@ -14,7 +14,7 @@ from beadwright._bead import Bead, BeadLibrary, demonstration_csv
 from beadwright._executors import LocalExecutor, RayExecutor
 from beadwright._heat import Heat, heat
 from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
-from beadwright._layer import Island, Layer, LayerWarning, Pass
+from beadwright._layer import Finding, Island, Layer, LayerWarning, Pass
 from beadwright._part import Part, examples
 from beadwright._plan import Plan, plan
 from beadwright._profile import Profile, profiles, strategies
@@ -26,6 +26,7 @@ __all__ = [
     "BeadLibrary",
     "BeadwrightError",
     "Comparison",
+    "Finding",
     "Heat",
     "HeightField",
     "Island",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from beadwright import _core
 from beadwright._array import floats
@@ -120,6 +120,51 @@ class Layer:
 
     def __repr__(self) -> str:
         return f"<Layer {self.index}: z {self.z:.2f} mm, {len(self._inner.passes)} passes>"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is wrong with a plan, doubtful, or worth knowing."""
+
+    kind: str
+    """Name of the check or warning, such as ``void`` or ``in-the-air``, or ``model``, ``profile`` or ``refused``."""
+    severity: Literal["serious", "doubt", "note"]
+    """How much it matters."""
+    count: int
+    """How many such findings this one stands for."""
+    layer: int | None
+    """Index of the layer; none when it concerns the whole plan."""
+    pass_: int | None
+    """Index of the pass in its layer."""
+    place: tuple[float, float, float] | None
+    """Where, mm."""
+    size: float | None
+    """How large, in the unit that the sentence names."""
+    text: str
+    """What is wrong, and where."""
+    remedy: str
+    """What to do; empty where that depends on the part."""
+    sentence: str
+    """Both for people."""
+
+    @classmethod
+    def _of(cls, value: dict[str, Any], sentence: str) -> Finding:
+        place = value["place"]
+        return cls(
+            kind=value["kind"],
+            severity=value["severity"],
+            count=value["count"],
+            layer=value["layer"],
+            pass_=value["pass"],
+            place=None if place is None else (place[0], place[1], place[2]),
+            size=value["size"],
+            text=value["text"],
+            remedy=value["remedy"] or "",
+            sentence=sentence,
+        )
+
+    def __str__(self) -> str:
+        return self.sentence
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 from beadwright import _core
 from beadwright._progress import Progress, steps
-from beadwright._layer import Layer, LayerWarning, Pass
+from beadwright._layer import Finding, Layer, LayerWarning, Pass
 from beadwright._part import Part
 from beadwright._profile import Profile
 
@@ -98,6 +98,13 @@ class Plan:
     def notes(self) -> list[str]:
         """What does not fit in the profile, as sentences."""
         return self._inner.notes
+
+    def findings(self, *, threads: int | None = None, progress: Progress = None) -> list[Finding]:
+        """All that is to be said of the plan, the worst first: what the checks find, what was lost or mended, and what does
+        not fit in the profile. The same list as in ``metrics.json`` and in the report; the deposit model takes a while.
+        """
+        with steps(progress) as step:
+            return [Finding._of(value, sentence) for value, sentence in self._inner.findings(threads, step)]
 
     @property
     def forbidden(self) -> list[str]:

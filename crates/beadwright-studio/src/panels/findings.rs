@@ -3,11 +3,10 @@
 use super::words;
 use crate::studio::Studio;
 use crate::view::Mode;
-use beadwright::check::{CHECKS, Finding};
-use eframe::egui::{CollapsingHeader, Response, RichText, Ui};
-
-/// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
-const SERIOUS: [&str; 8] = ["points", "layers", "air", "crossing", "retraced", "clearance", "low-travel", "towers"];
+use beadwright::Finding;
+use beadwright::check::{self, Check};
+use beadwright::finding::Severity;
+use eframe::egui::{CollapsingHeader, Color32, Response, RichText, Ui};
 
 /// Checks about what the deposit model computes.
 const FIGURES: [&str; 4] = ["void", "overfill", "outside", "towers"];
@@ -20,33 +19,54 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         ui.weak(studio.t("findings-wait"));
         return;
     };
-    if findings.is_empty() {
+    let own = &studio.plans.own;
+    let repaired = own.part.as_ref().map(|part| part.repair().sentences()).unwrap_or_default();
+    let grouped = check::grouped(&findings);
+    let all = own.summary.as_ref().map_or(grouped.clone(), |summary| check::all_findings(summary, &repaired, &grouped));
+    if all.is_empty() {
         ui.label(studio.t("no-findings"));
     }
-    for check in &CHECKS {
-        let found: Vec<&Finding> = findings.iter().filter(|finding| finding.check == check.name).collect();
-        if found.is_empty() {
-            continue;
+    for finding in &all {
+        let visuals = ui.visuals();
+        let colour = match finding.severity {
+            Severity::Serious => visuals.error_fg_color,
+            Severity::Doubt => visuals.warn_fg_color,
+            Severity::Note => visuals.weak_text_color(),
+        };
+        match check::by_name(finding.kind) {
+            Some(check) => checked(studio, ui, check, &findings, colour),
+            None => {
+                let title = format!("{} ({})", finding.kind, studio.t(word(finding.severity)));
+                ui.colored_label(colour, title);
+                one(studio, ui, finding);
+            }
         }
-        let serious = SERIOUS.contains(&check.name);
-        let word = studio.t(if serious { "serious" } else { "remark" });
-        let colour = if serious { ui.visuals().error_fg_color } else { ui.visuals().warn_fg_color };
-        let title = format!("{} ({}, {word})", check.name, found.len());
-        let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
-        let opened = title.default_open(true).show(ui, |ui| {
-            for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
-                explained(studio, ui.weak(format!("{}: {text}.", studio.t(key))), check.name, text);
-            }
-            let groups = grouped(&found);
-            for group in groups.iter().take(LISTED) {
-                listed(studio, ui, group);
-            }
-            if groups.len() > LISTED {
-                ui.weak(format!("… {}", groups.len() - LISTED));
-            }
-        });
-        explained(studio, opened.header_response, check.name, check.name);
     }
+}
+
+/// The key of the word for how much a finding matters.
+fn word(severity: Severity) -> &'static str {
+    if severity == Severity::Serious { "serious" } else { "remark" }
+}
+
+/// All that one check found.
+fn checked(studio: &mut Studio, ui: &mut Ui, check: &Check, findings: &[Finding], colour: Color32) {
+    let found: Vec<&Finding> = findings.iter().filter(|finding| finding.kind == check.name).collect();
+    let title = format!("{} ({}, {})", check.name, found.len(), studio.t(word(check.severity())));
+    let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
+    let opened = title.default_open(true).show(ui, |ui| {
+        for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
+            explained(studio, ui.weak(format!("{}: {text}.", studio.t(key))), check.name, text);
+        }
+        let groups = grouped(&found);
+        for group in groups.iter().take(LISTED) {
+            listed(studio, ui, group);
+        }
+        if groups.len() > LISTED {
+            ui.weak(format!("… {}", groups.len() - LISTED));
+        }
+    });
+    explained(studio, opened.header_response, check.name, check.name);
 }
 
 /// One finding, or many that say the same: the first of them, and the others on request.
@@ -55,7 +75,7 @@ fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
     one(studio, ui, first);
     if let Some(last) = rest.last() {
         let title = format!("{} {}{}", group.len(), studio.t("alike"), layers(studio, first, last));
-        CollapsingHeader::new(title).id_salt((first.check, first.layer, first.pass, &first.text)).show(ui, |ui| {
+        CollapsingHeader::new(title).id_salt((first.kind, first.layer, first.pass, &first.text)).show(ui, |ui| {
             rest.iter().take(LISTED).for_each(|finding| one(studio, ui, finding));
         });
     }
@@ -64,11 +84,11 @@ fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
 fn one(studio: &mut Studio, ui: &mut Ui, finding: &Finding) {
     let text = sentence(finding);
     if finding.layer.is_none() {
-        explained(studio, ui.label(&text), finding.check, &text);
+        explained(studio, ui.label(&text), finding.kind, &text);
         return;
     }
     let link = ui.link(&text).on_hover_text(studio.t("go-there"));
-    if explained(studio, link, finding.check, &text).clicked() {
+    if explained(studio, link, finding.kind, &text).clicked() {
         go_to(studio, finding);
     }
 }
@@ -95,8 +115,7 @@ fn layers(studio: &Studio, first: &Finding, last: &Finding) -> String {
 
 /// The finding as a sentence, starting with a capital letter.
 fn sentence(finding: &Finding) -> String {
-    let text = finding.sentence();
-    let mut letters = text.chars();
+    let mut letters = finding.text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
@@ -106,7 +125,7 @@ fn go_to(studio: &mut Studio, finding: &Finding) {
     studio.view.look_at(layer);
     studio.view.mode = Mode::Layer;
     studio.view.chosen = finding.pass.map(|pass| (layer, pass, 0));
-    if FIGURES.contains(&finding.check) {
+    if FIGURES.contains(&finding.kind) {
         studio.view.show.heights = true;
     }
     if let Some(place) = finding.place {

@@ -59,7 +59,7 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
 
 /// What was repaired in the model, and what the plan left out.
 fn warnings(studio: &Studio) -> Vec<String> {
-    let part = studio.plans.own.part.iter().flat_map(|part| part.warnings());
+    let part = studio.plans.own.part.iter().flat_map(|part| part.repair().sentences());
     let plan = studio.plans.own.summary.iter().flat_map(|summary| {
         let events = summary.warnings.summaries().map(|warning| warning.sentence());
         events.chain(summary.notes.iter().cloned()).collect::<Vec<_>>()

@@ -6,7 +6,8 @@
 use super::{Event, Failure, Order};
 use crate::project::Project;
 use crate::view3d::LayerBeads;
-use beadwright::check::{CHECKS, Finding};
+use beadwright::Finding;
+use beadwright::check::CHECKS;
 use beadwright::deposit::{Figures, Judgement, figures};
 use beadwright::layer::Layer;
 use beadwright::model::wall_curves::WallCurves;
@@ -17,6 +18,7 @@ use beadwright::task::Stage;
 use beadwright::weld::Torch;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 #[derive(Serialize, Deserialize)]
@@ -54,10 +56,13 @@ enum Body {
 #[derive(Serialize, Deserialize)]
 struct Found {
     check: usize,
+    count: usize,
     layer: Option<usize>,
     pass: Option<usize>,
     place: Option<DVec3>,
+    size: Option<f64>,
     text: String,
+    remedy: Option<String>,
 }
 
 fn bytes(of: &impl Serialize) -> Result<Vec<u8>, String> {
@@ -218,13 +223,15 @@ impl Body {
 
 impl Found {
     fn of(finding: Finding) -> Self {
-        let Finding { check, layer, pass, place, text } = finding;
-        let check = CHECKS.iter().position(|known| known.name == check).unwrap_or(CHECKS.len());
-        Self { check, layer, pass, place, text }
+        let Finding { kind, count, layer, pass, place, size, text, remedy, .. } = finding;
+        let check = CHECKS.iter().position(|known| known.name == kind).unwrap_or(CHECKS.len());
+        Self { check, count, layer, pass, place, size, text, remedy: remedy.map(Cow::into_owned) }
     }
 
     fn finding(self) -> Option<Finding> {
-        let Self { check, layer, pass, place, text } = self;
-        Some(Finding { check: CHECKS.get(check)?.name, layer, pass, place, text })
+        let Self { check, count, layer, pass, place, size, text, remedy } = self;
+        let check = CHECKS.get(check)?;
+        let remedy = remedy.map(Cow::Owned);
+        Some(Finding { count, layer, pass, place, size, remedy, ..Finding::new(check.name, check.severity(), text) })
     }
 }

@@ -86,7 +86,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
     let mut layers = Layers { send, layers: Vec::new(), torch: Torch::of(&profile.weld_settings()) };
     let mut summary = plan::plan_into(&order.project.part(), &*part, &profile, task, &mut layers)?;
     let layers = layers.layers;
-    summary.notes.splice(0..0, note);
+    summary.notes.splice(0..0, part.notes().iter().cloned().chain(note));
     send(Event::Planned(Box::new(summary)));
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);

@@ -59,12 +59,12 @@ fn a_finding_leads_to_its_bead() {
     let (layer, pass) = (finding.layer.unwrap(), finding.pass.unwrap());
     click(&mut harness, &format!("Findings ({})", findings.len()));
     // All that say the same are one line, which opens.
-    let same: Vec<_> = findings.iter().filter(|f| f.check == finding.check).collect();
+    let same: Vec<_> = findings.iter().filter(|f| f.kind == finding.kind).collect();
     let ends = [same[0], same[same.len() - 1]].map(|f| f.layer.unwrap() + 1);
     click(&mut harness, &format!("{} alike (layers {}–{})", same.len(), ends[0], ends[1]));
     harness.run_steps(20);
     // A sentence begins with a capital letter.
-    click(&mut harness, &finding.sentence().replacen("layer", "Layer", 1));
+    click(&mut harness, &finding.text.replacen("layer", "Layer", 1));
     let view = harness.state_mut().view();
     assert_eq!((view.mode, view.last), (Mode::Layer, layer));
     assert_eq!(view.chosen.map(|(l, p, _)| (l, p)), Some((layer, pass)));

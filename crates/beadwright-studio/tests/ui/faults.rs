@@ -157,7 +157,7 @@ fn findings_are_told_beside_done_and_grouped() {
     let count = harness.state().plan().findings.as_ref().unwrap().len();
     assert!(count > 3 && sees(&harness, "Done"));
     click(&mut harness, &format!("Findings: {count}"));
-    let voids = harness.state().plan().findings.iter().flatten().filter(|finding| finding.check == "void");
+    let voids = harness.state().plan().findings.iter().flatten().filter(|finding| finding.kind == "void");
     let layers: Vec<usize> = voids.filter_map(|finding| finding.layer).collect();
     let title = format!("{} alike (layers {}–{})", layers.len(), layers[0] + 1, layers.last().unwrap() + 1);
     assert!(sees(&harness, &title), "{title} is not on the screen");

@@ -25,7 +25,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             if let Some(first) = pieces.first() {
                 let length: f64 = pieces.iter().map(Segment::length).sum();
                 let text = format!("the arc is on outside the part, on pieces of {length:.1} mm.");
-                findings.push(Finding::of_pass(&CHECK, layer, i, Some(first.from), text));
+                findings.push(CHECK.of_pass(layer, i, Some(first.from), text));
             }
         }
     }

@@ -41,7 +41,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let met = if met { under + 1 } else { 0 };
             if met == most {
                 let text = format!("starts and ends of passes meet at this place on {met} layers, one after another.");
-                findings.push(Finding::of_pass(&CHECK, layer, pass, Some(at.extend(layer.z)), text));
+                findings.push(CHECK.of_pass(layer, pass, Some(at.extend(layer.z)), text));
             }
             here.push(End { at, starts, met });
         }

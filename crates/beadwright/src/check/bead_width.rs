@@ -21,7 +21,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     for (layer, i, pass) in subject.passes() {
         if let Some(s) = pass.segments().find(|s| !(s.width >= low && s.width <= high)) {
             let text = format!("the bead is {:.1} mm wide; {low:.1} to {high:.1} mm are possible.", s.width);
-            findings.push(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), text));
+            findings.push(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), text));
         }
     }
     findings

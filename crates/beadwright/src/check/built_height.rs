@@ -1,6 +1,7 @@
 //! Parts that end above or below the plan.
 
 use super::{Check, Finding, Subject};
+use std::borrow::Cow;
 
 pub(super) const CHECK: Check = Check {
     name: "built-height",
@@ -32,5 +33,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         built.hollow
     );
     let worst = if built.hollow > built.peak { built.hollow_place } else { built.peak_place };
-    vec![Finding { place: Some(worst.extend(last.z)), ..Finding::of_layer(&CHECK, last, text) }]
+    let found = CHECK.of_layer(last, Some(worst.extend(last.z)), text).sized(built.hollow.max(built.peak));
+    let level = subject.profile.is_level();
+    let remedy =
+        level.then_some(Cow::Borrowed("Measure the layers as they are built and correct the rest (beadwright adapt)."));
+    vec![Finding { remedy: remedy.or(found.remedy.clone()), ..found }]
 }

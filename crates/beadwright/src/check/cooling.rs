@@ -27,5 +27,5 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         count => format!("; {count} layers take less than {least} s"),
     };
     let text = format!("it takes {seconds:.0} s, and nothing waits before the next layer{more}.");
-    vec![Finding::of_layer(&CHECK, layer, text)]
+    vec![CHECK.of_layer(layer, None, text)]
 }

@@ -30,7 +30,7 @@ fn in_layer(layer: &Layer) -> Vec<Finding> {
     let fresh = |found: &(usize, usize, DVec2)| last.replace(found.0) != Some(found.0);
     let finding = |(i, other, place): (usize, usize, DVec2)| {
         let text = format!("it crosses pass {}.", other + 1);
-        Finding::of_pass(&CHECK, layer, i, Some(place.extend(layer.z)), text)
+        CHECK.of_pass(layer, i, Some(place.extend(layer.z)), text)
     };
     sound::crossings(&lines).filter(fresh).map(finding).collect()
 }

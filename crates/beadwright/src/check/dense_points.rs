@@ -34,7 +34,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             moves().filter(short).count(),
             moves().count()
         );
-        dense.then(|| Finding::of_layer(&CHECK, layer, text))
+        dense.then(|| CHECK.of_layer(layer, None, text))
     };
     subject.layers.iter().filter(sound).filter_map(finding).collect()
 }

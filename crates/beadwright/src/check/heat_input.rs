@@ -19,12 +19,12 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         process.heat_at(pace).zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit)
     };
     let sentence = |(heat, limit)| format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm.");
-    let everywhere = over(process, process.deposition_speed).map(|found| Finding::of_plan(&CHECK, sentence(found)));
+    let everywhere = over(process, process.deposition_speed).map(|found| CHECK.of_plan(sentence(found)));
     // Wider beads have more metal and more heat.
     let wide = subject.passes().filter(|_| everywhere.is_none()).filter_map(|(layer, i, pass)| {
         let process = process.at_layer(layer.index);
         let (s, found) = pass.segments().find_map(|s| Some((s, over(&process, s.pace)?)))?;
-        Some(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), sentence(found)))
+        Some(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), sentence(found)))
     });
     let hot: Vec<Finding> = everywhere.clone().into_iter().chain(wide).collect();
     let least = limits.min_layer_time.unwrap_or(0.0);
@@ -33,7 +33,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let short = subject.layers.iter().filter(|layer| !layer.passes.is_empty() && time(layer) < least);
     let short = short.map(|layer| {
         let text = format!("it takes {:.0} s; at least {least:.0} s are needed to cool.", time(layer));
-        Finding::of_layer(&CHECK, layer, text)
+        CHECK.of_layer(layer, None, text)
     });
     hot.into_iter().chain(short).collect()
 }

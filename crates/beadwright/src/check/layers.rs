@@ -23,14 +23,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - below };
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
             let way = if gap < 0.0 { "inside" } else { "above" };
-            findings.push(Finding::of_layer(
-                &CHECK,
-                layer,
-                format!("it begins {:.2} mm {way} the layer below.", gap.abs()),
-            ));
+            let text = format!("it begins {:.2} mm {way} the layer below.", gap.abs());
+            findings.push(CHECK.of_layer(layer, None, text).sized(gap.abs()));
         }
         if layer.passes.is_empty() {
-            findings.push(Finding::of_layer(&CHECK, layer, "nothing is welded here.".to_owned()));
+            findings.push(CHECK.of_layer(layer, None, "nothing is welded here.".to_owned()));
         }
         below = layer.z;
     }

@@ -33,7 +33,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
                 Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
                     let lowest = at.and_then(|from| standing.lowest_gap(from, to));
                     if let Some((gap, place)) = lowest.filter(|(gap, _)| !told && *gap < TOO_CLOSE * clearance) {
-                        findings.push(Finding::of_pass(&CHECK, layer, pass, Some(place), sentence(gap)));
+                        findings.push(CHECK.of_pass(layer, pass, Some(place), sentence(gap)));
                         told = true;
                     }
                     at = Some(to);

@@ -32,15 +32,17 @@ mod wire_balance;
 pub use rehearsal::rehearse;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
+use crate::finding::{Finding, Severity};
 use crate::layer::Layer;
 use crate::plan::{self, Summary};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
-use crate::warning::WarningKind;
+use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
 use planar::Bounds;
 use serde::Serialize;
-use std::borrow::Borrow;
+use std::borrow::{Borrow, Cow};
+use std::collections::BTreeSet;
 
 /// The checks.
 pub const CHECKS: [Check; 24] = [
@@ -77,6 +79,18 @@ const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
     (&short_arc::CHECK, &[WarningKind::ShortArc]),
 ];
 
+/// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
+const SERIOUS: [&Check; 8] = [
+    &points::CHECK,
+    &layers::CHECK,
+    &air::CHECK,
+    &crossing::CHECK,
+    &retraced::CHECK,
+    &clearance::CHECK,
+    &low_travel::CHECK,
+    &towers::CHECK,
+];
+
 /// A check.
 pub struct Check {
     /// The name people type.
@@ -91,21 +105,6 @@ pub struct Check {
     pub remedy: &'static str,
     /// Runs the check.
     find: fn(&Subject<'_>) -> Vec<Finding>,
-}
-
-/// Something that would go wrong.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Finding {
-    /// Name of the check.
-    pub check: &'static str,
-    /// Index of the layer, from 0; `None` when the finding concerns the whole plan.
-    pub layer: Option<usize>,
-    /// Index of the pass in its layer, from 0.
-    pub pass: Option<usize>,
-    /// Where, mm.
-    pub place: Option<DVec3>,
-    /// A sentence.
-    pub text: String,
 }
 
 /// The plan to be checked, with what the deposit model says of it.
@@ -214,65 +213,73 @@ pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: 
     CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
 }
 
-/// The findings of one check: how many, and the first.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
-    /// Name of the check.
-    pub check: &'static str,
-    /// How many findings it has.
-    pub count: usize,
-    /// The first of them.
-    pub first: Finding,
-    /// What to do.
-    pub remedy: &'static str,
+/// The check of a name.
+pub fn by_name(name: &str) -> Option<&'static Check> {
+    CHECKS.iter().find(|check| check.name == name)
 }
 
-/// Findings by their checks, in the order of [`CHECKS`].
-pub fn found(findings: &[Finding]) -> Vec<Found> {
+/// Findings by their checks, in the order of [`CHECKS`]: the first of each stands for all.
+pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
     let of = |check: &Check| {
-        let own = || findings.iter().filter(|finding| finding.check == check.name);
+        let own = || findings.iter().filter(|finding| finding.kind == check.name);
         let (count, first) = (own().count(), own().next()?.clone());
-        Some(Found { check: check.name, count, first, remedy: check.remedy })
+        let text = if count == 1 { first.text } else { format!("{} And {} more.", first.text, count - 1) };
+        Some(Finding { count, text, ..first })
     };
     CHECKS.iter().filter_map(of).collect()
 }
 
-impl Found {
-    /// Whether a warning of the plan already says the same.
-    pub fn is_warned_of(&self, summary: &Summary) -> bool {
-        let warned = |kinds: &[WarningKind]| summary.warnings.summaries().any(|w| kinds.contains(&w.kind));
-        ALSO_WARNED.iter().any(|(check, kinds)| check.name == self.check && warned(kinds))
+/// All that is to be said of a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
+/// warnings, what was mended in the model (sentences), and the notes on its profile. Nothing is said twice.
+pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
+    let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
+    let new = |kind, severity| move |text: &String| Finding::new(kind, severity, text.clone());
+    let said: BTreeSet<String> = warned.iter().map(Finding::sentence).collect();
+    let checks = found.iter().filter(|finding| !is_warned_of(finding.kind, &summary.warnings)).cloned();
+    let mut all: Vec<Finding> = checks.chain(warned).collect();
+    let forbidden = summary.forbidden.iter().filter(|text| !said.contains(*text));
+    all.extend(forbidden.map(new("refused", Severity::Serious)));
+    all.extend(summary.notes.iter().map(new("profile", Severity::Doubt)));
+    all.extend(model.iter().map(new("model", Severity::Note)));
+    let mut known = BTreeSet::new();
+    all.retain(|finding| known.insert(finding.text.clone()));
+    all.sort_by_key(|finding| finding.severity);
+    all
+}
+
+/// Whether a warning of the plan already says what a check of that name finds.
+fn is_warned_of(name: &str, warnings: &Warnings) -> bool {
+    let warned = |kinds: &[WarningKind]| warnings.summaries().any(|w| kinds.contains(&w.kind));
+    ALSO_WARNED.iter().any(|(check, kinds)| check.name == name && warned(kinds))
+}
+
+impl Check {
+    /// How much its findings matter.
+    pub fn severity(&self) -> Severity {
+        if SERIOUS.iter().any(|check| check.name == self.name) { Severity::Serious } else { Severity::Doubt }
     }
 
-    /// All of them in a sentence for people.
-    pub fn sentence(&self) -> String {
-        let (first, more) = (self.first.sentence(), self.count - 1);
-        let more = if more == 0 { String::new() } else { format!(" And {more} more.") };
-        format!("{}: {first}{more} Remedy: {}.", self.check, self.remedy)
+    fn of_plan(&self, text: String) -> Finding {
+        let mut letters = self.remedy.chars();
+        let remedy: Option<String> =
+            letters.next().map(|first| first.to_uppercase().chain(letters).chain(['.']).collect());
+        Finding { remedy: remedy.map(Cow::Owned), ..Finding::new(self.name, self.severity(), text) }
+    }
+
+    fn of_layer(&self, layer: &Layer, place: Option<DVec3>, text: String) -> Finding {
+        let text = format!("layer {}{}: {text}", layer.index + 1, at(place));
+        Finding { layer: Some(layer.index), place, ..self.of_plan(text) }
+    }
+
+    fn of_pass(&self, layer: &Layer, pass: usize, place: Option<DVec3>, text: String) -> Finding {
+        let text = format!("layer {}, pass {}{}: {text}", layer.index + 1, pass + 1, at(place));
+        Finding { layer: Some(layer.index), pass: Some(pass), place, ..self.of_plan(text) }
     }
 }
 
-impl Finding {
-    fn of_plan(check: &Check, text: String) -> Self {
-        Self { check: check.name, layer: None, pass: None, place: None, text }
-    }
-
-    fn of_layer(check: &Check, layer: &Layer, text: String) -> Self {
-        Self { check: check.name, layer: Some(layer.index), pass: None, place: None, text }
-    }
-
-    fn of_pass(check: &Check, layer: &Layer, pass: usize, place: Option<DVec3>, text: String) -> Self {
-        Self { check: check.name, layer: Some(layer.index), pass: Some(pass), place, text }
-    }
-
-    /// The finding with its place, as a sentence for people.
-    pub fn sentence(&self) -> String {
-        let layer = self.layer.map(|layer| format!("layer {}", layer + 1));
-        let pass = self.pass.map(|pass| format!("pass {}", pass + 1));
-        let place = self.place.map(|p| format!("x {:.1} y {:.1} z {:.2} mm", p.x, p.y, p.z));
-        let words: Vec<String> = [layer, pass, place].into_iter().flatten().collect();
-        if words.is_empty() { self.text.clone() } else { format!("{}: {}", words.join(", "), self.text) }
-    }
+/// A place in a sentence.
+fn at(place: Option<DVec3>) -> String {
+    place.map_or_else(String::new, |p| format!(", x {:.1} y {:.1} z {:.2} mm", p.x, p.y, p.z))
 }
 
 impl Subject<'_> {
@@ -289,7 +296,10 @@ impl Subject<'_> {
     /// A finding for each layer whose figure is above the limit.
     fn above(&self, check: &Check, value: fn(&Figures) -> f64, limit: f64, words: &str) -> Vec<Finding> {
         let over = self.layers.iter().zip(&self.figures).filter(|(_, figures)| value(figures) > limit);
-        let text = |figures: &Figures| format!("{:.2} % {words}; the limit is {limit} %.", value(figures));
-        over.map(|(layer, figures)| Finding::of_layer(check, layer, text(figures))).collect()
+        let found = |(layer, figures): (&&Layer, &Figures)| {
+            let text = format!("{:.2} % {words}; the limit is {limit} %.", value(figures));
+            check.of_layer(layer, None, text).sized(value(figures))
+        };
+        over.map(found).collect()
     }
 }

@@ -18,7 +18,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let hanging = |pair: &[&Layer]| {
         let (area, place) = overhang(&pair[0].islands, &pair[1].islands, reach, width)?;
         let text = format!("{area:.1} mm² reach more than {reach:.1} mm beyond the layer below.");
-        Some(Finding { place: Some(place.extend(pair[1].z)), ..Finding::of_layer(&CHECK, pair[1], text) })
+        Some(CHECK.of_layer(pair[1], Some(place.extend(pair[1].z)), text))
     };
     subject.layers.windows(2).filter_map(hanging).collect()
 }

@@ -20,7 +20,7 @@ const OFF_HEIGHT: f64 = 0.5;
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let wrong = |(layer, i, pass): (&Layer, usize, &Pass)| {
         let text = fault(layer, pass)?;
-        Some(Finding::of_pass(&CHECK, layer, i, pass.start().filter(|p| p.is_finite()), text))
+        Some(CHECK.of_pass(layer, i, pass.start().filter(|p| p.is_finite()), text))
     };
     subject.passes().filter_map(wrong).collect()
 }

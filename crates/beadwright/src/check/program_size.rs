@@ -17,10 +17,10 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let most = limits.max_points as usize;
     let large = sizes.clone().filter(|(_, size)| *size > most);
     let text = |count: usize| format!("it has {count} points; {most} are the most for one layer.");
-    let layers = large.map(|(layer, count)| Finding::of_layer(&CHECK, layer, text(count)));
+    let layers = large.map(|(layer, count)| CHECK.of_layer(layer, None, text(count)));
     let all: usize = sizes.map(|(_, size)| size).sum();
     let plan = limits.max_plan_points.filter(|most| all > *most as usize);
-    let plan = plan.map(|most| Finding::of_plan(&CHECK, format!("The plan has {all} points; {most} are the most.")));
+    let plan = plan.map(|most| CHECK.of_plan(format!("The plan has {all} points; {most} are the most.")));
     layers.chain(plan).collect()
 }
 

@@ -32,7 +32,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let found = subject.passes().filter_map(|(layer, i, pass)| {
         let (place, length) = retraced(&samples(pass, width / SAMPLES), width, pass.closed)?;
         let text = format!("it runs over itself for {length:.1} mm.");
-        Some(Finding::of_pass(&CHECK, layer, i, Some(place), text))
+        Some(CHECK.of_pass(layer, i, Some(place), text))
     });
     found.collect()
 }

@@ -15,5 +15,5 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let shortest = subject.profile.fill.min_pass_length;
     let short = subject.passes().filter(|(_, _, pass)| pass.points.len() > 1 && pass.length() < 0.999 * shortest);
     let text = |length: f64| format!("it is {length:.1} mm long; the shortest that welds is {shortest} mm.");
-    short.map(|(layer, i, pass)| Finding::of_pass(&CHECK, layer, i, pass.start(), text(pass.length()))).collect()
+    short.map(|(layer, i, pass)| CHECK.of_pass(layer, i, pass.start(), text(pass.length()))).collect()
 }

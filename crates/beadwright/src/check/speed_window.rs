@@ -24,7 +24,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         if let Some(s) = pass.segments().find(|s| outside(s.pace)) {
             let speed = process.speed_at(s.pace);
             let text = format!("the deposition speed is {speed:.1} mm/s; the window is {low} to {high} mm/s.");
-            findings.push(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), text));
+            findings.push(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), text));
         }
     }
     findings

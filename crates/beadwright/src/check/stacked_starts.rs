@@ -29,7 +29,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let count = 1 + under.map(|(_, count)| *count).max().unwrap_or(0);
             if count == most {
                 let text = format!("arcs start at this place on {count} layers, one after another.");
-                findings.push(Finding::of_pass(&CHECK, layer, i, Some(start), text));
+                findings.push(CHECK.of_pass(layer, i, Some(start), text));
             }
             here.push((start.truncate(), count));
         }

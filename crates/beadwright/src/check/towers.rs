@@ -21,5 +21,5 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         "the highest point stands {:.1} mm above the layer; travels pass {clearance} mm above it.",
         growth.peak
     );
-    vec![Finding { place: Some(growth.peak_place.extend(layer.z)), ..Finding::of_layer(&CHECK, layer, text) }]
+    vec![CHECK.of_layer(layer, Some(growth.peak_place.extend(layer.z)), text).sized(growth.peak)]
 }

@@ -17,7 +17,7 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let profile = subject.profile;
     let (process, balance) = (&profile.process, profile.mass_balance());
-    let nominal = balance.warning().map(|text| Finding::of_plan(&CHECK, text));
+    let nominal = balance.warning().map(|text| CHECK.of_plan(text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
         let pace = profile.pace_in(layer.index, layer.height, pass.kind);
         // A wall takes the wire that fills its width over the rise of the layer.
@@ -36,7 +36,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
                 format!("a bead {width:.2} mm wide is laid with {feed:.0} % of the wire feed; it takes {fitting:.0} %.")
             }
         };
-        Some(Finding::of_pass(&CHECK, layer, i, Some(s.from).filter(|p| p.is_finite()), text))
+        Some(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), text))
     });
     nominal.into_iter().chain(along).collect()
 }

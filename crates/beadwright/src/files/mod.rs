@@ -16,10 +16,11 @@ pub use folder::{Folder, FolderError, Written, write_file};
 #[cfg(feature = "files")]
 pub use own_folder::posts;
 
-use crate::check::{self, Found, LayerFigures};
+use crate::check::{self, LayerFigures};
 use crate::deposit::{Figures, Judgement, stack::Growth};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
+use crate::finding::Finding;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -174,7 +175,7 @@ pub struct PlanFiles {
     layers: Vec<Layer>,
     figures: Vec<Figures>,
     points: usize,
-    found: Option<Vec<Found>>,
+    found: Option<Vec<Finding>>,
     /// How the built part ends, once checked.
     built: Option<Growth>,
     selection: Selection,
@@ -267,7 +268,7 @@ impl PlanFiles {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn check(&mut self, task: &Task) -> Result<&[Found], Cancelled> {
+    pub fn check(&mut self, task: &Task) -> Result<&[Finding], Cancelled> {
         if self.found.is_none() {
             let (layers, figures) = (std::mem::take(&mut self.layers), std::mem::take(&mut self.figures));
             let mut findings = Vec::new();
@@ -278,7 +279,7 @@ impl PlanFiles {
                 let judged = LayerFigures { figures, grown, ..LayerFigures::default() };
                 findings = check::check_figures(&layers, &self.profile, judged);
             }
-            self.found = Some(check::found(&findings));
+            self.found = Some(check::grouped(&findings));
         }
         Ok(self.found.as_deref().unwrap_or_default())
     }
@@ -294,7 +295,7 @@ impl PlanFiles {
         total: Option<&Figures>,
     ) -> Result<Vec<Chunk>, DialectError> {
         // Nobody stops a task of its own.
-        let found = self.check(&Task::new()).map(<[Found]>::to_vec).unwrap_or_default();
+        let found = self.check(&Task::new()).map(<[Finding]>::to_vec).unwrap_or_default();
         let totals = self.totals().cloned();
         let mut chunks = self.programs.end();
         if let Some(failure) = self.programs.failure() {
@@ -310,15 +311,17 @@ impl PlanFiles {
             metrics["programs"] = serde_json::json!(totals);
         }
         metrics["built"] = serde_json::json!(self.built);
-        metrics["findings"] = serde_json::json!(found);
+        let findings = check::all_findings(summary, &repair.sentences(), &found);
+        metrics["findings"] = serde_json::json!(findings);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
-        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &found)));
+        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &findings)));
         Ok(chunks)
     }
 
     /// The report on a plan whose programs are not written, in which the places are seen why.
     pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
-        Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &[]))
+        let findings = check::all_findings(summary, &repair.sentences(), &[]);
+        Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &findings))
     }
 
     fn note(&mut self, chunks: &[Chunk]) {

@@ -302,6 +302,14 @@ impl Part {
         }
     }
 
+    /// What is not read, as sentences, besides what was mended ([`Self::repair`]).
+    pub fn notes(&self) -> &[String] {
+        match self {
+            Self::Mesh(import) => &import.notes,
+            Self::Curves { warnings, .. } => warnings,
+        }
+    }
+
     /// What was mended or is not read, as sentences.
     pub fn warnings(&self) -> Vec<String> {
         match self {

@@ -32,8 +32,8 @@ mod tables;
 pub mod temperature;
 mod words;
 
-use crate::check::Found;
 use crate::deposit::{Figures, Judgement};
+use crate::finding::Finding;
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -115,14 +115,15 @@ impl Report {
         }
     }
 
-    /// The page. `files` are the names of the files that were written, `found` is what the checks have found.
-    pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String], found: &[Found]) -> String {
+    /// The page. `files` are the names of the files that were written, `findings` all
+    /// that is to be said of the plan ([`check::all_findings`](crate::check::all_findings)).
+    pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String], findings: &[Finding]) -> String {
         let (header, profile) = (&self.header, &self.profile);
         let values = [
             ("title", escape(&header.part)),
             ("css", include_str!("page.css").to_owned()),
             ("sentence", tables::sentence(header, summary, profile)),
-            ("state", tables::state(summary, repair, found)),
+            ("state", tables::state(summary, findings)),
             ("refused", tables::refused(summary)),
             ("kinds", tables::kinds(&self.kinds)),
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
@@ -130,7 +131,7 @@ impl Report {
             ("angles", angles::section(&self.middle, profile)),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
-            ("warnings", tables::warnings(summary, repair, found)),
+            ("warnings", tables::warnings(summary, findings)),
             ("words", words::list()),
             ("data", self.data()),
             (

@@ -3,9 +3,9 @@
 use super::escape;
 use super::words::hinted;
 use crate::bead::Overlap;
-use crate::check::Found;
 use crate::deposit::Figures;
 use crate::fill::{ContourOrder, RasterSpacing};
+use crate::finding::Finding;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::number::hours;
@@ -45,11 +45,11 @@ fn empty(header: &Header, m: &Metrics) -> String {
 }
 
 /// The badge beside the heading.
-pub(super) fn state(summary: &Summary, repair: &RepairReport, found: &[Found]) -> String {
+pub(super) fn state(summary: &Summary, findings: &[Finding]) -> String {
     if !summary.forbidden.is_empty() {
         return "<a class=\"badge bad\" href=\"#warnings\">Do not start</a>".to_owned();
     }
-    match remarks(summary, repair, found).len() {
+    match remarks(summary, findings).count() {
         0 => "<a class=\"badge good\" href=\"#warnings\">Nothing was lost</a>".to_owned(),
         n => format!("<a class=\"badge warn\" href=\"#warnings\">{}</a>", count(n, "remark", "remarks")),
     }
@@ -203,12 +203,14 @@ pub(super) fn files(files: &[String]) -> String {
     format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a list that scrolls\">\n{items}\n</ul>")
 }
 
-/// Everything that was mended, lost or does not fit, or a line that says there is nothing of the kind.
-pub(super) fn warnings(summary: &Summary, repair: &RepairReport, found: &[Found]) -> String {
-    let item = |(source, text, place): &Remark| {
-        format!("<li><b>{source}</b> {}{}</li>", escape(text), place.map(link).unwrap_or_default())
+/// All that is to be said, the worst first, or a line that says there is nothing of the kind.
+pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
+    let item = |finding: &Finding| {
+        let place = finding.layer.zip(finding.place.map(|place| place.truncate())).map(link).unwrap_or_default();
+        let (word, name) = (finding.severity.title(), finding.kind);
+        format!("<li><b title=\"{name}\">{word}</b> {}{place}</li>", escape(&finding.sentence()))
     };
-    let items: Vec<String> = remarks(summary, repair, found).iter().map(item).collect();
+    let items: Vec<String> = remarks(summary, findings).map(item).collect();
     if items.is_empty() {
         return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
                 of the profile fit together.</p>"
@@ -217,21 +219,13 @@ pub(super) fn warnings(summary: &Summary, repair: &RepairReport, found: &[Found]
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
-/// Where a remark comes from, the remark, and the place that it tells of.
-type Remark = (&'static str, String, Option<Seen>);
+/// What does not stand at the head of the page, as what forbids the program does.
+fn remarks<'a>(summary: &'a Summary, findings: &'a [Finding]) -> impl Iterator<Item = &'a Finding> {
+    findings.iter().filter(|finding| !summary.forbidden.contains(&finding.sentence()))
+}
 
 /// A layer and a place on it, mm.
 type Seen = (usize, DVec2);
-
-fn remarks(summary: &Summary, repair: &RepairReport, found: &[Found]) -> Vec<Remark> {
-    let model = repair.sentences().into_iter().map(|s| ("Model", s, None));
-    let layers = summary.warnings.summaries().map(|w| ("Plan", w.sentence(), Some((w.largest.layer, w.largest.place))));
-    let process = summary.notes.iter().map(|s| ("Process", s.clone(), None));
-    let seen = |f: &Found| f.first.layer.zip(f.first.place.map(|place| place.truncate()));
-    let checks = found.iter().filter(|f| !f.is_warned_of(summary)).map(|f| ("Check", f.sentence(), seen(f)));
-    // What forbids the program stands at the head of the page.
-    checks.chain(model).chain(layers).chain(process).filter(|(_, text, _)| !summary.forbidden.contains(text)).collect()
-}
 
 /// A button that shows the place of a warning.
 fn link((layer, place): Seen) -> String {

@@ -268,7 +268,7 @@ impl Built {
             wall: profile.single_wall().map_err(wrong)?,
             metal: brought / mesh.volume(),
             speeds,
-            unbalanced: findings.iter().filter(|finding| finding.check == "wire-balance").count(),
+            unbalanced: findings.iter().filter(|finding| finding.kind == "wire-balance").count(),
             by_curves: (lofted.layers.len(), length(&lofted) / length(&plan)),
             profile,
             plan,

@@ -2,6 +2,7 @@
 
 use super::body::Solid;
 use super::track::{Leg, Stop};
+use crate::finding::{Finding, Severity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -110,6 +111,21 @@ pub struct ReachFinding {
     pub worst: (Stop, Trouble),
     /// Number of stops.
     pub count: usize,
+}
+
+impl From<&ReachFinding> for Finding {
+    fn from(found: &ReachFinding) -> Self {
+        let severity = if found.trouble.is_fatal() { Severity::Serious } else { Severity::Doubt };
+        let on_part = found.stop.leg == Leg::Part;
+        Self {
+            count: found.count,
+            layer: on_part.then_some(found.stop.layer),
+            pass: on_part.then_some(found.stop.pass),
+            place: Some(found.stop.at),
+            size: Some(found.worst.1.size()),
+            ..Self::new("reach", severity, found.sentence())
+        }
+    }
 }
 
 impl ReachFinding {

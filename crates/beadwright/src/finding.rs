@@ -1,0 +1,78 @@
+//! What is wrong or doubtful with a plan, wherever it was found: one type for checks, warnings, refusals, notes and reach.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// How much a finding matters, the worst first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// The program should not be started as it is.
+    Serious,
+    /// The part may not become what was meant.
+    Doubt,
+    /// Something was done that people should know of.
+    Note,
+}
+
+impl Severity {
+    /// The word before a finding in a terminal.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Serious => "serious",
+            Self::Doubt => "warning",
+            Self::Note => "note",
+        }
+    }
+
+    /// The word before a finding on a page.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Serious => "Serious",
+            Self::Doubt => "Warning",
+            Self::Note => "Note",
+        }
+    }
+}
+
+/// Something that is wrong, doubtful or worth knowing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// What kind of thing: the name of a check or of a warning, or `reach`, `model`, `profile` or `refused`.
+    pub kind: &'static str,
+    /// How much it matters.
+    pub severity: Severity,
+    /// How many such findings this one stands for; it is the first of a check's, and the largest of a warning's.
+    pub count: usize,
+    /// Index of the layer, from 0; `None` when it concerns the whole plan.
+    pub layer: Option<usize>,
+    /// Index of the pass in its layer, from 0.
+    pub pass: Option<usize>,
+    /// Where, mm.
+    pub place: Option<DVec3>,
+    /// How large, in the unit that the sentence names.
+    pub size: Option<f64>,
+    /// A sentence that says what, and where.
+    pub text: String,
+    /// A sentence that says what to do.
+    pub remedy: Option<Cow<'static, str>>,
+}
+
+impl Finding {
+    /// A finding about the whole plan.
+    pub fn new(kind: &'static str, severity: Severity, text: String) -> Self {
+        Self { kind, severity, count: 1, layer: None, pass: None, place: None, size: None, text, remedy: None }
+    }
+
+    /// The finding with its size, in the unit of its sentence.
+    #[must_use]
+    pub fn sized(self, size: f64) -> Self {
+        Self { size: Some(size), ..self }
+    }
+
+    /// What is wrong and what to do, in sentences for people.
+    pub fn sentence(&self) -> String {
+        self.remedy.as_ref().map_or_else(|| self.text.clone(), |remedy| format!("{} {remedy}", self.text))
+    }
+}
