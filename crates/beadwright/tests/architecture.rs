@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// Modules of the library from the top of the table to its bottom; those in one row do not know each other.
 const ROWS: &[&[&str]] = &[
-    &["limit", "number", "random", "task", "template", "text", "warning"],
+    &["finding", "limit", "number", "random", "task", "template", "text"],
+    &["warning"],
     // Pure geometry; a file of curves is read by the model.
     &["curve"],
     &["model"],

@@ -5,7 +5,8 @@ use beadwright::bead::library::{
     BeadLibrary, Columns, Layering, LibraryError, Limit, Measured, Wish, demonstration_csv,
 };
 use beadwright::bead::wall::WallBead;
-use beadwright::bead::{MassBalance, wire_area};
+use beadwright::bead::{Law, MassBalance, wire_area};
+use beadwright::profile::{Profile, ProfileError};
 
 fn read(csv: &str) -> Measured {
     Measured::read(csv, &Columns::default()).unwrap()
@@ -365,4 +366,49 @@ fn the_picture_says_that_its_data_is_invented() {
     let svg = beadwright::report::bead_window::plot(&demonstration()).svg();
     assert!(svg.contains("SYNTHETIC") && svg.contains("10 mm/s") && svg.contains("good beads, λ 2.5 to 3"));
     assert_eq!((svg.matches("<polyline").count(), svg.matches("<circle").count()), (5, 35));
+}
+
+/// A profile whose process the demonstration knows, with that bead.
+fn with_library(width: f64) -> Result<Profile, ProfileError> {
+    let text = format!(
+        "inherits = \"cmt-steel-abb\"\n[process]\ncurrent = 120.0\ndeposition_speed = 8.0\n[bead]\nwidth = {width}\n\
+         library = \"ours.toml\"\n"
+    );
+    Profile::parse_with(&text, &mut |name| match name {
+        "ours.toml" => Ok(demonstration().to_toml()),
+        other => Profile::built_in_text(other).map(str::to_owned),
+    })
+}
+
+#[test]
+fn a_profile_takes_its_law_from_a_library() {
+    let library = demonstration();
+    let nominal = library.predict(&[120.0, 8.0]).unwrap().bead();
+    let profile = with_library(nominal.width).unwrap();
+    let Law::Library(beads) = &profile.bead.law else { unreachable!("{:?}", profile.bead.law) };
+    assert!(beads.len() > 8);
+    for speed in [4.0, 5.3, 7.1, 8.0, 9.9, 12.0] {
+        let expected = library.predict(&[120.0, speed]).unwrap().bead();
+        let ours = profile.bead.law.bead(&profile.bead(), expected.width);
+        assert!((ours.height - expected.height).abs() < 0.01, "{speed} mm/s: {ours:?} {expected:?}");
+    }
+    // What is written needs no file.
+    let written = profile.toml_text().unwrap();
+    assert!(!written.contains("ours.toml"));
+    assert_eq!(Profile::parse(&written).unwrap().bead, profile.bead);
+}
+
+#[test]
+fn a_library_that_does_not_fit_its_profile_is_refused() {
+    let said = |error: ProfileError| error.to_string();
+    let wide = said(with_library(9.5).unwrap_err());
+    assert!(wide.contains("bead.library") && wide.contains("bead.width is 9.5 mm"), "{wide}");
+    let unread = said(Profile::parse("inherits = \"cmt-steel-abb\"\n[bead]\nlibrary = \"ours.toml\"\n").unwrap_err());
+    assert!(unread.contains("bead.library") && unread.contains("give the bead.law itself"), "{unread}");
+    let mut garbled = |name: &str| match name {
+        "ours.toml" => Ok("version = 7".to_owned()),
+        other => Profile::built_in_text(other).map(str::to_owned),
+    };
+    let text = "inherits = \"cmt-steel-abb\"\n[bead]\nlibrary = \"ours.toml\"\n";
+    assert!(said(Profile::parse_with(text, &mut garbled).unwrap_err()).contains("bead.library"));
 }

@@ -32,7 +32,8 @@ fn report() -> String {
     let plan = common::planned("cross", &profile);
     let mut report = Report::new(&plan.header, &profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    report.finish(&plan.summary, &RepairReport::default(), &[], &[])
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
+    report.finish(&plan.summary, &RepairReport::default(), &[], &findings)
 }
 
 #[test]

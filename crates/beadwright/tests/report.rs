@@ -29,7 +29,8 @@ fn process() -> Process {
 fn page(plan: &Plan, profile: &Profile) -> String {
     let mut report = Report::new(&plan.header, profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()], &[])
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
+    report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()], &findings)
 }
 
 /// Kind, closed, points, width and speed.

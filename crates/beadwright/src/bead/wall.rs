@@ -261,7 +261,7 @@ fn lens_complement(area: f64) -> f64 {
         *(if miss > 0.0 { &mut high } else { &mut low }) = delta;
         let step = delta - miss / (2.0 + 2.0 * (2.0 * delta).cos());
         let next = if (low..=high).contains(&step) { step } else { 0.5 * (low + high) };
-        if (next - delta).abs() <= f64::EPSILON * next {
+        if (next - delta).abs() <= 4.0 * f64::EPSILON * next || miss.abs() <= 2.0 * f64::EPSILON * area {
             return next;
         }
         delta = next;

@@ -17,7 +17,9 @@ const TOLERANCE: f64 = 0.25;
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut below = 0.0;
-    for layer in &subject.layers {
+    // A tip too thin for a bead ends the part.
+    let end = subject.layers.iter().rposition(|layer| !layer.passes.is_empty()).map_or(0, |last| last + 1);
+    for layer in &subject.layers[..end] {
         let bottom = layer.z - layer.height;
         // On the plate another part may begin.
         let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - below };

@@ -18,7 +18,7 @@ use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
 use crate::slice::{LayerFit, Slab, Slicer};
 use crate::task::{Cancelled, Task};
-use planar::Region;
+use planar::{Polygon, Region};
 use rayon::prelude::*;
 
 /// Number of heights at which a part is looked at, at most.
@@ -50,11 +50,10 @@ pub(super) fn slabs(
         rises.par_extend(planned.par_iter().map(|layer| {
             let filled = fill_planned(layer, strategy, profile, middle(mesh));
             let laid = filled.slice.islands.iter().zip(&filled.fills).filter(|(_, fill)| !fill.is_empty());
-            let area: f64 = laid.map(|(island, _)| island.area()).sum();
+            let islands: Vec<Polygon> = laid.map(|(island, _)| island.clone()).collect();
             let paths = filled.fills.into_iter().flat_map(|fill| fill.stages).flatten().collect();
-            let metal: f64 =
-                lifted(paths, filled.slice.index, (0.0, height), profile).iter().map(|pass| metal(pass, profile)).sum();
-            (area > 0.0).then(|| height * (metal / (area * height)).clamp(*THICKNESS.start(), *THICKNESS.end()))
+            let passes = lifted(paths, filled.slice.index, (0.0, height), profile);
+            rise(&Layer { height, islands, passes, ..Layer::default() }, profile)
         }));
         task.check()?;
     }
@@ -63,10 +62,21 @@ pub(super) fn slabs(
     Ok(stacked(top, profile, |z| between(&known, z).unwrap_or(height)))
 }
 
-/// Metal of a pass, mm³.
-fn metal(pass: &Pass, profile: &Profile) -> f64 {
-    let nominal = nominal(profile);
-    pass.segments().map(|piece| metal_of(&piece, &nominal)).sum()
+/// How high a layer is whose beads hold what they need, by the median over their metal; `None` for one without beads. The
+/// mean would be lower, and narrow more beads than it widens.
+fn rise(layer: &Layer, profile: &Profile) -> Option<f64> {
+    let shares = shares(layer, profile);
+    let mut pieces: Vec<(f64, f64)> =
+        shares.iter().flat_map(|share| share.factors.iter().copied().zip(share.held.iter().copied())).collect();
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let all: f64 = pieces.iter().map(|piece| piece.1).sum();
+    let mut sum = 0.0;
+    let (factor, _) = pieces.into_iter().find(|piece| {
+        sum += piece.1;
+        sum >= 0.5 * all
+    })?;
+    let thinner = (1.0 / factor).clamp(*THICKNESS.start(), *THICKNESS.end());
+    Some(layer.height * thinner)
 }
 
 fn metal_of(piece: &Segment, nominal: &Nominal) -> f64 {
@@ -118,25 +128,43 @@ const REACH: f64 = 0.75;
 /// Grid points across a bead.
 const ACROSS: f64 = 8.0;
 
-/// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
-/// it, and is as wide as the law of the bead says.
-pub(super) fn share(layer: &mut Layer, profile: &Profile) {
+/// A pass in pieces, with the metal that each holds (mm³), and what it needs as a multiple of that.
+struct Share {
+    pieces: Vec<Segment>,
+    held: Vec<f64>,
+    factors: Vec<f64>,
+}
+
+/// What the passes of a layer hold and need.
+fn shares(layer: &Layer, profile: &Profile) -> Vec<Share> {
     let nominal = nominal(profile);
     let width = nominal.bead.width;
     let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(|pass| cut(pass, PIECE * width)).collect();
     let areas = strips(layer, pieces.iter().flatten(), width);
     let mut areas = areas.iter();
-    for (pass, pieces) in layer.passes.iter_mut().zip(&pieces) {
+    let share = |(pass, pieces): (&Pass, Vec<Segment>)| {
         let wanted: Vec<f64> = areas.by_ref().take(pieces.len()).map(|area| area * layer.height).collect();
         let held: Vec<f64> = pieces.iter().map(|piece| metal_of(piece, &nominal)).collect();
         let lengths: Vec<f64> = pieces.iter().map(Segment::length).collect();
         let factors = evened(&wanted, &held, &lengths, pass.closed, AROUND * width);
-        let mut laid: Vec<Segment> = Vec::with_capacity(pieces.len());
-        for (piece, factor) in pieces.iter().zip(in_runs(&factors, &held)) {
+        Share { pieces, held, factors }
+    };
+    layer.passes.iter().zip(pieces).map(share).collect()
+}
+
+/// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
+/// it, and is as wide as the law of the bead says.
+pub(super) fn share(layer: &mut Layer, profile: &Profile) {
+    let nominal = nominal(profile);
+    let shares = shares(layer, profile);
+    for (pass, Share { pieces, held, factors }) in layer.passes.iter_mut().zip(shares) {
+        let laid = |(piece, factor): (&Segment, f64)| {
+            let factor = factor.clamp(MOST.recip(), MOST);
             let bead = nominal.bead_at(piece.width, piece.pace);
             let width = profile.bead.law.width_of_area(&bead, factor * bead.area());
-            laid.push(Segment { width, pace: piece.pace / factor, ..*piece });
-        }
+            Segment { width, pace: piece.pace / factor, ..*piece }
+        };
+        let laid: Vec<Segment> = pieces.iter().zip(in_runs(&factors, &held)).map(laid).collect();
         *pass = joined(pass, &laid);
     }
 }
@@ -207,7 +235,7 @@ fn evened(wanted: &[f64], held: &[f64], lengths: &[f64], closed: bool, around: f
                 (want, have, at) = (want + wanted[next], have + held[next], next);
             }
         }
-        if have > 0.0 { (want / have).clamp(MOST.recip(), MOST) } else { 1.0 }
+        if have > 0.0 { want / have } else { 1.0 }
     };
     (0..count).map(factor).collect()
 }

@@ -14,6 +14,9 @@ use planar::Bounds;
 /// Plans of a wall until its layers lie where its own heat lets them rise; each brings them closer by a factor of ten.
 const ROUNDS: usize = 3;
 
+/// Heights that differ by less are the same, mm.
+const SAME: f64 = 1e-6;
+
 /// How warm the metal ahead of the torch is at each height of a wall, and what that does to its layers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Warmth {
@@ -24,7 +27,8 @@ pub(super) struct Warmth {
 impl Warmth {
     /// Thickness of a layer on metal of a height (mm), as a multiple of what it is at the temperature of the profile.
     pub(super) fn lift(&self, z: f64) -> f64 {
-        let next = self.lifts.partition_point(|(top, _)| *top <= z);
+        // Where one layer ends and the next begins, rounding decides nothing.
+        let next = self.lifts.partition_point(|(top, _)| *top <= z + SAME);
         self.lifts.get(next).or(self.lifts.last()).map_or(1.0, |(_, lift)| *lift)
     }
 }

@@ -20,6 +20,10 @@ pub struct BeadSection {
     /// measured beads as `{ library = [[width, height], …] }` in mm; default constant-height.
     #[serde(default)]
     pub law: Law,
+    /// A library of measured beads, as `beadwright bead fit` writes it, from the folder of the profile on: what it says of
+    /// beads at this process and other speeds takes the place of `law`; optional.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub library: Option<String>,
     /// How the bead changes with the heat of the metal below; optional, default not at all.
     pub by_heat: Option<BeadByHeat>,
 }

@@ -11,6 +11,7 @@ mod fill;
 mod hybrid;
 mod layers;
 mod limits;
+mod measured;
 mod missing;
 mod one_loop;
 mod order;

@@ -1,5 +1,6 @@
 //! Reads TOML text into a [`Profile`], with errors that name the line and the nearest valid word.
 
+use super::measured;
 use super::missing::missing;
 use super::{BUILT_IN, Profile, limits};
 use crate::dialect::{self, Sections};
@@ -65,6 +66,8 @@ pub(super) fn parse(
     base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
 ) -> Result<Profile, ProfileError> {
     let mut ancestors: Vec<String> = Vec::new();
+    // A library lies beside the profile that names it.
+    let mut library = library(text, text, base)?;
     while let Some(name) = inherits(ancestors.last().map_or(text, |ancestor| ancestor)) {
         if ancestors.len() == MOST_ANCESTORS {
             return Err(ProfileError::Text {
@@ -72,14 +75,22 @@ pub(super) fn parse(
                 reason: format!("more than {MOST_ANCESTORS} profiles inherit from each other, perhaps in a circle."),
             });
         }
-        let text = base(&name)?;
-        if let Err(error) = DeTable::parse(&text) {
+        let ancestor = base(&name)?;
+        if let Err(error) = DeTable::parse(&ancestor) {
             let reason = format!("the profile \"{name}\", from which it inherits: {}", explain(error.message()));
             return Err(ProfileError::Text { line: 1, reason });
         }
-        ancestors.push(text);
+        if library.is_none() {
+            library = self::library(&ancestor, text, base)?;
+        }
+        ancestors.push(ancestor);
     }
-    let profile = deserialize(text, &ancestors).map_err(|e| refused(&e, text, &ancestors))?;
+    let mut profile = deserialize(text, &ancestors).map_err(|e| refused(&e, text, &ancestors))?;
+    // The law stays with the profile where its file does not go, as in plan.json.
+    if let Some((name, library)) = profile.bead.library.take().zip(library) {
+        let law = measured::law(&library, &profile);
+        profile.bead.law = law.map_err(|reason| of_library(text, name, reason))?;
+    }
     match limits::first_broken(&profile) {
         None => Ok(profile),
         Some(Broken { key, value, reason }) => {
@@ -114,6 +125,32 @@ fn without_nulls(value: &serde_json::Value) -> serde_json::Value {
 fn inherits(text: &str) -> Option<String> {
     let table = DeTable::parse(text).ok()?;
     Some(table.get_ref().get("inherits")?.get_ref().as_str()?.to_owned())
+}
+
+/// The text of the library that a profile names (`bead.library`), itself or the ancestor of another `text`.
+fn library(
+    profile: &str,
+    text: &str,
+    base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
+) -> Result<Option<String>, ProfileError> {
+    let named = |text| {
+        let table = DeTable::parse(text).ok()?;
+        let bead = table.get_ref().get("bead")?.get_ref().as_table()?;
+        Some(bead.get("library")?.get_ref().as_str()?.to_owned())
+    };
+    let Some(name) = named(profile) else { return Ok(None) };
+    base(&name).map(Some).map_err(|error| match error {
+        ProfileError::UnknownName { .. } => {
+            of_library(text, name, "files are not opened here; give the bead.law itself.".to_owned())
+        }
+        other => other,
+    })
+}
+
+/// What is wrong with the library of a profile.
+fn of_library(text: &str, name: String, reason: String) -> ProfileError {
+    let key = "bead.library".to_owned();
+    ProfileError::Value { line: line_of_key(text, &key), key, value: name, reason }
 }
 
 /// The text of a built-in profile to inherit from.
