@@ -100,7 +100,7 @@ fn explained(studio: &Studio, response: Response, check: &str, text: &str) -> Re
 
 /// Findings that follow each other and differ in their numbers only.
 fn grouped<'a, 'b>(findings: &'b [&'a Finding]) -> Vec<&'b [&'a Finding]> {
-    let words = |finding: &Finding| finding.text.replace(|c: char| c.is_ascii_digit() || c == '.', "");
+    let words = |finding: &Finding| finding.text.replace(|c: char| c.is_ascii_digit() || ".-".contains(c), "");
     findings.chunk_by(|a, b| a.layer.is_some() == b.layer.is_some() && words(a) == words(b)).collect()
 }
 
