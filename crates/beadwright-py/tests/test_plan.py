@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import hashlib
+import json
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -193,3 +194,18 @@ def test_pyvista_and_trimesh_get_the_beads(contours: Plan) -> None:
     built = contours.to_trimesh()
     assert isinstance(built, trimesh.Trimesh)
     assert built.bounds[1][2] == pytest.approx(contours.layers[-1].z, abs=1.0)
+
+
+def test_findings_are_those_of_metrics_json(tmp_path: Path) -> None:
+    profile = beadwright.Profile("cmt-al2319-kuka").set({"check.max_void": 0.01})
+    plan = beadwright.plan(Part.example("cross"), profile, strategy="contour")
+    plan.save(tmp_path / "out")
+    written = json.loads((tmp_path / "out" / "metrics.json").read_text())["findings"]
+    ours = plan.findings()
+    assert [(each.kind, each.severity, each.count, each.text) for each in ours] == [
+        (each["kind"], each["severity"], each["count"], each["text"]) for each in written
+    ]
+    assert "void" in [each.kind for each in ours]
+    order = [["serious", "doubt", "note"].index(each.severity) for each in ours]
+    assert order == sorted(order)
+    assert all(str(each) == f"{each.text} {each.remedy}".strip() for each in ours)
