@@ -2,7 +2,7 @@
 //!
 //! Beads that overlap by the rule lie side by side and fill a wide layer. At its rim nothing overlaps them, so that the
 //! beads of a narrow part hold less metal than its slices: a wall of two beads grows 0.84 of a layer with each layer, a
-//! plate of ten 0.97. [`slabs`] looks at slices of the part and places the layers as high as their metal grows. Within a
+//! plate of ten 0.97. [`slabs`] looks at slices of the part and places the layers as high as most of their beads fill. Within a
 //! layer [`share`] then shifts metal from beads that have neighbours to those that have none, by the pace: every piece of a
 //! pass fills the strip of the slice that lies nearest to it.
 
