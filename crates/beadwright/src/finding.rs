@@ -39,7 +39,8 @@ impl Severity {
 /// Something that is wrong, doubtful or worth knowing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What kind of thing: the name of a check or of a warning, or `reach`, `model`, `profile` or `refused`.
+    /// What kind of thing: the name of a check or of a warning, or `reach`, `model` (what was mended), `plan` (a note)
+    /// or `refused`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,

@@ -127,7 +127,7 @@ class Finding:
     """Something that is wrong with a plan, doubtful, or worth knowing."""
 
     kind: str
-    """Name of the check or warning, such as ``void`` or ``in-the-air``, or ``model``, ``profile`` or ``refused``."""
+    """Name of the check or warning, such as ``void`` or ``in-the-air``, or ``model``, ``plan`` or ``refused``."""
     severity: Literal["serious", "doubt", "note"]
     """How much it matters."""
     count: int

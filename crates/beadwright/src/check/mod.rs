@@ -230,7 +230,7 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
 }
 
 /// All that is to be said of a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
-/// warnings, what was mended in the model (sentences), and the notes on its profile. Nothing is said twice.
+/// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice.
 pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
     let new = |kind, severity| move |text: &String| Finding::new(kind, severity, text.clone());
@@ -239,7 +239,7 @@ pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> V
     let mut all: Vec<Finding> = checks.chain(warned).collect();
     let forbidden = summary.forbidden.iter().filter(|text| !said.contains(*text));
     all.extend(forbidden.map(new("refused", Severity::Serious)));
-    all.extend(summary.notes.iter().map(new("profile", Severity::Doubt)));
+    all.extend(summary.notes.iter().map(new("plan", Severity::Doubt)));
     all.extend(model.iter().map(new("model", Severity::Note)));
     let mut known = BTreeSet::new();
     all.retain(|finding| known.insert(finding.text.clone()));

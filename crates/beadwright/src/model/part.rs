@@ -312,10 +312,7 @@ impl Part {
 
     /// What was mended or is not read, as sentences.
     pub fn warnings(&self) -> Vec<String> {
-        match self {
-            Self::Mesh(import) => import.repair.sentences().into_iter().chain(import.notes.iter().cloned()).collect(),
-            Self::Curves { warnings, .. } => warnings.clone(),
-        }
+        self.repair().sentences().into_iter().chain(self.notes().iter().cloned()).collect()
     }
 }
 

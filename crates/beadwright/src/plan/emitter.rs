@@ -4,7 +4,7 @@
 use super::filled::Filled;
 use super::support::Support;
 use super::warm::{self, Heat};
-use super::{Sink, level, relight};
+use super::{Sink, level_layers, relight};
 use crate::fill::{Fill, Path};
 use crate::heat::{LONGEST_WAIT, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
@@ -54,7 +54,7 @@ impl<S: Sink> Emitter<'_, S> {
         let mut layer =
             Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
         if self.profile.is_level() {
-            level::share(&mut layer, self.profile);
+            level_layers::share(&mut layer, self.profile);
         }
         relight::relight(&mut layer, self.profile);
         self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);

@@ -14,6 +14,7 @@
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
 //! | [`expected`](expected()) | about how much a plan will hold |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
+//! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
@@ -27,7 +28,7 @@ pub mod clearance;
 mod emitter;
 mod expected;
 mod filled;
-mod level;
+mod level_layers;
 mod levels;
 mod parts;
 mod preview;
@@ -466,7 +467,7 @@ fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> 
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
-        None if profile.is_level() => level::slabs(mesh, strategy_of(profile)?, profile, task)?,
+        None if profile.is_level() => level_layers::slabs(mesh, strategy_of(profile)?, profile, task)?,
         None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }

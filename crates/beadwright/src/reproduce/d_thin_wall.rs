@@ -293,7 +293,7 @@ impl Frame {
     }
 }
 
-/// Lowest and highest point after so many layers, in multiples of their `mean` (mm), where the metal of a bead stays as it
+/// Lowest and highest point after each of [`JUDGED`] layers, in multiples of their `mean` (mm), where the metal of a bead stays as it
 /// would lie on a plate: what the paper's welders saw at junctions, before metal flows.
 fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64) -> [Heights; 2] {
     let Some(bounds) = check::extent(layers) else { return [Heights { low: 0.0, high: f64::INFINITY }; 2] };

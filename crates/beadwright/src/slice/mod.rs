@@ -127,7 +127,7 @@ pub fn fitted_slabs(mesh: &Mesh, height: f64, fit: LayerFit) -> Vec<Slab> {
 const THICKEST: f64 = 1.25;
 
 /// A last layer thinner than this fraction of a layer is rounding.
-const ROUNDING: f64 = 1e-3;
+pub(crate) const ROUNDING: f64 = 1e-3;
 
 /// Layers of one height (mm) for a mesh that stands on z = 0. A last layer that would be less than half full is left
 /// out: its middle lies above the part.
