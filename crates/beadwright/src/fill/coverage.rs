@@ -9,8 +9,11 @@ use std::ops::Range;
 
 /// Rows in a bead's width.
 const ROWS: f64 = 6.0;
-/// The rows run aslant, radians: beads along them would be counted in whole rows.
-const ASLANT: f64 = 0.3;
+/// The rows run aslant, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
+/// at which they measure the region itself [`WELL`], or at the best.
+const ASLANT: [f64; 4] = [0.3, 1.1, 1.9, 2.7];
+/// Part of a region's area.
+const WELL: f64 = 0.002;
 /// Beads count as wider by this fraction: neighbours that just touch leave nothing.
 const TOUCHING: f64 = 0.01;
 
@@ -25,16 +28,63 @@ pub struct Bare {
 
 /// What passes leave bare of a region; `width` is the nominal bead's, mm.
 pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
-    Coverage::of(paths, region, width).map_or_else(Bare::default, |coverage| coverage.bare(region))
+    Coverage::of(paths, region, width).map_or_else(Bare::default, |coverage| coverage.bare())
 }
 
 /// What passes cover, on rows across a region.
 pub struct Coverage {
+    grid: Grid,
+    /// Where the rows cross the boundary of the region.
+    inside: PerRow<f64>,
+    /// Of each row, by where they begin.
+    covered: PerRow<Span>,
+}
+
+/// Where the rows lie.
+#[derive(Debug, Clone, Copy)]
+struct Grid {
+    /// The angle at which they run, radians.
+    angle: f64,
     /// Height of the first row and distance of the rows, mm.
     first: f64,
     step: f64,
-    /// Of each row, by where they begin.
-    covered: PerRow<Span>,
+    count: usize,
+}
+
+impl Grid {
+    /// Rows across a region at an angle, radians; `None` for an empty region.
+    fn at(angle: f64, region: &Region, width: f64) -> Option<Self> {
+        let turn = DVec2::from_angle(-angle);
+        let points = region.polygons().iter().flat_map(|island| island.outer.points());
+        let bounds = Bounds::of(points.map(|p| turn.rotate(*p)))?;
+        let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
+        let step = bounds.size().y / count as f64;
+        Some(Self { angle, first: bounds.min.y + step / 2.0, step, count })
+    }
+
+    /// Where the rows cross the boundary of a region.
+    fn rows(&self, region: &Region) -> PerRow<f64> {
+        region.turned(DVec2::from_angle(-self.angle)).rows(self.first, self.step, self.count)
+    }
+
+    /// The rows that suit a region, and where they cross its boundary.
+    fn across(region: &Region, width: f64) -> Option<(Self, PerRow<f64>)> {
+        let area = region.area();
+        let mut best: Option<(f64, Self, PerRow<f64>)> = None;
+        for angle in ASLANT {
+            let grid = Self::at(angle, region, width)?;
+            let rows = grid.rows(region);
+            let lengths = rows.iter().flat_map(|row| row.chunks_exact(2)).map(|span| span[1] - span[0]);
+            let error = (lengths.sum::<f64>() * grid.step - area).abs();
+            if best.as_ref().is_none_or(|(least, ..)| error < *least) {
+                best = Some((error, grid, rows));
+            }
+            if error <= WELL * area {
+                break;
+            }
+        }
+        best.map(|(_, grid, rows)| (grid, rows))
+    }
 }
 
 /// From one place on a row to another, mm.
@@ -43,31 +93,38 @@ type Span = (f64, f64);
 impl Coverage {
     /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
     pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
-        let turned = |p: &DVec2| DVec2::from_angle(-ASLANT).rotate(*p);
-        let bounds = Bounds::of(region.polygons().iter().flat_map(|island| island.outer.points()).map(turned))?;
-        let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
-        let step = bounds.size().y / count as f64;
-        let first = bounds.min.y + step / 2.0;
-        let mut rows = Rows::new(first, step, count);
+        let (grid, inside) = Grid::across(region, width)?;
+        let mut rows = Rows::new(grid.first, grid.step, grid.count);
+        let turn = DVec2::from_angle(-grid.angle);
         for path in paths {
-            let line: Vec<DVec2> = path.points.iter().map(turned).collect();
+            let line: Vec<DVec2> = path.points.iter().map(|p| turn.rotate(*p)).collect();
             rows.cover(&line, path.closed, &path.width);
         }
-        Some(Self { first, step, covered: rows.covered() })
+        Some(Self { grid, inside, covered: rows.covered() })
     }
 
-    /// What is left bare of a region that lies within the one whose rows these are.
-    pub fn bare(&self, region: &Region) -> Bare {
+    /// What is left bare of the region.
+    pub fn bare(&self) -> Bare {
+        self.bare_between(&self.inside)
+    }
+
+    /// What is left bare of another region that lies within this one.
+    pub fn bare_of(&self, region: &Region) -> Bare {
+        self.bare_between(&self.grid.rows(region))
+    }
+
+    /// What is left bare between the first and the second place on each row, the third and the fourth, and so on.
+    fn bare_between(&self, inside: &PerRow<f64>) -> Bare {
+        let Grid { angle, first, step, .. } = self.grid;
         let (mut found, mut widest) = (Bare::default(), 0.0);
-        let inside = region.turned(DVec2::from_angle(-ASLANT)).rows(self.first, self.step, self.covered.count());
         for (k, (inside, covered)) in inside.iter().zip(self.covered.iter()).enumerate() {
             for span in inside.chunks_exact(2) {
                 for gap in gaps(span[0]..span[1], covered) {
                     let length = gap.end - gap.start;
-                    found.area += length * self.step;
+                    found.area += length * step;
                     if length > widest {
-                        let middle = DVec2::new(gap.start + length / 2.0, self.first + k as f64 * self.step);
-                        (widest, found.place) = (length, DVec2::from_angle(ASLANT).rotate(middle));
+                        let middle = DVec2::new(gap.start + length / 2.0, first + k as f64 * step);
+                        (widest, found.place) = (length, DVec2::from_angle(angle).rotate(middle));
                     }
                 }
             }
@@ -460,9 +517,23 @@ mod tests {
         let r = 2.0 * 1.01;
         let exact = 400.0 - 14.0 * 2.0 * r - std::f64::consts::PI * r * r;
         assert!((found.area / exact - 1.0).abs() < 2e-3, "{} for {exact}", found.area);
-        let nothing = bare(&[], &square(20.0).turned(DVec2::from_angle(ASLANT)), 4.0);
-        let middle = DVec2::from_angle(-ASLANT).rotate(nothing.place).x;
+        let nothing = bare(&[], &square(20.0).turned(DVec2::from_angle(ASLANT[0])), 4.0);
+        let middle = DVec2::from_angle(-ASLANT[0]).rotate(nothing.place).x;
         assert!((nothing.area - 400.0).abs() < 1e-6 && (middle - 10.0).abs() < 1e-6, "{nothing:?}");
+    }
+
+    /// A strip along the first rows would be measured in whole rows.
+    #[test]
+    fn thin_strips_along_rows_are_measured_across() {
+        for (turn, thickness) in [(0.3, 1.2), (0.3, 0.9), (0.31, 1.7), (1.1, 1.3), (-0.4, 1.1)] {
+            let way = DVec2::from_angle(turn);
+            let strip = [(0.0, 0.0), (60.0, 0.0), (60.0, thickness), (0.0, thickness)].map(|p| way.rotate(p.into()));
+            let comb = [(0.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (0.0, 20.0)].map(|p| way.rotate(p.into()));
+            let parts = [strip, comb].map(|points| Polygon { outer: Ring::new(points.to_vec()), holes: Vec::new() });
+            let found = bare(&[], &Region::from_normalised(parts.to_vec()), 7.0).area;
+            let exact = 400.0 + 60.0 * thickness;
+            assert!((found / exact - 1.0).abs() < 6e-3, "{found} for {exact} at {turn}");
+        }
     }
 
     #[test]
