@@ -416,10 +416,10 @@ impl Sink for Files<'_> {
 pub(crate) fn deposit_settings(
     grid: Option<f64>,
     profile: &Profile,
-    (low, high): (DVec3, DVec3),
+    part: (DVec3, DVec3),
 ) -> anyhow::Result<DepositSettings> {
-    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
-    program::fitted(grid, plan::deposit_settings(profile), &bounds, (high.z / profile.layers.height) as usize)
+    let (bounds, layers) = plan::grid_over(profile, part);
+    program::fitted(grid, plan::deposit_settings(profile), &bounds, layers)
 }
 
 /// Name and size, and where each of several parts stands.

@@ -7,7 +7,7 @@ use beadwright::compare::Totals;
 use beadwright::deposit::{self, DepositSettings};
 use beadwright::dialect::reading::{self, ArcCodes, Fault, Metal};
 use beadwright::export::toolpath;
-use beadwright::layer::{self, Layer};
+use beadwright::layer::{self, Extent, Layer};
 use beadwright::metrics::Metrics;
 use beadwright::model::Import;
 use beadwright::plan;
@@ -55,6 +55,8 @@ pub(crate) struct Loaded {
     pub(crate) layers: Vec<Layer>,
     pub(crate) totals: Totals,
     pub(crate) settings: DepositSettings,
+    /// What the grid is fitted to: the box around all layers, and their number; of a plan, as when it was made.
+    pub(crate) over: Option<(Bounds, usize)>,
     pub(crate) notes: Vec<String>,
     /// Dangerous lines of a program.
     pub(crate) faults: Vec<Fault>,
@@ -63,8 +65,8 @@ pub(crate) struct Loaded {
 impl Loaded {
     /// How the layers are judged: with the grid asked for, or one that fits them.
     pub(crate) fn deposit_settings(&self, grid: Option<f64>) -> anyhow::Result<DepositSettings> {
-        match layer::bounds(&self.layers) {
-            Some(bounds) => fitted(grid, self.settings, &bounds, self.layers.len()),
+        match &self.over {
+            Some((bounds, layers)) => fitted(grid, self.settings, bounds, *layers),
             None => Ok(self.settings),
         }
     }
@@ -211,7 +213,8 @@ impl Source {
             totals.total_time_s = program.seconds(motion);
         }
         let faults = program.faults;
-        Ok(Loaded { name, language, layers, totals, settings, notes, faults })
+        let over = layer::bounds(&layers).map(|bounds| (bounds, layers.len()));
+        Ok(Loaded { name, language, layers, totals, settings, over, notes, faults })
     }
 }
 
@@ -241,7 +244,9 @@ fn layers_of(name: String, plan: PlanFile, profile: &Profile) -> Loaded {
     let mut metrics = Metrics::new(profile);
     plan.layers.iter().for_each(|layer| metrics.add(layer));
     let (totals, notes) = (Totals::of_plan(&metrics), Vec::new());
-    Loaded { name, language: "plan", layers: plan.layers, totals, settings, notes, faults: Vec::new() }
+    let Extent { low, high, .. } = plan.header.extent;
+    let over = Some(plan::grid_over(profile, (low, high)));
+    Loaded { name, language: "plan", layers: plan.layers, totals, settings, over, notes, faults: Vec::new() }
 }
 
 /// The main file of a program, whose modules lie beside it.

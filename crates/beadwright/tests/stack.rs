@@ -183,7 +183,7 @@ fn planned(name: &str, degrees: f64, level: bool) -> (Plan, Profile) {
 }
 
 fn built(plan: &Plan, profile: &Profile) -> Growth {
-    let settings = plan::deposit_settings_of(profile, &plan.layers);
+    let settings = plan::deposit_settings_over(profile, (plan.header.extent.low, plan.header.extent.high));
     check::grown(&plan.layers, profile, settings, &Task::new()).unwrap().built.unwrap()
 }
 
@@ -208,7 +208,7 @@ fn a_part_with_few_beads_side_by_side_is_said_to_end_low() {
     let (plan, profile) = planned("vase", 0.0, false);
     let ended = built(&plan, &profile);
     assert!(ended.mean < -10.0 && ended.within < 0.5, "{ended:?}");
-    let settings = plan::deposit_settings_of(&profile, &plan.layers);
+    let settings = plan::deposit_settings_over(&profile, (plan.header.extent.low, plan.header.extent.high));
     let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
     let found = findings.iter().find(|finding| finding.kind == "built-height").unwrap();
     assert!(found.text.contains("below it"), "{}", found.text);

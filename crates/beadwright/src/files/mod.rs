@@ -30,6 +30,7 @@ use crate::profile::Profile;
 use crate::program::Programmer;
 use crate::report::Report;
 use crate::task::{Cancelled, Task};
+use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Name of the plan's file.
@@ -171,6 +172,8 @@ pub struct PlanFiles {
     programs: Programs,
     report: Report,
     profile: Profile,
+    /// The lowest and the highest place of the part, mm.
+    part: (DVec3, DVec3),
     /// The layers so far, of a plan that is not too large to be checked, and their figures.
     layers: Vec<Layer>,
     figures: Vec<Figures>,
@@ -203,10 +206,12 @@ impl PlanFiles {
         let report = Report::new(header, profile);
         let totals = Metrics::new(profile);
         let (profile, layers, names) = (profile.clone(), Vec::new(), BTreeSet::new());
+        let Extent { low, high, .. } = header.extent;
         let mut files = Self {
             programs,
             report,
             profile,
+            part: (low, high),
             layers,
             figures: Vec::new(),
             points: 0,
@@ -273,7 +278,7 @@ impl PlanFiles {
             let (layers, figures) = (std::mem::take(&mut self.layers), std::mem::take(&mut self.figures));
             let mut findings = Vec::new();
             if !layers.is_empty() {
-                let settings = plan::deposit_settings_of(&self.profile, &layers);
+                let settings = plan::deposit_settings_over(&self.profile, self.part);
                 let grown = check::grown(&layers, &self.profile, settings, task)?;
                 self.built = grown.built;
                 let judged = LayerFigures { figures, grown, ..LayerFigures::default() };

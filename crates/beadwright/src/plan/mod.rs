@@ -45,7 +45,7 @@ pub use scan_lines::{ToFill, raster_angle};
 use crate::bead::wall::WallError;
 use crate::deposit::{DepositSettings, Figures, Nominal};
 use crate::fill::{self, Strategy};
-use crate::layer::{self, Extent, Layer};
+use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::holes::{self, Opening};
 use crate::model::wall_curves::WallCurves;
@@ -86,16 +86,15 @@ pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     DepositSettings::new(nominal, profile.fill.machining_allowance)
 }
 
-/// Like [`deposit_settings`], with a grid fitted to a part of the given extent, mm.
-pub fn deposit_settings_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> DepositSettings {
-    let bounds = Bounds { min: low.truncate(), max: high.truncate() };
-    deposit_settings(profile).fitted_to(&bounds, (high.z / profile.layers.height) as usize)
+/// Like [`deposit_settings`], with a grid fitted to a part: its lowest and its highest place, mm.
+pub fn deposit_settings_over(profile: &Profile, part: (DVec3, DVec3)) -> DepositSettings {
+    let (bounds, layers) = grid_over(profile, part);
+    deposit_settings(profile).fitted_to(&bounds, layers)
 }
 
-/// The same, with a grid fitted to the layers of a plan.
-pub fn deposit_settings_of(profile: &Profile, layers: &[Layer]) -> DepositSettings {
-    let settings = deposit_settings(profile);
-    layer::bounds(layers).map_or(settings, |bounds| settings.fitted_to(&bounds, layers.len()))
+/// What the grid for a part is fitted to: the box around it seen from above, and about how many layers it takes.
+pub fn grid_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> (Bounds, usize) {
+    (Bounds { min: low.truncate(), max: high.truncate() }, (high.z / profile.layers.height) as usize)
 }
 
 /// What is the same for all layers of a plan.
