@@ -72,7 +72,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Temperatures of a plan as it stands.
 fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>> {
-    let settings = HeatSettings { interpass: None, ..profile.heat_settings()? };
+    let over = Some(plan.header.extent.seen_from_above());
+    let settings = HeatSettings { interpass: None, over, ..profile.heat_settings()? };
     let (task, bar) = progress::task()?;
     let history = heat::history(&mut plan.layers.clone(), &settings, &profile.weld_settings(), &task)?;
     bar.finish_and_clear();

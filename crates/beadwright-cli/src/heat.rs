@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
-    let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true };
+    let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true, along: false };
     // Without --limit, the plan has the waits of its own limit.
     let limit = |max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) };
     let interpass = arguments.limit.map(limit);
@@ -48,7 +48,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let (limit, ambient) = (limits.max_temperature, heat.ambient);
         anyhow::ensure!(limit >= ambient + 10.0, "--limit {limit}: the surroundings have {ambient} °C (heat.ambient)");
     }
-    let settings = heat::HeatSettings { interpass, ..profile.heat_settings()? };
+    let over = loaded.over.as_ref().map(|(bounds, _)| *bounds);
+    let settings = heat::HeatSettings { interpass, over, ..profile.heat_settings()? };
     let mut layers = loaded.layers;
     if interpass.is_some() {
         layers.iter_mut().flat_map(|layer| &mut layer.passes).for_each(|pass| pass.wait = 0.0);

@@ -28,7 +28,7 @@ pub(crate) fn heat<'py>(
 ) -> PyResult<Heat> {
     let planned = &plan.0;
     let (name, profile) = (&planned.header.part, &planned.profile);
-    let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true };
+    let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true, along: false };
     // Without a limit, the plan has the waits of its own one.
     let interpass = limit.map(|max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) });
     let least = profile.heat.as_ref().map_or(30.0, |heat| heat.ambient + 10.0);
@@ -36,7 +36,8 @@ pub(crate) fn heat<'py>(
         let message = format!("limit = {limit} is impossible here: {least:.0} to 1500 °C are.");
         return Err(raise(&message, Some("limit"), None));
     }
-    let settings = HeatSettings { interpass, ..profile.heat_settings().refuse(Some(name))? };
+    let over = Some(planned.header.extent.seen_from_above());
+    let settings = HeatSettings { interpass, over, ..profile.heat_settings().refuse(Some(name))? };
     let mut layers = planned.layers.to_vec();
     if interpass.is_some() {
         layers.iter_mut().flat_map(|layer| &mut layer.passes).for_each(|pass| pass.wait = 0.0);

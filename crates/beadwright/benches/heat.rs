@@ -88,7 +88,8 @@ fn islands(profile: &Profile) {
             let settings = HeatSettings { interpass, ..profile.heat_settings().unwrap() };
             heat::history(layers, &settings, &profile.weld_settings(), &Task::new()).unwrap().unwrap().seconds / 60.0
         };
-        let limit = |reorder: bool| Some(Interpass { max_temperature: 150.0, min_temperature: None, reorder });
+        let limit =
+            |reorder: bool| Some(Interpass { max_temperature: 150.0, min_temperature: None, reorder, along: false });
         let bare = run(&mut planned.clone(), None);
         let as_planned = run(&mut planned.clone(), limit(false));
         let ours = run(&mut planned.clone(), limit(true));

@@ -51,6 +51,11 @@ pub struct Extent {
 }
 
 impl Extent {
+    /// The box around the part, seen from above.
+    pub fn seen_from_above(&self) -> Bounds {
+        Bounds { min: self.low.truncate(), max: self.high.truncate() }
+    }
+
     /// That of passes alone, without what their beads take beside and below them.
     pub fn of<L: Borrow<Layer>>(layers: &[L]) -> Self {
         let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);

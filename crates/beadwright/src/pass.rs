@@ -180,6 +180,26 @@ impl Pass {
         self.segments().map(|s| s.length()).sum()
     }
 
+    /// The part of the pass from one distance along it to another, mm; a closed one goes around again.
+    pub fn stretch(&self, from: f64, to: f64) -> Self {
+        let mut along = 0.0;
+        let again = if self.closed { 2 } else { 1 };
+        let mut kept: Vec<Segment> = Vec::new();
+        for segment in (0..again).flat_map(|_| self.segments()) {
+            let length = segment.length();
+            let part = |distance: f64| segment.from.lerp(segment.to, ((distance - along) / length).clamp(0.0, 1.0));
+            if length > 0.0 && along + length > from && along < to {
+                kept.push(Segment { from: part(from), to: part(to), ..segment });
+            }
+            along += length;
+        }
+        let points: Vec<DVec3> = kept.first().map(|s| s.from).into_iter().chain(kept.iter().map(|s| s.to)).collect();
+        // A value applies from its point to the next.
+        let values = |value: fn(&Segment) -> f64| Along::Each(kept.iter().chain(kept.last()).map(value).collect());
+        let (width, pace) = (values(|s| s.width), values(|s| s.pace));
+        Self { kind: self.kind, closed: false, points, width, pace, wait: self.wait }
+    }
+
     /// Turns sharper than 30° from one piece to the next.
     pub fn turns(&self) -> usize {
         const COS_30: f64 = 0.866_025;

@@ -57,6 +57,8 @@ pub enum WarningKind {
     NeverCools,
     /// A pass that begins within interpass.max_temperature meets hotter metal on its way; the size is its temperature, °C.
     HotAhead,
+    /// A pass was cut where the metal ahead of the torch would be too hot (interpass.along); the size is 1 for each cut.
+    Paused,
     /// Metal is colder than interpass.min_temperature where a pass begins; the size is its temperature, °C.
     TooCold,
     /// A layer between the lowest and the highest holds nothing.
@@ -76,7 +78,7 @@ impl WarningKind {
     pub fn severity(self) -> Severity {
         match self {
             kind if kind.forbids() => Severity::Serious,
-            Self::GapClosed | Self::Sliver | Self::Refilled | Self::EmptyLayer => Severity::Note,
+            Self::GapClosed | Self::Sliver | Self::Paused | Self::Refilled | Self::EmptyLayer => Severity::Note,
             _ => Severity::Doubt,
         }
     }
@@ -254,6 +256,11 @@ impl WarningSummary {
                 "{layers}: {} hotter metal ahead of the torch than interpass.max_temperature allows where it begins, at most \
                  {size:.0} °C {place}. Waits cool the places where passes begin.",
                 times("pass meets", "passes meet")
+            ),
+            WarningKind::Paused => format!(
+                "{layers}: {} where the metal ahead would be hotter than interpass.max_temperature: the torch waits there, and \
+                 the arc is lit again on the end of the bead, first {place}.",
+                times("pass is cut", "passes are cut")
             ),
             WarningKind::TooCold => format!(
                 "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}.",

@@ -127,7 +127,7 @@ fn finer_voxels_say_the_same() {
         };
         let [coarse, own, fine, finest] = [at(8.0), at(4.5), at(3.0), at(2.0)];
         println!("wait {wait} s: {coarse:.0?}, {own:.0?}, {fine:.0?}, {finest:.0?} K with voxels of 8, 4.5, 3, 2 mm");
-        assert!(apart(own[0], finest[0]) < 0.08 && apart(own[1], finest[1]) < 0.12, "{own:?} {finest:?}");
+        assert!(apart(own[0], finest[0]) < 0.08 && apart(own[1], finest[1]) < 0.13, "{own:?} {finest:?}");
     }
 }
 
@@ -135,8 +135,12 @@ fn finer_voxels_say_the_same() {
 fn waits_end_when_the_metal_is_cool_enough() {
     for limit in [120.0, 200.0] {
         let mut profile = profile();
-        profile.interpass =
-            Some(beadwright::heat::Interpass { max_temperature: limit, min_temperature: None, reorder: false });
+        profile.interpass = Some(beadwright::heat::Interpass {
+            max_temperature: limit,
+            min_temperature: None,
+            reorder: false,
+            along: false,
+        });
         let mut layers = wall(&profile, 80.0, 20.0, 16, 0.0);
         let settings = profile.heat_settings().unwrap();
         let mut build = begin(&profile, &settings, &layers);
@@ -152,6 +156,66 @@ fn waits_end_when_the_metal_is_cool_enough() {
             let heats = run(&profile, &sooner).1;
             assert!(heats[index].passes[0].start > limit - 1.0, "layer {index} waits too long");
         }
+    }
+}
+
+/// A spiral of touching rings meets the metal that it has just laid: with `along` it waits on its way, and lays the same beads.
+#[test]
+fn the_limit_holds_all_along_a_pass_on_request() {
+    let (w, limit) = (profile().bead.width, 150.0);
+    let spiral =
+        |k: usize| DVec2::from_angle(0.1 * k as f64) * (12.0 + 0.7 * w * 0.1 * k as f64 / std::f64::consts::TAU);
+    for reorder in [false, true] {
+        let mut profile = profile();
+        let along = true;
+        profile.interpass =
+            Some(beadwright::heat::Interpass { max_temperature: limit, min_temperature: None, reorder, along });
+        let mut layers = wall(&profile, 60.0, 0.0, 4, 0.0);
+        for layer in &mut layers {
+            let z = layer.z;
+            let points: Vec<_> = (0..320).map(|k| (spiral(k) + dvec2(30.0, 0.0)).extend(z)).collect();
+            layer.passes = vec![Pass { points, closed: false, ..layer.passes[0].clone() }];
+        }
+        let whole = layers.clone();
+        let settings = profile.heat_settings().unwrap();
+        let mut build = begin(&profile, &settings, &layers);
+        let heats: Vec<LayerHeat> = layers.iter_mut().map(|layer| build.layer_within_limits(layer)).collect();
+        let spacing = build.spacing();
+        for ((layer, before), heat) in layers.iter().zip(&whole).zip(&heats) {
+            let (cuts, length) = (heat.cuts.len(), |l: &Layer| l.passes.iter().map(Pass::length).sum::<f64>());
+            assert_eq!(layer.passes.len(), cuts + 1);
+            assert!(cuts > 0 && cuts < 20, "{cuts}");
+            // Each begins one bead width back on the one before.
+            assert!((length(layer) - length(before) - cuts as f64 * w).abs() < 1e-6);
+            for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
+                assert!(heat.start <= limit + 1.0 && pass.length() >= 4.0 * w - 1e-6, "{heat:?}");
+                for (k, ahead) in heat
+                    .along
+                    .iter()
+                    .enumerate()
+                    .filter(|(k, _)| pass.length() >= 8.0 * w && *k as f64 * spacing > 4.0 * w + spacing)
+                {
+                    assert!(*ahead <= limit + 2.0, "{ahead} °C at {k}");
+                }
+            }
+        }
+        // Told the same passes and waits, the model finds the same temperatures.
+        for (again, heat) in run(&profile, &layers).1.iter().zip(&heats) {
+            for (again, heat) in again.passes.iter().zip(&heat.passes) {
+                assert!((again.peak().1 - heat.peak().1).abs() < 3.0, "{} {}", again.peak().1, heat.peak().1);
+            }
+        }
+        // Without it the same spiral meets hotter metal.
+        profile.interpass.as_mut().unwrap().along = false;
+        let mut plain = whole.clone();
+        let mut build = begin(&profile, &profile.heat_settings().unwrap(), &plain);
+        let heats: Vec<LayerHeat> = plain.iter_mut().map(|layer| build.layer_within_limits(layer)).collect();
+        let peak = heats.iter().flat_map(|h| &h.passes).map(|p| p.peak().1).fold(0.0, f64::max);
+        println!(
+            "a spiral at {limit} °C meets {peak:.0} °C, and waits {} times with along",
+            layers.iter().map(|l| l.passes.len() - 1).sum::<usize>()
+        );
+        assert!(peak > limit + 20.0 && plain.iter().all(|l| l.passes.len() == 1), "{peak}");
     }
 }
 
@@ -179,7 +243,7 @@ fn cooler_starts_and_other_islands_save_waiting() {
     }
     let mut time = |reorder: bool| {
         profile.interpass =
-            Some(beadwright::heat::Interpass { max_temperature: 150.0, min_temperature: None, reorder });
+            Some(beadwright::heat::Interpass { max_temperature: 150.0, min_temperature: None, reorder, along: false });
         let mut own = layers.clone();
         let mut build = begin(&profile, &profile.heat_settings().unwrap(), &own);
         own.iter_mut().for_each(|layer| drop(build.layer_within_limits(layer)));
@@ -193,4 +257,27 @@ fn cooler_starts_and_other_islands_save_waiting() {
     let (planned, ours) = (time(false), time(true));
     println!("three walls: {planned:.0} s in the planned order, {ours:.0} s reordered");
     assert!(ours < 0.95 * planned, "{ours} s for {planned} s");
+}
+
+/// A plan whose passes wait is as warm when it is looked at afterwards as when it was made.
+#[test]
+fn a_plan_is_as_warm_afterwards() {
+    let mut profile = beadwright::Profile::built_in("cmt-al2319-kuka").unwrap();
+    let limits =
+        beadwright::heat::Interpass { max_temperature: 150.0, min_temperature: None, reorder: true, along: true };
+    profile.interpass = Some(limits);
+    let part = beadwright::Model::read(&example::find("propeller").unwrap().stl(), &Task::new()).unwrap();
+    let part = part.place(&beadwright::Placement::default(), None, profile.bead.width).unwrap();
+    let mut plan = beadwright::plan("propeller", &part, &profile, &Task::new()).unwrap();
+    let over = Some(plan.header.extent.seen_from_above());
+    let settings = HeatSettings { interpass: None, over, ..profile.heat_settings().unwrap() };
+    let history = beadwright::heat::history(&mut plan.layers, &settings, &profile.weld_settings(), &Task::new());
+    let history = history.unwrap().unwrap();
+    let passes =
+        plan.layers.iter().zip(&history.layers).flat_map(|(layer, heat)| layer.temperatures.iter().zip(&heat.passes));
+    let worst =
+        passes.clone().map(|(a, b)| (a.start - b.start).abs().max((a.mean - b.mean()).abs())).fold(0.0, f64::max);
+    let ahead = history.hottest_ahead().unwrap().2;
+    println!("{} passes, at most {worst:.1} K apart, {ahead:.0} °C ahead", passes.count());
+    assert!(worst < 8.0 && ahead < 155.0, "{worst} {ahead}");
 }

@@ -71,7 +71,6 @@ pub struct Body {
     pub(super) levels: usize,
     supplied: f64,
     lost: f64,
-    pub(super) reverse: bool,
     /// Time that has passed, s, and what has not seen all of it.
     pub(super) clock: f64,
     pub(super) lags: Lags,
@@ -103,7 +102,6 @@ impl Body {
             levels: 0,
             supplied: 0.0,
             lost: 0.0,
-            reverse: false,
             clock: 0.0,
             lags: Lags::new(&grid),
             exposed: [0; 3].map(|none| vec![none; grid.counts()[2]]),

@@ -33,6 +33,9 @@ const PATIENCE: f64 = 2.0;
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
 
+/// Lengths are equal to this, mm.
+const ROUNDING: f64 = 1e-6;
+
 /// No part is divided into more voxels: they take about 100 bytes each.
 pub const MOST_VOXELS: usize = 8_000_000;
 
@@ -83,7 +86,13 @@ pub struct LayerHeat {
     pub below: f64,
     /// When its last arc goes out, s from the beginning of the build.
     pub end: f64,
+    /// Where passes were cut, since the metal ahead was too hot, mm.
+    #[serde(skip)]
+    pub cuts: Vec<DVec2>,
 }
+
+/// A limit of temperature is kept to this, K.
+pub const NOISE: f64 = 1.0;
 
 impl LayerHeat {
     /// The hottest start of its passes, °C.
@@ -204,7 +213,7 @@ impl Build {
         // The layer before may lie in the same level of voxels; an empty one left nothing.
         let under = layer.index.checked_sub(1).map_or(self.level(0).saturating_sub(1), |before| self.level(before));
         let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
-        LayerHeat { passes: Vec::new(), below: self.body.level_temperature(below), end: self.now }
+        LayerHeat { passes: Vec::new(), below: self.body.level_temperature(below), end: self.now, cuts: Vec::new() }
     }
 
     /// Ends a layer: now its sides are known.
@@ -307,7 +316,8 @@ impl Build {
         let pieces = || moves.windows(2).map(|w| (w[0].0.truncate(), w[1].0.truncate(), w[1].1));
         let steady: f64 = pieces().map(|(a, b, pace)| a.distance(b) / self.process.speed_at(pace)).sum();
         let (slower, spacing) = (moving / steady.max(1e-9), self.spacing());
-        let mut left: f64 = pieces().map(|(a, b, _)| a.distance(b)).sum();
+        let total: f64 = pieces().map(|(a, b, _)| a.distance(b)).sum();
+        let mut left = total;
         let width = pass.segments().map(|s| s.length() * s.width).sum::<f64>() / pass.length().max(1e-9);
         let (mut chunk, mut along) = (Chunk::default(), Vec::new());
         // The arc burns before the torch leaves.
@@ -335,10 +345,10 @@ impl Build {
             }
         }
         if let Some((end, _)) = moves.last() {
-            let whole = chunk.length >= spacing;
-            let ahead = self.finish(layer, &mut chunk, end.truncate());
-            along.extend(whole.then_some(ahead));
+            self.finish(layer, &mut chunk, end.truncate());
         }
+        // At its end nothing is ahead.
+        along.truncate(((total - ROUNDING) / spacing).max(0.0) as usize);
         along
     }
 

@@ -56,8 +56,8 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
     points.clone().next()?;
-    // The extent of the part, as planning has it; programs without outlines have that of their passes.
-    let bounds = Bounds::of(outlines).or_else(|| Bounds::of(points))?;
+    // Programs without outlines have the extent of their passes.
+    let bounds = settings.over.or_else(|| Bounds::of(outlines)).or_else(|| Bounds::of(points))?;
     let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
     Some(Build::new(settings, weld, &bounds, &tops))
 }

@@ -1,6 +1,6 @@
 //! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and at which end to begin.
 
-use super::build::{Build, LONGEST_WAIT, LayerHeat};
+use super::build::{Build, LONGEST_WAIT, LayerHeat, NOISE};
 use super::settings::Interpass;
 use crate::layer::Layer;
 use crate::pass::Pass;
@@ -16,6 +16,9 @@ const GOES_ON_MM: f64 = 0.5;
 /// The first wait that is tried, s, and by how much the next ones are longer while the metal is too hot after them.
 const FIRST_WAIT: f64 = 16.0;
 const FURTHER: f64 = 1.5;
+
+/// What a pass is cut into is at least this long, in bead widths.
+const SHORTEST: f64 = 4.0;
 
 /// A start must be cooler than the planned one by this to be taken instead, K.
 const WORTH_MOVING: f64 = 2.0;
@@ -34,6 +37,10 @@ impl Build {
             let Some(mut pass) = queues[current].pop_front() else { break };
             let Some(start) = pass.start() else { continue };
             pass.wait += self.wait_for(layer.index, start, limits.max_temperature);
+            if let Some(rest) = self.cut_where_hot(layer.index, &mut pass, &limits) {
+                heat.cuts.extend(pass.end().map(|end| end.truncate()));
+                queues[current].push_front(rest);
+            }
             end = pass.end();
             heat.passes.extend(self.pass(layer.index, &pass));
             layer.passes.push(pass);
@@ -74,6 +81,28 @@ impl Build {
             _ => {}
         }
         queue
+    }
+
+    /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if that holds all along passes; returns
+    /// the rest, which begins on the end of the bead. Both are long enough to be welded.
+    fn cut_where_hot(&self, layer: usize, pass: &mut Pass, limits: &Interpass) -> Option<Pass> {
+        if !limits.along {
+            return None;
+        }
+        let (width, length) = (self.settings.bead_width, pass.length());
+        let shortest = SHORTEST * width;
+        let heat = self.clone().pass(layer, pass)?;
+        let places = heat.along.iter().enumerate().map(|(k, ahead)| (k as f64 * self.spacing(), ahead));
+        let hot = |&(at, ahead): &(f64, &f64)| at >= shortest && *ahead > limits.max_temperature + NOISE;
+        let (there, _) = places.into_iter().find(hot)?;
+        let at = (there - self.spacing()).max(shortest).min(length - shortest);
+        if at < shortest {
+            return None;
+        }
+        let beyond = if pass.closed { width } else { 0.0 };
+        let rest = Pass { wait: 0.0, ..pass.stretch(at - width, length + beyond) };
+        *pass = pass.stretch(0.0, at);
+        Some(rest)
     }
 
     /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch

@@ -25,7 +25,7 @@ mod sweep;
 mod walls;
 
 pub use body::{Air, Body, Stuff};
-pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, PassHeat};
+pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, NOISE, PassHeat};
 pub use grid::Grid;
 pub use history::{History, history, plate};
 pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};

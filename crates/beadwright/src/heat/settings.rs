@@ -2,6 +2,7 @@
 
 use crate::limit::{Limit, limits};
 use crate::process::Process;
+use planar::Bounds;
 use serde::{Deserialize, Serialize};
 
 /// Thermal values of the part, taken as constant. Means between room and interpass temperature serve best, since that is
@@ -68,6 +69,10 @@ pub struct Interpass {
     /// true.
     #[serde(default = "yes")]
     pub reorder: bool,
+    /// Whether the limit holds all along a pass: where the metal ahead of the torch would be hotter, the pass ends, the torch
+    /// waits, and another arc start goes on; default false, and such passes are only reported.
+    #[serde(default)]
+    pub along: bool,
 }
 
 fn yes() -> bool {
@@ -135,6 +140,9 @@ pub struct HeatSettings {
     pub bead_area: f64,
     /// Width of the nominal bead, mm.
     pub bead_width: f64,
+    /// The box around the part seen from above, where voxels begin; `None` for that of the slices, which may lie a little
+    /// otherwise.
+    pub over: Option<Bounds>,
 }
 
 /// What a profile lacks for the heat model.

@@ -6,7 +6,7 @@ use super::support::Support;
 use super::warm::{self, Heat};
 use super::{Sink, level_layers, relight};
 use crate::fill::{Fill, Path};
-use crate::heat::{LONGEST_WAIT, PassHeat};
+use crate::heat::{LONGEST_WAIT, NOISE, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
 use crate::metrics::Metrics;
 use crate::order;
@@ -70,6 +70,12 @@ impl<S: Sink> Emitter<'_, S> {
     fn warm(&mut self, layer: &mut Layer) {
         let Some(build) = &mut self.heat.build else { return };
         let heat = build.layer_within_limits(layer);
+        layer.warnings.extend(heat.cuts.iter().map(|&place| Warning {
+            kind: WarningKind::Paused,
+            layer: layer.index,
+            place,
+            size: 1.0,
+        }));
         // The next layer is ordered from where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
         let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
@@ -158,9 +164,6 @@ fn place_on(pass: &Pass, way: f64) -> DVec2 {
     let line: Vec<DVec2> = pass.start().map(|start| start.truncate()).into_iter().chain(ends).collect();
     planar::polyline::point_at(&line, way).or(line.first().copied()).unwrap_or_default()
 }
-
-/// A limit of temperature is kept to this, °C.
-const NOISE: f64 = 1.0;
 
 /// A gap below a layer counts from this part of its thickness on.
 const LARGE_GAP: f64 = 0.25;

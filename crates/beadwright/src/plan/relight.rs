@@ -2,10 +2,9 @@
 //! filled, and the next program lights it again on the end of the bead.
 
 use crate::layer::Layer;
-use crate::pass::{Along, Pass, Segment};
+use crate::pass::Pass;
 use crate::profile::Profile;
 use crate::warning::{Warning, WarningKind};
-use glam::DVec3;
 
 /// Passes shorter than this are never cut, moves: their number is not even counted.
 const LEAST: usize = 10;
@@ -51,25 +50,5 @@ fn equal_pieces(pass: &Pass, count: usize, overlap: f64) -> Vec<Pass> {
     let at = |k: usize| length * k as f64 / count as f64;
     let begin = |k: usize| if k == 0 { 0.0 } else { (at(k) - overlap).max(0.0) };
     let end = |k: usize| if k == count { length + around } else { at(k) };
-    (0..count).map(|k| stretch(pass, begin(k), end(k + 1))).collect()
-}
-
-/// The part of a pass from one distance along it to another, mm; a closed one goes around again.
-fn stretch(pass: &Pass, from: f64, to: f64) -> Pass {
-    let mut along = 0.0;
-    let again = if pass.closed { 2 } else { 1 };
-    let mut kept: Vec<Segment> = Vec::new();
-    for segment in (0..again).flat_map(|_| pass.segments()) {
-        let length = segment.length();
-        let part = |distance: f64| segment.from.lerp(segment.to, ((distance - along) / length).clamp(0.0, 1.0));
-        if length > 0.0 && along + length > from && along < to {
-            kept.push(Segment { from: part(from), to: part(to), ..segment });
-        }
-        along += length;
-    }
-    let points: Vec<DVec3> = kept.first().map(|s| s.from).into_iter().chain(kept.iter().map(|s| s.to)).collect();
-    // A value applies from its point to the next.
-    let values = |value: fn(&Segment) -> f64| Along::Each(kept.iter().chain(kept.last()).map(value).collect());
-    let (width, pace) = (values(|s| s.width), values(|s| s.pace));
-    Pass { kind: pass.kind, closed: false, points, width, pace, wait: pass.wait }
+    (0..count).map(|k| pass.stretch(begin(k), end(k + 1))).collect()
 }

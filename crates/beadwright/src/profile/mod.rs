@@ -393,6 +393,7 @@ impl Profile {
             interpass: self.interpass,
             bead_area: self.bead().area(),
             bead_width: self.bead.width,
+            over: None,
         })
     }
 

@@ -199,6 +199,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
         WarningKind::NeverCools => format!("does not cool, {size:.0} °C"),
         WarningKind::HotAhead => format!("{size:.0} °C ahead of the torch"),
+        WarningKind::Paused => "pass cut, the torch waits".to_owned(),
         WarningKind::TooCold => format!("too cold, {size:.0} °C"),
         WarningKind::EmptyLayer => "nothing to deposit".to_owned(),
     }

@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -36,6 +36,7 @@ impl WarningKind {
         Self::PassTooShort,
         Self::NeverCools,
         Self::HotAhead,
+        Self::Paused,
         Self::TooCold,
         Self::EmptyLayer,
     ];
@@ -142,7 +143,13 @@ impl WarningKind {
             Self::HotAhead => (
                 "hot-ahead",
                 "a long pass comes back to metal that it has heated itself, and no wait within a pass lets that cool",
-                "wait longer before passes (a lower interpass.max_temperature), or take a strategy with shorter passes",
+                "let the torch wait on its way (interpass.along = true), wait longer before passes (a lower \
+                 interpass.max_temperature), or take a strategy with shorter passes",
+            ),
+            Self::Paused => (
+                "paused",
+                "interpass.along keeps the limit all along passes, so a pass ends before metal that is too hot",
+                "a higher interpass.max_temperature or a thicker plate needs fewer cuts",
             ),
             Self::TooCold => (
                 "too-cold",
