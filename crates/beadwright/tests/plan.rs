@@ -325,6 +325,56 @@ fn what_is_thinner_than_a_bead_is_reported() {
     assert!((expected - 0.02..expected + 1e-3).contains(&m.coverage()), "{} for {expected}", m.coverage());
 }
 
+/// Fins of half a bead and more are welded with the narrowest bead, which reaches beyond them, at any angle; thinner ones, and
+/// necks between two holes, are not.
+#[test]
+fn fins_of_half_a_bead_are_welded_with_the_narrowest() {
+    let w = 7.54;
+    for (thickness, welded) in [(0.46, false), (0.54, true), (0.66, true)] {
+        let (low, high) = (20.0 - thickness * w / 2.0, 20.0 + thickness * w / 2.0);
+        let outline =
+            [(0.0, 0.0), (40.0, 0.0), (40.0, low), (80.0, low), (80.0, high), (40.0, high), (40.0, 40.0), (0.0, 40.0)];
+        for (strategy, degrees) in [("loop", 0.0), ("loop", 33.0), ("loop", 80.0), ("contour", 0.0), ("hybrid", 33.0)] {
+            let way = DVec2::from_angle(f64::to_radians(degrees));
+            let turned = outline.map(|p| way.rotate(p.into()).into());
+            let plan = plan_of(&extruded(&turned, 4.0), &profile("cmt-al2319-kuka", strategy, 0.0));
+            let m = &plan.summary.metrics;
+            let fin = 40.0 * thickness * w / m.slice_area_mm2 * 2.0;
+            let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
+            let of = |kind| plan.summary.warnings.summaries().find(|w| w.kind == kind).map_or(0.0, |w| w.total);
+            let (beside, lost) = (of(WarningKind::ThinWall), of(WarningKind::ThinFeature));
+            let whole = 2.0 * 40.0 * thickness * w;
+            let found = if welded { beside } else { lost };
+            assert!((0.85..1.02).contains(&(found / whole)), "{thickness} {strategy} {degrees}: {text:?}");
+            assert!(beside == 0.0 || lost == 0.0, "{thickness} {strategy} {degrees}: {text:?}");
+            let covered = if welded { 0.94 } else { 1.0 - 0.85 * fin };
+            assert!((m.coverage() > 0.94) == welded && m.coverage() < covered + 0.06, "{} {text:?}", m.coverage());
+            let narrowest =
+                plan.layers.iter().flat_map(|l| &l.passes).flat_map(|pass| pass.segments()).map(|s| s.width);
+            assert!(narrowest.fold(f64::INFINITY, f64::min) > 0.699 * w, "no bead is narrower than the process lays");
+        }
+    }
+}
+
+/// Through a neck with room for one bead the loop goes once.
+#[test]
+fn no_loop_runs_over_itself_in_a_neck() {
+    // A bar with a slit to its middle.
+    let outline =
+        [(0.0, 0.0), (60.0, 0.0), (60.0, 6.4), (61.2, 6.4), (61.2, 0.0), (110.0, 0.0), (110.0, 12.7), (0.0, 12.7)];
+    for degrees in [0.0, 17.0, 45.0, 90.0, 200.0] {
+        let way = DVec2::from_angle(f64::to_radians(degrees));
+        let turned = outline.map(|p| way.rotate(p.into()).into());
+        let profile = profile("cmt-al2319-kuka", "loop", 0.0);
+        let plan = plan_of(&extruded(&turned, 8.0), &profile);
+        let settings = plan::deposit_settings(&profile);
+        let findings = beadwright::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+        assert!(!findings.iter().any(|f| f.kind == "retraced"), "{degrees}: {findings:?}");
+        assert_eq!(plan.summary.metrics.passes, plan.layers.len(), "one arc start a layer at {degrees}°");
+        assert!(plan.summary.metrics.coverage() > 0.95);
+    }
+}
+
 #[test]
 fn a_part_without_room_for_a_bead_is_refused() {
     let mesh = extruded(&[(0.0, 0.0), (100.0, 0.0), (100.0, 3.0), (0.0, 3.0)], 10.0);

@@ -100,7 +100,7 @@ pub trait Strategy: Sync {
         Fill::default()
     }
 
-    /// Features narrower than this get no metal, mm.
+    /// The narrowest bead, mm.
     fn narrowest(&self, settings: &FillSettings) -> f64 {
         settings.wall.width_limits.0
     }
@@ -110,7 +110,7 @@ pub trait Strategy: Sync {
         false
     }
 
-    /// Whether narrower features are welded all the same, with beads that then reach beyond them.
+    /// Whether all walls are welded, however thin, with beads that then reach beyond them.
     fn welds_thin_walls(&self) -> bool {
         false
     }

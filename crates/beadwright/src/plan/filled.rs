@@ -3,7 +3,7 @@
 use super::candidates;
 use super::scan_lines::Planned;
 use crate::fill::contour::rings_only;
-use crate::fill::coverage::{Bare, Coverage};
+use crate::fill::coverage::Coverage;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy};
 use crate::profile::Profile;
@@ -126,60 +126,78 @@ fn fill_layer(
 ) -> Filled {
     let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
     for (i, island) in slice.islands.iter().enumerate() {
-        let thin = strategy.welds_thin_walls();
-        let known = slice.warnings.len();
-        let reached = reach(island, strategy.narrowest(settings), slice.index, &mut slice.warnings);
-        if thin {
-            slice.warnings[known..].iter_mut().for_each(|warning| warning.kind = WarningKind::ThinWall);
-        }
-        let mut own = if thin || reached > 0.0 {
-            sound_fill(fill(i, island), island, strategy, profile, settings, reached, &mut slice.warnings)
+        let reach = Reach::of(island, strategy.narrowest(settings));
+        let roomy = reach.area > 0.0 || strategy.welds_thin_walls() || island.holds_disc(settings.wall.thinnest / 2.0);
+        let mut own = if roomy {
+            sound_fill(fill(i, island), island, strategy, profile, settings, reach.area, &mut slice.warnings)
         } else {
             Fill::default()
         };
-        if reached > 0.0 && own.is_empty() {
-            // Wide enough for a bead, but with room for neither a ring nor a wall.
-            let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
-            let (kind, size) = (WarningKind::IslandTooSmall, island.area());
-            slice.warnings.push(Warning { kind, layer: slice.index, place, size });
-        }
+        let is_left_out = own.is_empty();
         for stage in &mut own.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
-        let left_out = slice.warnings[known..].iter().any(|w| w.kind == WarningKind::IslandTooSmall);
-        let (covered, bare) = covered(&own, island, profile, reached);
-        planned_area += covered;
-        if let Some(bare) = bare.filter(|_| !left_out) {
-            let (kind, layer) = (WarningKind::Bare, slice.index);
-            slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
-        }
+        let cover = Cover::of(&own, island, profile, &reach);
+        planned_area += cover.area;
+        let places =
+            if is_left_out { vec![(WarningKind::IslandTooSmall, middle(island), island.area())] } else { cover.doubts };
+        let warning = |(kind, place, size)| Warning { kind, layer: slice.index, place, size };
+        slice.warnings.extend(places.into_iter().map(warning));
         fills.push(own);
     }
     Filled { slice, fills, planned_area, known: came_with, shared: false }
 }
 
+/// How well passes cover an island.
+struct Cover {
+    /// mm²
+    area: f64,
+    /// What matters of the rest: what it is, where, and its area, mm².
+    doubts: Vec<(WarningKind, DVec2, f64)>,
+}
+
 /// What beads leave bare is told when it is more than this part of an island.
 const WORTH_TELLING: f64 = 0.01;
 
-/// Area of an island that its beads cover, mm², and what they leave bare of what one could reach, if that is worth telling.
-fn covered(fill: &Fill, island: &Polygon, profile: &Profile, reached: f64) -> (f64, Option<Bare>) {
-    let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-    if profile.fill.infill_density < 1.0 && !paths.is_empty() {
-        // Bare on purpose.
-        return (reached, None);
+/// A place too thin for a bead counts as welded if less than this part of it is left bare.
+const WELDED: f64 = 0.5;
+
+impl Cover {
+    fn of(fill: &Fill, island: &Polygon, profile: &Profile, reach: &Reach) -> Self {
+        let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
+        let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
+        let is_sparse = profile.fill.infill_density < 1.0 && !paths.is_empty();
+        if is_sparse && reach.lost.is_empty() {
+            return Self { area: reach.area, doubts: Vec::new() };
+        }
+        let Some(coverage) = Coverage::of(&paths, &whole, width) else {
+            return Self { area: 0.0, doubts: Vec::new() };
+        };
+        let mut unreached = (area - reach.area).max(0.0);
+        let mut doubts = Vec::new();
+        for piece in reach.thin_places() {
+            let size = piece.area();
+            let is_welded = coverage.bare_of(&piece.clone().into()).area < WELDED * size;
+            if is_welded {
+                unreached -= size;
+            }
+            let kind = if is_welded { WarningKind::ThinWall } else { WarningKind::ThinFeature };
+            doubts.push((kind, piece.outer.points().first().copied().unwrap_or_default(), size));
+        }
+        if is_sparse {
+            // Bare on purpose.
+            return Self { area: reach.area, doubts };
+        }
+        let (bare, least) = (coverage.bare().area, WORTH_TELLING * area);
+        // What no bead reaches, as sharp corners, is not left bare by the strategy.
+        let left = bare - unreached;
+        if left > least {
+            let inner = coverage.bare_of(&whole.offset(-FLANK * width, Join::ROUND));
+            let size = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
+            doubts.extend((size > least).then_some((WarningKind::Bare, inner.place, size)));
+        }
+        Self { area: (area - bare).max(0.0), doubts }
     }
-    let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
-    let Some(coverage) = Coverage::of(&paths, &whole, width) else { return (0.0, None) };
-    let bare = coverage.bare(&whole).area;
-    // What no bead reaches, as sharp corners, is not left bare by the strategy.
-    let (unreached, least) = ((area - reached).max(0.0), WORTH_TELLING * area);
-    let left = bare - unreached;
-    let worst = (left > least).then(|| {
-        let inner = coverage.bare(&whole.offset(-FLANK * width, Join::ROUND));
-        let area = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
-        Bare { area, ..inner }
-    });
-    ((area - bare).max(0.0), worst.filter(|worst| worst.area > least))
 }
 
 /// Strips along the outline count, too, from this part of an island on.
@@ -219,7 +237,7 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
     if paths.is_empty() {
         let wide = reached > 0.0 && !settings.outermost(island).is_empty();
-        return wide.then(|| Bounds::of(island.outer.points().iter().copied()).map(|b| b.center())).flatten();
+        return wide.then(|| middle(island));
     }
     sound::fault(&paths, island, settings.machining_allowance).map(|fault| match fault {
         Fault::Outside { place, .. } | Fault::Crossing { place } => place,
@@ -260,31 +278,46 @@ const THIN_FEATURE: f64 = 0.25;
 /// Lost pieces end this far, in bead widths, before what a bead reaches: their edges then touch nowhere else.
 const CLEAR: f64 = 0.01;
 
-/// Area of an island that a bead of the given width can reach without leaving it, mm²; warns of places it cannot reach.
-///
-/// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
-/// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes are
-/// computed only at necks, and where this figure shows that something is lost; the area is then too large by a hair, [`CLEAR`]
-/// along what is lost.
-fn reach(island: &Polygon, width: f64, layer: usize, warnings: &mut Vec<Warning>) -> f64 {
-    let r = width / 2.0;
-    let area = island.area();
-    let centre = island.centres_of_disc(r, Join::ROUND);
-    if centre.is_empty() {
-        let place = Bounds::of(island.outer.points().iter().copied()).map(|b| b.center()).unwrap_or_default();
-        warnings.push(Warning { kind: WarningKind::IslandTooSmall, layer, place, size: area });
-        return 0.0;
+/// What a bead reaches of an island without leaving it.
+struct Reach {
+    /// Its width, mm.
+    width: f64,
+    /// mm²
+    area: f64,
+    /// The rest, with corners; empty where that is too little to look at.
+    lost: Region,
+}
+
+impl Reach {
+    /// What a bead of the given width, mm, reaches of an island.
+    ///
+    /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
+    /// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes
+    /// are computed only at necks, and where this figure shows that something is lost; the area is then too large by a hair,
+    /// [`CLEAR`] along what is lost.
+    fn of(island: &Polygon, width: f64) -> Self {
+        let (r, area) = (width / 2.0, island.area());
+        let centre = island.centres_of_disc(r, Join::ROUND);
+        if centre.is_empty() {
+            return Self { width, area: 0.0, lost: island.clone().into() };
+        }
+        if let Some(opened) = island.reached_by_disc(r, &centre)
+            && island.is_roomy_for_disc(r, &centre, THIN_FEATURE * width * width)
+        {
+            return Self { width, area: opened.clamp(0.0, area), lost: Region::default() };
+        }
+        let lost = Region::from(island.clone()).difference(&centre.offset(r + CLEAR * width, Join::ROUND));
+        Self { width, area: (area - lost.area()).max(0.0), lost }
     }
-    let smallest = THIN_FEATURE * width * width;
-    if let Some(opened) = island.reached_by_disc(r, &centre)
-        && island.is_roomy_for_disc(r, &centre, smallest)
-    {
-        return opened.clamp(0.0, area);
+
+    /// What is too thin for a bead, but for corners.
+    fn thin_places(&self) -> impl Iterator<Item = &Polygon> {
+        let smallest = THIN_FEATURE * self.width * self.width;
+        self.lost.polygons().iter().filter(move |piece| piece.area() > smallest)
     }
-    let lost = Region::from(island.clone()).difference(&centre.offset(r + CLEAR * width, Join::ROUND));
-    for piece in lost.polygons().iter().filter(|p| p.area() > smallest) {
-        let place = piece.outer.points().first().copied().unwrap_or_default();
-        warnings.push(Warning { kind: WarningKind::ThinFeature, layer, place, size: piece.area() });
-    }
-    (area - lost.area()).max(0.0)
+}
+
+/// The middle of the box around an island.
+fn middle(island: &Polygon) -> DVec2 {
+    Bounds::of(island.outer.points().iter().copied()).map(|bounds| bounds.center()).unwrap_or_default()
 }

@@ -19,8 +19,11 @@ section! {
         /// Gap between the end of a path at a junction and the paths that run through the junction, in bead widths;
         /// default 0.4.
         end_gap: f64 = 0.4, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
-        /// Narrowest bead of the process, in bead widths; even thinner walls are welded with it; default 0.7.
+        /// Narrowest bead of the process, in bead widths; thinner walls are welded with it, and it reaches beyond them; default
+        /// 0.7.
         min_width: f64 = 0.7, 0.2, 1.0, "bead widths", "narrower beads have no steady arc";
+        /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. `wall` welds all.
+        thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie beside a thinner wall rather than in it";
         /// Widest bead of the process, in bead widths; default 1.4.
         max_width: f64 = 1.4, 1.0, 3.0, "bead widths",
             "a bead more than three times its nominal width does not hold its shape";
@@ -37,6 +40,7 @@ impl WallSection {
             junction_gap: self.junction_gap,
             end_gap: self.end_gap,
             width_limits: (self.min_width * w, self.max_width * w),
+            thinnest: self.thinnest.min(self.min_width) * w,
         }
     }
 }

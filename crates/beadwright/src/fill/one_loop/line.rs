@@ -138,10 +138,11 @@ impl Line {
         self.points = (0..self.points.len()).map(drawn).collect();
     }
 
-    /// Moves points inwards if they lie too close to the outline for the narrowest bead.
+    /// Moves points inwards if they lie too close to the outline for the narrowest bead; in a wall, for half of the thinnest one.
     pub fn keep_inside(&mut self, room: &Room, settings: &LoopSettings) {
         for i in 0..self.points.len() {
-            let least = settings.limits(self.thin[i]).0 / 2.0 + MARGIN * settings.bead_width;
+            let narrowest = if self.thin[i] { settings.thinnest } else { settings.width_limits.0 };
+            let least = narrowest / 2.0 + MARGIN * settings.bead_width;
             for _ in 0..4 {
                 let lack = least - room.at(self.points[i]);
                 if lack <= 0.0 {

@@ -81,6 +81,8 @@ pub struct LoopSettings<'a> {
     pub width_limits: (f64, f64),
     /// The narrowest and the widest bead alone in a wall.
     pub single: (f64, f64),
+    /// Thinner walls get no bead.
+    pub thinnest: f64,
     /// From this thickness on a wall has room for two beads.
     pub double: f64,
     /// How far an end stays away from a line that passes, in bead widths.
@@ -241,6 +243,7 @@ impl<'a> LoopSettings<'a> {
             stepover: fill.stepover,
             width_limits,
             single: fill.wall.width_limits,
+            thinnest: fill.wall.thinnest,
             double: fill.double(),
             end_gap: fill.wall.end_gap,
             shortest: fill.min_pass_length,
@@ -284,7 +287,8 @@ impl<'a> LoopSettings<'a> {
 
     /// Which walls have room for one bead only.
     pub fn thin_limits(&self) -> ThinLimits {
-        ThinLimits { bead_width: self.bead_width, single: self.single, double: self.double }
+        let Self { bead_width, single, thinnest, double, .. } = *self;
+        ThinLimits { bead_width, single, thinnest, double }
     }
 }
 

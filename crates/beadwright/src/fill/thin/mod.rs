@@ -10,9 +10,11 @@ pub mod tie;
 
 use super::{Fill, FillSettings, Path};
 use crate::pass::Along;
+use glam::DVec2;
 use planar::medial::{Branch, CORNER, MedialAxis, MedialOptions, Node};
 use planar::polyline::simplify_ring;
 use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
+use std::collections::HashMap;
 use std::ops::Range;
 use tie::{TieSettings, tie};
 
@@ -23,6 +25,8 @@ pub struct ThinLimits {
     pub bead_width: f64,
     /// The narrowest and the widest single bead.
     pub single: (f64, f64),
+    /// Thinner walls get no bead; from here to the narrowest bead they get that, which reaches beyond them.
+    pub thinnest: f64,
     /// From this thickness on there is room for two beads.
     pub double: f64,
 }
@@ -58,8 +62,10 @@ pub struct Split {
     pub open: Region,
 }
 
-/// Minimum length of a wall that is attached at one end only, in bead widths.
+/// Minimum length of a wall that is attached at one end only, or tapers to nothing, in bead widths.
 const SHORTEST: f64 = 1.5;
+/// Minimum length of a neck thinner than the narrowest bead, as between two holes, in bead widths: passes go around shorter ones.
+const NECK: f64 = 3.0;
 /// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
 /// The open region is grown by this many bead widths: its edges then stay clear of those of the island, and the pieces
@@ -70,7 +76,7 @@ const GROWN: f64 = 0.024;
 const SIMPLER: f64 = 0.001;
 /// Accuracy of the shapes that are cut out, in bead widths.
 const ACCURACY: f64 = 0.005;
-/// A disc with this fraction of the narrowest bead width as its diameter fits into every thin piece.
+/// A disc with this fraction of the thinnest wall as its diameter fits into every thin piece.
 const ROOMY: f64 = 0.8;
 /// A neck gets two beads if it is at least this fraction as wide as two beads need.
 const NEARLY_DOUBLE: f64 = 0.94;
@@ -89,7 +95,8 @@ pub(super) fn around<'a>(
     fill: impl Fn(&Polygon, &FillSettings<'a>) -> Fill,
 ) -> Fill {
     let (w, single) = (settings.bead.width, settings.wall.width_limits);
-    let limits = ThinLimits { bead_width: w, single: (single.0, single.1.min(DOUBLE * w)), double: DOUBLE * w };
+    let (single, thinnest) = ((single.0, single.1.min(DOUBLE * w)), settings.wall.thinnest);
+    let limits = ThinLimits { bead_width: w, single, thinnest, double: DOUBLE * w };
     let mut result = Fill::default();
     for grown in island.offset(settings.machining_allowance, Join::ROUND).polygons() {
         let centres = centres(grown, &limits);
@@ -177,16 +184,18 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let widest = limits.single.1 / 2.0 + GROWN * limits.bead_width;
     let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || part.holds_disc(widest);
     let thick: Vec<Polygon> = open.polygons().iter().filter(opens_two).cloned().collect();
+    let between = Between::of(&thick);
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
     let (mut thin, mut pieces) = (Vec::new(), Vec::new());
     // Most pieces are corners, in which no bead could lie.
-    let roomy = |piece: &Polygon| piece.holds_disc(ROOMY * limits.single.0 / 2.0);
-    let candidates = rest.into_polygons().into_iter().filter(|piece| piece.area() > smallest && roomy(piece));
-    let candidates: Vec<Polygon> = candidates.collect();
+    let roomy = |piece: &Polygon| piece.area() > smallest && piece.holds_disc(ROOMY * limits.thinnest / 2.0);
+    let candidates = rest.into_polygons().into_iter().map(|piece| (between.joins(&piece), piece));
+    let (joins, candidates): (Vec<bool>, Vec<Polygon>) =
+        candidates.filter(|(joins, piece)| *joins || roomy(piece)).unzip();
     let axis = axis(&candidates, &whole, limits);
-    for piece in candidates {
-        let walls = walls(&piece, &axis, limits);
+    for (piece, joins) in candidates.into_iter().zip(joins) {
+        let walls = walls(&piece, joins, &axis, limits);
         if !walls.is_empty() {
             thin.extend(walls);
             pieces.push(piece);
@@ -199,6 +208,39 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     // A little more is cut off: edges that lie on each other take long to resolve.
     let rest = whole.difference(&Region::from_normalised(pieces).offset(ACCURACY * limits.bead_width, round(limits)));
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
+}
+
+/// Which pieces of an island lie between thick parts.
+struct Between {
+    /// The parts that have a point at a place; places are whole micrometres.
+    parts: HashMap<[i64; 2], usize>,
+}
+
+impl Between {
+    fn of(thick: &[Polygon]) -> Self {
+        if thick.len() < 2 {
+            return Self { parts: HashMap::new() };
+        }
+        let points = |part: &Polygon| part.rings().flat_map(|ring| ring.points().to_vec()).collect::<Vec<_>>();
+        let placed =
+            thick.iter().enumerate().flat_map(|(k, part)| points(part).into_iter().map(move |p| (place(p), k)));
+        Self { parts: placed.collect() }
+    }
+
+    /// Whether a piece of what the parts leave joins two of them, however short it is: it has points of both.
+    fn joins(&self, piece: &Polygon) -> bool {
+        if self.parts.is_empty() {
+            return false;
+        }
+        let mut parts = piece.rings().flat_map(Ring::points).filter_map(|p| self.parts.get(&place(*p)));
+        let first = parts.next();
+        first.is_some_and(|first| parts.any(|part| part != first))
+    }
+}
+
+/// A place in whole micrometres.
+fn place(point: DVec2) -> [i64; 2] {
+    (point * 1e3).round().as_i64vec2().to_array()
 }
 
 /// An island without points that hardly matter: scanned outlines have many.
@@ -219,12 +261,12 @@ fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
 }
 
-/// The walls of a thin piece.
-fn walls(piece: &Polygon, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
+/// The walls of a thin piece; `joins` where it lies between two thick parts.
+fn walls(piece: &Polygon, joins: bool, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
     let Some(bounds) = Bounds::of(piece.outer.points().iter().copied()) else { return Vec::new() };
     let near = |node: &Node| node.at.cmpge(bounds.min).all() && node.at.cmple(bounds.max).all();
     let branches = axis.branches.iter().filter(|branch| branch.nodes.iter().any(near));
-    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, limits)).collect();
+    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, joins, limits)).collect();
     drop_stubs(&mut walls, limits);
     let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= NEARLY_DOUBLE * limits.double);
     let hangs = |wall: &ThinWall| wall.ends.iter().any(|end| matches!(end, End::Mouth(_)));
@@ -232,13 +274,29 @@ fn walls(piece: &Polygon, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWal
 }
 
 /// The stretches of a branch that lie within the thin piece and are wide enough for a bead.
-fn walls_along(branch: &Branch, piece: &Polygon, limits: &ThinLimits) -> Vec<ThinWall> {
+fn walls_along(branch: &Branch, piece: &Polygon, joins: bool, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
-    let wide = |node: &Node| 2.0 * node.radius >= limits.single.0;
-    let fits: Vec<bool> = nodes.iter().zip(&inside).map(|(node, inside)| *inside && wide(node)).collect();
+    let fits_by = |width: f64| -> Vec<bool> {
+        nodes.iter().zip(&inside).map(|(node, inside)| *inside && 2.0 * node.radius >= width).collect()
+    };
+    let (mut fits, thin) = (fits_by(limits.single.0), fits_by(limits.thinnest));
+    let thinner: Vec<bool> = fits.iter().zip(thin).map(|(fits, thin)| thin && !fits).collect();
+    let is_long = |stretch: &Range<usize>| {
+        let wider = |k: Option<usize>| k.filter(|k| *k < nodes.len()).is_some_and(|k| fits[k] || !inside[k]);
+        let is_neck = wider(stretch.start.checked_sub(1)) && wider(Some(stretch.end));
+        length(&nodes[stretch.clone()]) >= if is_neck { NECK } else { SHORTEST } * limits.bead_width
+    };
+    let long: Vec<Range<usize>> = stretches(&thinner).into_iter().filter(is_long).collect();
+    long.into_iter().flatten().for_each(|k| fits[k] = true);
+    // A neck may be shorter than the distance of two nodes.
+    let longer = |stretch: Range<usize>| match joins && stretch.len() < 2 {
+        true => stretch.start.saturating_sub(1)..(stretch.end + 1).min(nodes.len()),
+        false => stretch,
+    };
     stretches(&fits)
         .into_iter()
+        .map(longer)
         .filter(|stretch| stretch.len() >= 2)
         .map(|stretch| {
             let end = |beyond: Option<usize>, junction: usize, outwards: bool| match beyond {
@@ -310,6 +368,11 @@ fn drop_stubs(walls: &mut Vec<ThinWall>, limits: &ThinLimits) {
 impl ThinWall {
     /// Length, mm.
     pub fn length(&self) -> f64 {
-        self.nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
+        length(&self.nodes)
     }
+}
+
+/// Length of a line through nodes, mm.
+fn length(nodes: &[Node]) -> f64 {
+    nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum()
 }

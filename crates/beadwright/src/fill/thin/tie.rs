@@ -33,21 +33,30 @@ pub struct TieSettings {
     pub shortest: f64,
 }
 
-/// Joins passes and walls into the fewest passes. Where they would then cross, as in corners hardly wider than a bead, the
-/// walls stay passes of their own.
+/// Joins passes and walls into the fewest passes. Walls with which they would then cross, as in corners hardly wider than a
+/// bead, stay passes of their own.
 pub fn tie(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
-    if walls.is_empty() {
-        return passes;
+    let (mut joined, mut kept, mut loose) = (passes.clone(), Vec::new(), Vec::new());
+    // Half of them at a time, until each that crosses is alone.
+    let mut left = vec![walls];
+    while let Some(some) = left.pop().filter(|some| !some.is_empty()) {
+        let more: Vec<&ThinWall> = kept.iter().copied().chain(some).collect();
+        let together = tied(passes.clone(), &more, settings);
+        let lines: Vec<Vec<DVec2>> = together.iter().map(Path::path).collect();
+        if sound::crossings(&lines).next().is_none() {
+            (joined, kept) = (together, more);
+        } else if some.len() == 1 {
+            loose.extend(some);
+        } else {
+            let (first, second) = some.split_at(some.len() / 2);
+            left.extend([second, first]);
+        }
     }
-    let together = tied(passes.clone(), walls, settings);
-    let lines: Vec<Vec<DVec2>> = together.iter().map(Path::path).collect();
-    if sound::crossings(&lines).next().is_none() {
-        return together;
-    }
-    passes.into_iter().chain(tied(Vec::new(), walls, settings)).collect()
+    joined.extend(tied(Vec::new(), &loose, settings));
+    joined
 }
 
-fn tied(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
+fn tied(passes: Vec<Path>, walls: &[&ThinWall], settings: &TieSettings) -> Vec<Path> {
     let mut graph = Graph { width: settings.limits.bead_width, ..Graph::default() };
     let lines: Vec<Line> = passes.iter().map(Line::of_pass).collect();
     let mut places: Vec<Vec<Place>> = vec![Vec::new(); passes.len()];

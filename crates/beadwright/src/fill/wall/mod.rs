@@ -47,6 +47,8 @@ pub struct WallSettings {
     pub end_gap: f64,
     /// The narrowest and the widest bead of the process, mm.
     pub width_limits: (f64, f64),
+    /// Walls of solids thinner than this get no bead, mm.
+    pub thinnest: f64,
 }
 
 /// Samples of the medial axis per bead width.
