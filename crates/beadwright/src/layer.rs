@@ -16,6 +16,40 @@ pub struct Temperature {
     pub mean: f64,
 }
 
+/// Where the arc stays lit from layer to layer: the turns of a helix, each the only pass of its layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Lit {
+    /// The pass goes on from that of the layer below.
+    pub before: bool,
+    /// It goes on in the layer above.
+    pub after: bool,
+}
+
+impl Lit {
+    /// The least metal of a piece of a turn, as a part of a whole bead's: with less the torch would be too fast.
+    pub const LEAST: f64 = 0.5;
+
+    /// Whether a layer is a turn of a helix: it rises from the layer below.
+    pub fn is_turn(self) -> bool {
+        self.before || self.after
+    }
+
+    /// Lets every layer know whether the arc of the one below goes on in it, as only that one says in files.
+    ///
+    /// # Errors
+    /// The index of a layer that then has not just one pass.
+    pub(crate) fn join(layers: &mut [Layer]) -> Result<(), usize> {
+        let goes_on: Vec<bool> = layers.iter().map(|layer| layer.lit.after).collect();
+        for (layer, before) in layers.iter_mut().zip(std::iter::once(false).chain(goes_on)) {
+            layer.lit.before = before;
+            if layer.lit.is_turn() && layer.passes.len() != 1 {
+                return Err(layer.index);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// One layer, ready to be deposited.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Layer {
@@ -29,6 +63,8 @@ pub struct Layer {
     pub islands: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
+    /// Whether the arc burns before and after them.
+    pub lit: Lit,
     /// Temperatures of the metal below each pass; empty where they were not computed.
     pub temperatures: Vec<Temperature>,
     /// Area of the slice, mm².

@@ -120,7 +120,9 @@ impl Metrics {
         self.slice_area_mm2 += layer.slice_area;
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += layer.slice_area * layer.height;
-        if let Some(pause) = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten() {
+        if let Some(pause) =
+            (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten()
+        {
             self.pause(pause);
         }
         for pass in &layer.passes {
@@ -132,8 +134,9 @@ impl Metrics {
             let welded = self.torch.weld(&path(pass, self.torch.ends()));
             let retract = self.torch.retract();
             let wire = self.rates.wire_feed_speed * welded.metal;
-            self.passes += 1;
-            self.arc_starts += 1;
+            // A helix is one pass.
+            self.passes += usize::from(!layer.lit.before);
+            self.arc_starts += usize::from(!layer.lit.before);
             self.deposited_length_mm += welded.length;
             self.deposited_volume_mm3 += welded.metal * self.rates.metal;
             self.travel_length_mm += approach.length + retract.length;
@@ -145,7 +148,8 @@ impl Metrics {
             self.corner_time_s += welded.slowed;
             self.wire_length_m += wire / 1000.0;
             self.wire_mass_kg += wire * self.rates.wire_grams_per_mm / 1000.0;
-            self.gas_m3 += (welded.moving + welded.crater + self.rates.gas_idle) * self.rates.gas;
+            let idle = if layer.lit.before { 0.0 } else { self.rates.gas_idle };
+            self.gas_m3 += (welded.moving + welded.crater + idle) * self.rates.gas;
         }
         self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
     }

@@ -6,7 +6,7 @@
 use crate::bead::{Bead, Section};
 use crate::deposit::{DepositSettings, Nominal};
 use crate::heat::LONGEST_WAIT;
-use crate::layer::{Extent, Layer};
+use crate::layer::{Extent, Layer, Lit};
 use crate::model::MAX_REACH_MM;
 use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
@@ -40,6 +40,9 @@ pub fn layer(layer: &Layer) -> String {
     push_fixed(&mut text, layer.z, DECIMALS);
     text.push_str(",\"height\":");
     push_fixed(&mut text, layer.height, DECIMALS);
+    if layer.lit.after {
+        text.push_str(",\"goes_on\":true");
+    }
     text.push_str(",\"islands\":");
     list(&mut text, &layer.islands, |text, island| {
         text.push_str("{\"outline\":");
@@ -189,7 +192,8 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
         }
         FileProfile::Name(name) => (name, None, file.bead.map(|b| b.settings(file.machining_allowance)).transpose()?),
     };
-    let layers = file.layers.into_iter().enumerate().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
+    let mut layers = file.layers.into_iter().enumerate().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
+    Lit::join(&mut layers).map_err(|index| PlanFileError::Layer { layer: index + 1, reason: NOT_ONE_TURN })?;
     if layers.is_empty() {
         return Err(PlanFileError::Empty);
     }
@@ -252,9 +256,14 @@ struct FileLayer {
     index: usize,
     z: f64,
     height: f64,
+    #[serde(default)]
+    goes_on: bool,
     islands: Vec<FileIsland>,
     passes: Vec<FilePass>,
 }
+
+/// Why a layer is no turn of a helix.
+const NOT_ONE_TURN: &str = "the arc goes on from layer to layer there (goes_on), so it must have one pass";
 
 #[derive(Deserialize)]
 struct FileIsland {
@@ -302,7 +311,7 @@ const MAX_MEASURE: f64 = 2000.0;
 
 impl FileLayer {
     fn layer((number, layer): (usize, Self)) -> Result<Layer, PlanFileError> {
-        let Self { index, z, height, islands, passes } = layer;
+        let Self { index, z, height, goes_on, islands, passes } = layer;
         let wrong = |reason| Err(PlanFileError::Layer { layer: number + 1, reason });
         if index != number {
             return wrong("its index is not its place in the list, counted from 0");
@@ -316,7 +325,8 @@ impl FileLayer {
         };
         let passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
         let slice_area = islands.iter().map(Polygon::area).sum();
-        Ok(Layer { index, z, height, islands, passes, slice_area, ..Layer::default() })
+        let lit = Lit { before: false, after: goes_on };
+        Ok(Layer { index, z, height, islands, passes, lit, slice_area, ..Layer::default() })
     }
 }
 

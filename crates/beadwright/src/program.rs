@@ -11,11 +11,13 @@ mod settings;
 mod spread;
 mod table;
 mod tilt;
+mod turns;
 mod weave;
 
 pub use attitude::Attitude;
 pub use safety::Safety;
 pub use settings::ProgramSettings;
+pub use turns::Turns;
 use weave::Swing;
 pub use weave::Weave;
 
@@ -251,7 +253,7 @@ impl Programmer {
         self.pass_over(layer);
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
-        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index)).flatten();
+        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten();
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut pause, &mut instructions);
         }
@@ -295,23 +297,26 @@ impl Programmer {
         let turned = self.table.as_mut().map(|table| table.begin(&places()));
         let table = turned.map(|turned| turned.angle);
         let begins = self.torch.at().is_none();
+        let lit = self.torch.lit();
         let pauses = [pause.take(), self.torch.wait(pass.wait)];
         let mut legs = self.torch.approach(start).legs;
         let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
         let down = legs.pop();
         let mut legs = legs.into_iter();
-        out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
+        if !lit.before {
+            out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
+        }
         pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
         let joints = begins || turned.is_some_and(|turned| turned.far);
         out.extend(legs.by_ref().take(usize::from(joints)).map(|to| Instruction::Approach { to }));
         out.extend(legs.map(|to| Instruction::Travel { to }));
-        out.push(Instruction::Above);
+        out.extend((!lit.before).then_some(Instruction::Above));
         if self.restarts {
             self.feed = None;
         }
         self.set_feed(self.torch.feed_at(first), out);
         out.extend(down.map(|to| Instruction::Travel { to }));
-        out.push(Instruction::ArcOn { pass: number, kind: pass.kind });
+        out.extend((!lit.before).then_some(Instruction::ArcOn { pass: number, kind: pass.kind }));
         let mut from = start;
         let pieces = self.pieces(&moves, &leans);
         for (i, &Stretch { end, to, circle, speed }) in pieces.iter().enumerate() {
@@ -327,6 +332,9 @@ impl Programmer {
             let ratio = Some(self.torch.crater_feed()).filter(|_| self.sets_feed);
             self.feed = ratio;
             out.push(Instruction::Crater { seconds, ratio });
+        }
+        if lit.after {
+            return;
         }
         out.push(Instruction::ArcOff { pass: number });
         out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));

@@ -179,6 +179,25 @@ fn the_propeller_reads_back_alike_in_every_dialect() {
     }
 }
 
+/// A helix over many layers is one arc start, and rises all the way.
+#[test]
+fn a_helix_is_one_pass_in_every_dialect() {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    profile.fill.strategy = "wall".to_owned();
+    profile.wall.helix = true;
+    let mesh = common::tube(30.0, 7.54, 24.0, 0.0);
+    let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
+    assert!(plan.layers.len() > 8 && plan.summary.metrics.arc_starts == 1);
+    let planned: f64 = plan.layers.iter().flat_map(|l| &l.passes).map(Pass::length).sum();
+    for (name, _, motion) in &all_of(&plan.layers) {
+        let [weld] = &motion.welds[..] else { panic!("{name}: {} arc starts", motion.welds.len()) };
+        assert!((length(weld) / planned - 1.0).abs() < 1e-3, "{name}: {} for {planned}", length(weld));
+        assert!(weld.points.windows(2).all(|p| p[1][2] >= p[0][2] - 1e-9), "{name}");
+        let (first, last) = (weld.points[0][2], weld.points[weld.points.len() - 1][2]);
+        assert!((first - plan.layers[0].z).abs() < 2e-3 && (last - 24.0).abs() < 0.5 * 2.0, "{name}: {first} {last}");
+    }
+}
+
 fn length(weld: &Weld) -> f64 {
     weld.points.windows(2).map(|p| distance(p[0], p[1])).sum()
 }

@@ -52,7 +52,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 
 /// Ends of the open passes, in order: the pass, the place, and whether the pass starts there.
 fn ends(layer: &Layer) -> impl Iterator<Item = (usize, DVec2, bool)> + '_ {
-    let open = layer.passes.iter().enumerate().filter(|(_, pass)| !pass.closed);
+    let open = layer.passes.iter().enumerate().filter(|(_, pass)| !pass.closed && !layer.lit.is_turn());
     let both = open.flat_map(|(i, pass)| [(i, pass.start(), true), (i, pass.end(), false)]);
     both.filter_map(|(i, at, starts)| Some((i, at.filter(|p| p.is_finite())?.truncate(), starts)))
 }

@@ -24,7 +24,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     };
     let side = if built.mean < 0.0 { "below" } else { "above" };
     let text = format!(
-        "after the last layer {:.0} % of the area lies within one layer height ({} mm) of the plan, on average {:.2} mm {side} \
+        "after the last layer {:.0} % of the area lies within one layer height ({:.2} mm) of the plan, on average {:.2} mm {side} \
          it, at most {:.2} mm above and {:.2} mm below.",
         100.0 * built.within,
         last.height,

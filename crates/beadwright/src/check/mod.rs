@@ -293,9 +293,11 @@ impl Subject<'_> {
         layer.passes.iter().map(|pass| pass.seconds(&self.profile.process)).sum()
     }
 
-    /// A finding for each layer whose figure is above the limit.
+    /// A finding for each layer whose figure is above the limit; turns of a helix are no flat layers, so these figures say nothing
+    /// of them.
     fn above(&self, check: &Check, value: fn(&Figures) -> f64, limit: f64, words: &str) -> Vec<Finding> {
-        let over = self.layers.iter().zip(&self.figures).filter(|(_, figures)| value(figures) > limit);
+        let flat = self.layers.iter().zip(&self.figures).filter(|(layer, _)| !layer.lit.is_turn());
+        let over = flat.filter(|(_, figures)| value(figures) > limit);
         let found = |(layer, figures): (&&Layer, &Figures)| {
             let text = format!("{:.2} % {words}; the limit is {limit} %.", value(figures));
             check.of_layer(layer, None, text).sized(value(figures))

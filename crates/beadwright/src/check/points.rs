@@ -33,6 +33,8 @@ fn fault(layer: &Layer, pass: &Pass) -> Option<String> {
     if pass.points.len() < 2 || spot {
         return Some("all points lie on one spot, where the arc would burn through.".to_owned());
     }
-    let off = pass.points.iter().find(|p| (p.z - layer.z).abs() > OFF_HEIGHT * layer.height);
+    // The turn of a helix rises from the layer below.
+    let lowest = layer.z - if layer.lit.before { 1.0 + OFF_HEIGHT } else { OFF_HEIGHT } * layer.height;
+    let off = pass.points.iter().find(|p| p.z < lowest || p.z > layer.z + OFF_HEIGHT * layer.height);
     off.map(|p| format!("a point lies at z {:.2} mm, but the layer at {:.2} mm.", p.z, layer.z))
 }

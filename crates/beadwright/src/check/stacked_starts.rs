@@ -40,5 +40,6 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 
 fn starts(layer: &Layer) -> impl Iterator<Item = (usize, glam::DVec3)> + '_ {
     let start = |(i, pass): (usize, &Pass)| Some((i, pass.start().filter(|p| p.is_finite())?));
-    layer.passes.iter().enumerate().filter_map(start)
+    let lit_anew = layer.passes.iter().enumerate().filter(|_| !layer.lit.before);
+    lit_anew.filter_map(start)
 }

@@ -2,6 +2,7 @@
 
 use super::{Check, Finding, Subject};
 use crate::bead::MassBalance;
+use crate::layer::Lit;
 use crate::pass::{PassKind, Segment};
 use crate::process::Follow;
 
@@ -23,7 +24,12 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         // A wall takes the wire that fills its width over the rise of the layer.
         let rise = profile.wall_rise(layer.index, layer.height).filter(|_| pass.kind == PassKind::Wall);
         let fitting = |width: f64| rise.map_or_else(|| pace(width), |rise| balance.wire / (width * rise));
-        let off = |s: &Segment| (s.pace / fitting(s.width) - 1.0).abs() > MassBalance::TOLERANCE;
+        // Where a helix begins and ends, it fills less than a layer.
+        let most = if layer.lit.is_turn() { 1.0 / Lit::LEAST } else { 1.0 };
+        let off = |s: &Segment| {
+            let ratio = s.pace / fitting(s.width);
+            ratio < 1.0 - MassBalance::TOLERANCE || ratio > most * (1.0 + MassBalance::TOLERANCE)
+        };
         let s = pass.segments().find(off)?;
         let (width, fitting) = (s.width, fitting(s.width));
         let text = match process.follow {

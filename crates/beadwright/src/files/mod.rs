@@ -27,7 +27,7 @@ use crate::model::RepairReport;
 use crate::plan::{self, Header, Summary};
 use crate::plan_file;
 use crate::profile::Profile;
-use crate::program::Programmer;
+use crate::program::{Programmer, Turns};
 use crate::report::Report;
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
@@ -72,6 +72,7 @@ pub struct Programs {
     writers: Vec<Box<dyn Writer>>,
     /// For controllers that weave by themselves, and for others.
     programmers: [Programmer; 2],
+    turns: Turns,
 }
 
 impl Programs {
@@ -101,7 +102,7 @@ impl Programs {
             }
             writers.push(post.writer(job)?);
         }
-        Ok(Self { writers, programmers: [true, false].map(|weaves| job.programmer(weaves)) })
+        Ok(Self { writers, programmers: [true, false].map(|weaves| job.programmer(weaves)), turns: Turns::default() })
     }
 
     /// Why a program is not complete; nothing may then be kept.
@@ -118,6 +119,12 @@ impl Programs {
     }
 
     fn layer(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
+        let ready = self.turns.take(layer);
+        ready.into_iter().flat_map(|layer| self.whole(&layer, first)).collect()
+    }
+
+    /// A layer whose arc goes out at its end.
+    fn whole(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
         let mut chunks = Vec::new();
         for (weaves, programmer) in [true, false].into_iter().zip(&mut self.programmers) {
             if !self.writers.iter().any(|writer| writer.weaves() == weaves) {
@@ -136,7 +143,9 @@ impl Programs {
     }
 
     fn end(&mut self) -> Vec<Chunk> {
-        self.each(|writer| writer.end())
+        let mut chunks = self.turns.end().map(|turns| self.whole(&turns, 0)).unwrap_or_default();
+        chunks.extend(self.each(|writer| writer.end()));
+        chunks
     }
 }
 

@@ -27,7 +27,10 @@ impl Build {
     /// Builds a layer within the limits of `[interpass]`: sets the waits of its passes and, where that saves waiting, their
     /// order and starts. Without limits the same as [`Self::layer`].
     pub fn layer_within_limits(&mut self, layer: &mut Layer) -> LayerHeat {
-        let Some(limits) = self.limits() else { return self.layer(layer) };
+        // A helix cannot wait on its way.
+        let Some(limits) = self.limits().filter(|_| !layer.lit.is_turn()) else {
+            return self.layer(layer);
+        };
         let mut heat = self.begin(layer);
         let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
         let (mut current, mut end) = (0, None);

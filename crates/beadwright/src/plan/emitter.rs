@@ -2,6 +2,7 @@
 //! cannot be welded on.
 
 use super::filled::Filled;
+use super::helix::{Helix, NoTurn};
 use super::support::Support;
 use super::warm::{self, Heat};
 use super::{Sink, level_layers, relight};
@@ -24,6 +25,9 @@ pub(super) struct Emitter<'a, S> {
     pub(super) torch: Option<DVec2>,
     pub(super) heat: Heat,
     pub(super) memory: order::Memory,
+    pub(super) helix: Option<Helix>,
+    /// The first layer of which the helix could make no turn.
+    pub(super) no_turn: Option<NoTurn>,
     pub(super) support: Support,
     /// Outlines of the layer below, of the islands that are welded.
     pub(super) below: Vec<Polygon>,
@@ -52,9 +56,12 @@ impl<S: Sink> Emitter<'_, S> {
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
         let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
         let mut layer =
-            Layer { index, z, height, islands, passes, temperatures: Vec::new(), slice_area, planned_area, warnings };
+            Layer { index, z, height, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
         if self.profile.is_level() {
             level_layers::share(&mut layer, self.profile);
+        }
+        if let Some(helix) = &mut self.helix {
+            self.no_turn = self.no_turn.or(helix.turn(&mut layer, self.profile.bead.width).err());
         }
         relight::relight(&mut layer, self.profile);
         self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);

@@ -14,6 +14,7 @@
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
 //! | [`expected`](expected()) | about how much a plan will hold |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
+//! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
 //! | [`preview`] | one layer ahead of the others |
@@ -28,6 +29,7 @@ pub mod clearance;
 mod emitter;
 mod expected;
 mod filled;
+mod helix;
 mod level_layers;
 mod levels;
 mod parts;
@@ -60,6 +62,7 @@ use centre_lines::{weld_curves, weld_lines};
 use emitter::Emitter;
 use filled::Filled;
 use glam::{DVec2, DVec3};
+use helix::{Helix, NoTurn};
 use planar::Bounds;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -71,11 +74,11 @@ use warm::{Heat, Warmth};
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
 /// profile has them.
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    let ends = &profile.start_stop;
+    let ends = weld::lit_ends(&profile.start_stop, layer.lit);
     if !ends.changes_passes() {
         return Cow::Borrowed(layer);
     }
-    let passes = layer.passes.iter().map(|pass| weld::welded(pass, ends, profile.bead.height)).collect();
+    let passes = layer.passes.iter().map(|pass| weld::welded(pass, &ends, profile.bead.height)).collect();
     Cow::Owned(Layer { passes, ..layer.clone() })
 }
 
@@ -187,6 +190,17 @@ pub enum PlanError<E> {
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]
     Empty(String),
+    /// A layer that is not one closed wall, though all are to be turns of a helix.
+    #[error(
+        "layer {layer} is not one closed wall but {passes} passes, and wall.helix makes one helix of all layers. Leave wall.helix \
+         out, plan a surface as walls (--surface wall), or plan the part up to there."
+    )]
+    NoHelix {
+        /// Number of the layer, from 1.
+        layer: usize,
+        /// How many passes it has.
+        passes: usize,
+    },
     /// Parts cannot be welded one after another with this profile.
     #[error("the parts cannot be welded one after another: {0}")]
     Parts(&'static str),
@@ -524,6 +538,8 @@ fn run<S: Sink + Send>(
         torch: None,
         heat,
         memory: order::Memory::default(),
+        helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
+        no_turn: None,
         support: Support::default(),
         below: Vec::new(),
         built: 0.0,
@@ -541,6 +557,9 @@ fn run<S: Sink + Send>(
             || ready.into_iter().try_for_each(|layer| emitter.emit(layer)),
         );
         emitted.map_err(PlanError::Sink)?;
+        if let Some(NoTurn { layer, passes }) = emitter.no_turn {
+            return Err(PlanError::NoHelix { layer: layer + 1, passes });
+        }
         ready = filled?;
     }
     let Emitter { metrics, warnings, points, .. } = emitter;

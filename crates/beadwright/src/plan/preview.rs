@@ -44,6 +44,9 @@ pub fn preview(
         torch: None,
         heat: Heat::default(),
         memory: Memory::default(),
+        // Alone it is no turn.
+        helix: None,
+        no_turn: None,
         support: Support::default(),
         below: Vec::new(),
         built,

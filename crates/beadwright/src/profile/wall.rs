@@ -24,6 +24,9 @@ section! {
         min_width: f64 = 0.7, 0.2, 1.0, "bead widths", "narrower beads have no steady arc";
         /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. `wall` welds all.
         thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie beside a thinner wall rather than in it";
+        /// Whether closed walls become the turns of one helix, from the bottom to the top with one arc start; default false.
+        /// Each layer must be one closed wall.
+        helix: bool = false;
         /// Widest bead of the process, in bead widths; default 1.4.
         max_width: f64 = 1.4, 1.0, 3.0, "bead widths",
             "a bead more than three times its nominal width does not hold its shape";

@@ -61,8 +61,8 @@ impl WarningKind {
             ),
             Self::ThinFeature => (
                 "thin-feature",
-                "a place is narrower than a bead, and the strategy welds no such walls",
-                "take a strategy that does (all but raster), a narrower bead, or a thicker part",
+                "a place is thinner than wall.thinnest, or a short neck, or the strategy is raster, which welds no thin walls",
+                "take another strategy than raster, a narrower bead, or a thicker part",
             ),
             Self::IslandTooSmall => {
                 ("island-too-small", "a whole island is narrower than a bead", "take a narrower bead or a larger part")

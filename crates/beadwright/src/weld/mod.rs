@@ -14,7 +14,7 @@
 mod path;
 mod torch;
 
-pub use path::{path, welded};
+pub use path::{lit_ends, path, welded};
 pub(crate) use torch::retract_time;
 pub use torch::{Pause, Torch, Way, Welded};
 

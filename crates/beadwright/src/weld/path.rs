@@ -1,5 +1,6 @@
 //! A pass as it is welded: with its overlap, hot start and lead-out.
 
+use crate::layer::Lit;
 use crate::pass::{Along, Pass};
 use crate::process::StartStop;
 use glam::DVec3;
@@ -34,6 +35,18 @@ pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     let along = |value: fn(&Move) -> f64| Along::Each(moves[1..].iter().chain(moves.last()).map(value).collect());
     let (width, pace) = (along(|m| m.width), along(|m| m.pace));
     Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace, wait: pass.wait }
+}
+
+/// How a pass begins and ends where the arc may stay lit before or after it.
+pub fn lit_ends(ends: &StartStop, lit: Lit) -> StartStop {
+    let mut ends = ends.clone();
+    if lit.before {
+        (ends.lead_in_length, ends.hump_height) = (0.0, 0.0);
+    }
+    if lit.after {
+        (ends.lead_out_length, ends.crater_depth, ends.crater_fill_time) = (0.0, 0.0, 0.0);
+    }
+    ends
 }
 
 fn moves(pass: &Pass, ends: &StartStop) -> Vec<Move> {

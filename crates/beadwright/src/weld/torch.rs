@@ -1,6 +1,8 @@
 //! Follows the torch: the travels between passes, how long everything takes, and how long it must wait.
 
 use super::WeldSettings;
+use super::path::lit_ends;
+use crate::layer::Lit;
 use crate::motion::Motion;
 use crate::process::{Process, StartStop};
 use glam::DVec3;
@@ -15,6 +17,9 @@ pub struct Torch {
     process: Option<Process>,
     nominal: Option<Process>,
     ends: StartStop,
+    /// Those of the present layer, and whether its pass has none.
+    here: StartStop,
+    lit: Lit,
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
     travel_speed: f64,
@@ -80,6 +85,8 @@ impl Torch {
             process: None,
             nominal: None,
             ends: StartStop::default(),
+            here: StartStop::default(),
+            lit: Lit::default(),
             motion: None,
             arc_end_time: None,
             travel_speed: f64::INFINITY,
@@ -98,6 +105,7 @@ impl Torch {
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
+            here: ends.clone(),
             ends,
             motion,
             arc_end_time,
@@ -107,9 +115,14 @@ impl Torch {
         }
     }
 
-    /// How passes begin and end.
+    /// How passes of the present layer begin and end.
     pub fn ends(&self) -> &StartStop {
-        &self.ends
+        &self.here
+    }
+
+    /// Whether the arc burns before and after the pass of the present layer.
+    pub fn lit(&self) -> Lit {
+        self.lit
     }
 
     /// Where it stands; `None` before the first pass.
@@ -132,10 +145,14 @@ impl Torch {
         self.ends.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
-    /// Begins the layer with an index, with the wait that the previous layer needs.
-    pub fn begin_layer(&mut self, index: usize) -> Option<Pause> {
+    /// Begins the layer with an index, with the wait that the previous layer needs, unless the arc stays lit.
+    pub fn begin_layer(&mut self, index: usize, lit: Lit) -> Option<Pause> {
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
-        self.fresh = true;
+        (self.fresh, self.lit, self.here) = (true, lit, lit_ends(&self.ends, lit));
+        if lit.before {
+            self.seconds = 0.0;
+            return None;
+        }
         let missing = self.ends.min_layer_time - self.seconds;
         let pause = self.pause(missing.max(self.ends.interpass_time));
         // The wait counts for neither layer.
@@ -145,6 +162,9 @@ impl Torch {
 
     /// Waits for `seconds` before a pass, above the part; `None` where there is nothing to wait for.
     pub fn wait(&mut self, seconds: f64) -> Option<Pause> {
+        if self.lit.before {
+            return None;
+        }
         let pause = self.pause(seconds)?;
         self.seconds += pause.moving + pause.seconds;
         Some(pause)
@@ -163,6 +183,9 @@ impl Torch {
     /// place to rise from. Where a layer does not rise above the last one, another part begins, and the way leads over all
     /// that stands.
     pub fn approach(&mut self, start: DVec3) -> Way {
+        if self.lit.before && self.at.is_some() {
+            return Way::default();
+        }
         let another = std::mem::take(&mut self.fresh) && start.z <= self.low;
         let below = if another || self.at.is_none() { self.highest } else { self.low };
         let high = below.max(start.z) + self.clearance;
@@ -174,6 +197,9 @@ impl Torch {
 
     /// The way up from the end of a pass: whatever comes between passes happens above the fresh bead.
     pub fn retract(&mut self) -> Way {
+        if self.lit.after {
+            return Way::default();
+        }
         let up = self.at.map(|at| at.with_z(at.z.max(self.low + self.clearance)));
         self.go(up.into_iter())
     }
@@ -217,10 +243,11 @@ impl Torch {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
             _ => steady,
         };
-        let crater = self.ends.crater_fill_time;
+        let crater = self.here.crater_fill_time;
         let filling = crater * self.crater_feed();
         let metal = metal + filling;
         let [before, after] = self.delays();
+        let (before, after) = (if self.lit.before { 0.0 } else { before }, if self.lit.after { 0.0 } else { after });
         let welded = Welded { length, moving, slowed: moving - steady, metal, crater, before, after };
         self.seconds += before + moving + crater + after;
         if let Some(&(end, _)) = moves.last() {

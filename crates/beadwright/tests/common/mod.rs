@@ -93,3 +93,31 @@ pub(crate) fn model(name: &str) -> Vec<u8> {
     std::fs::read(&path)
         .unwrap_or_else(|error| panic!("{}: {error}. BEADWRIGHT_MODELS names the folder.", path.display()))
 }
+
+/// A round tube that stands on the plate: outer radius, wall, height (mm), and by how much it leans outwards, mm per mm.
+pub(crate) fn tube(radius: f64, wall: f64, height: f64, lean: f64) -> beadwright::Mesh {
+    use beadwright::glam::DVec3;
+    const SIDES: u32 = 90;
+    let ring = |radius: f64, z: f64| {
+        (0..SIDES).map(move |k| {
+            let (y, x) = (f64::from(k) * std::f64::consts::TAU / f64::from(SIDES)).sin_cos();
+            DVec3::new(radius * x, radius * y, z)
+        })
+    };
+    let rings = [
+        (radius, 0.0),
+        (radius + lean * height, height),
+        (radius - wall + lean * height, height),
+        (radius - wall, 0.0),
+    ];
+    let vertices = rings.iter().flat_map(|&(radius, z)| ring(radius, z)).collect();
+    let side = |(below, above): (u32, u32)| {
+        (0..SIDES).flat_map(move |k| {
+            let next = (k + 1) % SIDES;
+            let [a, b, c, d] = [below * SIDES + k, below * SIDES + next, above * SIDES + next, above * SIDES + k];
+            [[a, b, c], [a, c, d]]
+        })
+    };
+    let triangles = [(0, 1), (1, 2), (2, 3), (3, 0)].into_iter().flat_map(side).collect();
+    beadwright::Mesh::from_triangles(vertices, triangles).0
+}

@@ -22,7 +22,7 @@ use super::own::OwnError;
 use super::{ALL, Sections, find, names};
 use crate::bead::Bead;
 use crate::layer::{Extent, Layer};
-use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Weave};
+use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Turns, Weave};
 use crate::weld::WeldSettings;
 use glam::DVec3;
 use std::borrow::Borrow;
@@ -243,8 +243,11 @@ pub fn write_with<L: Borrow<Layer>>(
     job: &Job<'_>,
 ) -> Result<BTreeMap<String, String>, DialectError> {
     let mut programmer = job.programmer(writer.weaves());
-    let mut chunks = writer.begin(extent);
-    layers.iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer.borrow()))));
+    let (mut chunks, mut turns) = (writer.begin(extent), Turns::default());
+    for layer in layers {
+        turns.take(layer.borrow()).iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
+    }
+    turns.end().iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
     chunks.extend(writer.end());
     let mut files = BTreeMap::<String, String>::new();
     for chunk in chunks {

@@ -57,7 +57,8 @@ pub(super) fn xml(layer: &Layer, runs: &[(&Run<'_>, Vec<Values>, Vec<u32>)], sty
 /// What the extension has no words for: where the layer lies, and its outlines.
 fn data(text: &mut String, layer: &Layer) {
     let (z, height) = (units(layer.z), units(layer.height));
-    text.push_str(&format!("<data>\n<bw:layer z=\"{z}\" height=\"{height}\"/>\n"));
+    let goes_on = if layer.lit.after { " goes_on=\"1\"" } else { "" };
+    text.push_str(&format!("<data>\n<bw:layer z=\"{z}\" height=\"{height}\"{goes_on}/>\n"));
     for island in &layer.islands {
         for (ring, name) in Polygon::rings(island).zip(std::iter::once("outline").chain(std::iter::repeat("hole"))) {
             let numbers: Vec<String> = ring.points().iter().map(|p| format!("{} {}", units(p.x), units(p.y))).collect();

@@ -5,7 +5,7 @@
 //! value that changes within a line, an unknown segment) is refused, as the extension demands.
 
 use super::read_layer;
-use crate::layer::{Extent, Layer};
+use crate::layer::{Extent, Layer, Lit};
 use crate::model::ImportError;
 use crate::model::package::{self, OLD_TOOLPATH, PRODUCTION, Package, TOOLPATH, broken, entry_name};
 use crate::model::xml::{Element, Step};
@@ -92,6 +92,9 @@ pub fn read(bytes: &[u8]) -> Result<PlanFile, ImportError> {
     if layers.is_empty() {
         return Err(broken("its toolpath has no layers"));
     }
+    Lit::join(&mut layers).map_err(|index| {
+        broken(format!("layer {}: the arc goes on from layer to layer there, so it must have one segment", index + 1))
+    })?;
     let [part, strategy, profile, bounds] = resource.plan.unwrap_or_default();
     let profile = if profile.is_empty() { None } else { Some(profile_of(&profile)?) };
     let name = profile.as_ref().map_or_else(String::new, |profile| profile.name.clone());

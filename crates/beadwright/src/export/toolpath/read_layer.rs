@@ -3,7 +3,7 @@
 use super::read::{Resource, Style, optional};
 use super::style::MICROSECONDS;
 use super::{BETWEEN, OVERLAP};
-use crate::layer::Layer;
+use crate::layer::{Layer, Lit};
 use crate::model::ImportError;
 use crate::model::package::{Package, broken};
 use crate::model::xml::{Element, Step};
@@ -73,6 +73,8 @@ struct Reader<'a> {
     top: Option<f64>,
     /// Top and thickness as Beadwright has written them, mm.
     own: Option<[f64; 2]>,
+    /// Whether its arc goes on in the next layer.
+    goes_on: bool,
     islands: Vec<Polygon>,
     segments: usize,
     open: Option<Open<'a>>,
@@ -89,6 +91,7 @@ impl<'a> Reader<'a> {
             parts: Vec::new(),
             top: None,
             own: None,
+            goes_on: false,
             islands: Vec::new(),
             segments: 0,
             open: None,
@@ -110,6 +113,7 @@ impl<'a> Reader<'a> {
             "layer" if ours && element.attribute("z").is_some() => {
                 let number = |key: &str| element.number::<f64>(key).map_err(broken);
                 self.own = Some([number("z")?, number("height")?].map(|units| units * self.resource.unit));
+                self.goes_on = element.attribute("goes_on").is_some();
             }
             "outline" if ours => {
                 self.islands.push(Polygon { outer: self.ring(element)?, holes: Vec::new() });
@@ -206,7 +210,8 @@ impl<'a> Reader<'a> {
         let told = slab.map(|[bottom, top]| [top, top - bottom]);
         let [z, height] = self.own.or(told).unwrap_or([highest, self.height.unwrap_or(0.0)]);
         let slice_area = self.islands.iter().map(Polygon::area).sum();
-        Layer { index, z, height, islands: self.islands, passes: self.passes, slice_area, ..Layer::default() }
+        let lit = Lit { before: false, after: self.goes_on };
+        Layer { index, z, height, islands: self.islands, passes: self.passes, lit, slice_area, ..Layer::default() }
     }
 }
 
