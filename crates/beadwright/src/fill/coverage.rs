@@ -528,7 +528,7 @@ mod tests {
         for (turn, thickness) in [(0.3, 1.2), (0.3, 0.9), (0.31, 1.7), (1.1, 1.3), (-0.4, 1.1)] {
             let way = DVec2::from_angle(turn);
             let strip = [(0.0, 0.0), (60.0, 0.0), (60.0, thickness), (0.0, thickness)].map(|p| way.rotate(p.into()));
-            let comb = [(0.0, 0.0), (-20.0, 0.0), (-20.0, 20.0), (0.0, 20.0)].map(|p| way.rotate(p.into()));
+            let comb = [(-20.0, 0.0), (0.0, 0.0), (0.0, 20.0), (-20.0, 20.0)].map(|p| way.rotate(p.into()));
             let parts = [strip, comb].map(|points| Polygon { outer: Ring::new(points.to_vec()), holes: Vec::new() });
             let found = bare(&[], &Region::from_normalised(parts.to_vec()), 7.0).area;
             let exact = 400.0 + 60.0 * thickness;

@@ -80,6 +80,8 @@ const ACCURACY: f64 = 0.005;
 const ROOMY: f64 = 0.8;
 /// A neck gets two beads if it is at least this fraction as wide as two beads need.
 const NEARLY_DOUBLE: f64 = 0.94;
+/// The same of a neck so short that two beads touch nowhere else.
+const DOUBLE_IF_SHORT: f64 = 0.8;
 /// The middle of a wall is followed this far into the thick part, in bead widths.
 const TAIL: f64 = 1.5;
 /// Samples of the medial axis per bead width; a wall begins and ends at one of them.
@@ -190,12 +192,12 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let (mut thin, mut pieces) = (Vec::new(), Vec::new());
     // Most pieces are corners, in which no bead could lie.
     let roomy = |piece: &Polygon| piece.area() > smallest && piece.holds_disc(ROOMY * limits.thinnest / 2.0);
-    let candidates = rest.into_polygons().into_iter().map(|piece| (between.joins(&piece), piece));
-    let (joins, candidates): (Vec<bool>, Vec<Polygon>) =
-        candidates.filter(|(joins, piece)| *joins || roomy(piece)).unzip();
+    let candidates = rest.into_polygons().into_iter().map(|piece| (!roomy(&piece), piece));
+    let (short, candidates): (Vec<bool>, Vec<Polygon>) =
+        candidates.filter(|(short, piece)| !short || between.joins(piece)).unzip();
     let axis = axis(&candidates, &whole, limits);
-    for (piece, joins) in candidates.into_iter().zip(joins) {
-        let walls = walls(&piece, joins, &axis, limits);
+    for (piece, short) in candidates.into_iter().zip(short) {
+        let walls = walls(&piece, short, &axis, limits);
         if !walls.is_empty() {
             thin.extend(walls);
             pieces.push(piece);
@@ -261,20 +263,21 @@ fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
 }
 
-/// The walls of a thin piece; `joins` where it lies between two thick parts.
-fn walls(piece: &Polygon, joins: bool, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
+/// The walls of a thin piece; `short` for a neck between two thick parts that is hardly longer than thick.
+fn walls(piece: &Polygon, short: bool, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
     let Some(bounds) = Bounds::of(piece.outer.points().iter().copied()) else { return Vec::new() };
     let near = |node: &Node| node.at.cmpge(bounds.min).all() && node.at.cmple(bounds.max).all();
     let branches = axis.branches.iter().filter(|branch| branch.nodes.iter().any(near));
-    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, joins, limits)).collect();
+    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, short, limits)).collect();
     drop_stubs(&mut walls, limits);
-    let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= NEARLY_DOUBLE * limits.double);
+    let double = if short { DOUBLE_IF_SHORT } else { NEARLY_DOUBLE } * limits.double;
+    let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= double);
     let hangs = |wall: &ThinWall| wall.ends.iter().any(|end| matches!(end, End::Mouth(_)));
     if walls.iter().all(|wall| neck(wall) && hangs(wall)) { Vec::new() } else { walls }
 }
 
 /// The stretches of a branch that lie within the thin piece and are wide enough for a bead.
-fn walls_along(branch: &Branch, piece: &Polygon, joins: bool, limits: &ThinLimits) -> Vec<ThinWall> {
+fn walls_along(branch: &Branch, piece: &Polygon, short: bool, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
     let fits_by = |width: f64| -> Vec<bool> {
@@ -290,7 +293,7 @@ fn walls_along(branch: &Branch, piece: &Polygon, joins: bool, limits: &ThinLimit
     let long: Vec<Range<usize>> = stretches(&thinner).into_iter().filter(is_long).collect();
     long.into_iter().flatten().for_each(|k| fits[k] = true);
     // A neck may be shorter than the distance of two nodes.
-    let longer = |stretch: Range<usize>| match joins && stretch.len() < 2 {
+    let longer = |stretch: Range<usize>| match short && stretch.len() < 2 {
         true => stretch.start.saturating_sub(1)..(stretch.end + 1).min(nodes.len()),
         false => stretch,
     };
