@@ -136,7 +136,7 @@ fn turns_are_put_together_for_programs() {
     assert!((metal(&Plan { layers: whole, ..plan.clone() }) / metal(&plan) - 1.0).abs() < 1e-9);
     let rest = taken(&|index| index >= 4);
     assert!(rest.len() == 1 && rest[0].index == 4 && !rest[0].lit.is_turn());
-    let apart = taken(&|index| index < 2 || index > 5);
+    let apart = taken(&|index| !(2..=5).contains(&index));
     assert_eq!(apart.iter().map(|layer| layer.index).collect::<Vec<_>>(), [0, 6]);
 }
 

@@ -16,9 +16,9 @@ pub struct Torch {
     /// As it is in the present layer, and as the profile has it.
     process: Option<Process>,
     nominal: Option<Process>,
+    /// How passes begin and end, and how those of the present layer do, whose arc may stay lit.
+    usual: StartStop,
     ends: StartStop,
-    /// Those of the present layer, and whether its pass has none.
-    here: StartStop,
     lit: Lit,
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
@@ -84,8 +84,8 @@ impl Torch {
         Self {
             process: None,
             nominal: None,
+            usual: StartStop::default(),
             ends: StartStop::default(),
-            here: StartStop::default(),
             lit: Lit::default(),
             motion: None,
             arc_end_time: None,
@@ -105,7 +105,7 @@ impl Torch {
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
-            here: ends.clone(),
+            usual: ends.clone(),
             ends,
             motion,
             arc_end_time,
@@ -117,7 +117,7 @@ impl Torch {
 
     /// How passes of the present layer begin and end.
     pub fn ends(&self) -> &StartStop {
-        &self.here
+        &self.ends
     }
 
     /// Whether the arc burns before and after the pass of the present layer.
@@ -142,19 +142,19 @@ impl Torch {
 
     /// Wire feed in a crater, as a multiple of the nominal one.
     pub fn crater_feed(&self) -> f64 {
-        self.ends.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
+        self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
     /// Begins the layer with an index, with the wait that the previous layer needs, unless the arc stays lit.
     pub fn begin_layer(&mut self, index: usize, lit: Lit) -> Option<Pause> {
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
-        (self.fresh, self.lit, self.here) = (true, lit, lit_ends(&self.ends, lit));
+        (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
         if lit.before {
             self.seconds = 0.0;
             return None;
         }
-        let missing = self.ends.min_layer_time - self.seconds;
-        let pause = self.pause(missing.max(self.ends.interpass_time));
+        let missing = self.usual.min_layer_time - self.seconds;
+        let pause = self.pause(missing.max(self.usual.interpass_time));
         // The wait counts for neither layer.
         self.seconds = 0.0;
         pause
@@ -173,7 +173,7 @@ impl Torch {
     fn pause(&mut self, seconds: f64) -> Option<Pause> {
         let seconds = (seconds.max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
         let from = self.at.filter(|_| seconds > 0.0)?;
-        let at = from.with_z(from.z.max(self.low + self.clearance + self.ends.dwell_height));
+        let at = from.with_z(from.z.max(self.low + self.clearance + self.usual.dwell_height));
         let (length, moving) = self.travel(&[at]);
         self.at = Some(at);
         Some(Pause { at, seconds, length, moving })
@@ -243,7 +243,7 @@ impl Torch {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
             _ => steady,
         };
-        let crater = self.here.crater_fill_time;
+        let crater = self.ends.crater_fill_time;
         let filling = crater * self.crater_feed();
         let metal = metal + filling;
         let [before, after] = self.delays();
@@ -261,7 +261,7 @@ impl Torch {
     /// speed, s per pass.
     fn delays(&self) -> [f64; 2] {
         let Some(process) = &self.process else { return [0.0; 2] };
-        let end = || process.arc_end_delay + process.gas_postflow + retract_time(&self.ends, process);
+        let end = || process.arc_end_delay + process.gas_postflow + retract_time(&self.usual, process);
         [process.gas_preflow + process.arc_start_delay, self.arc_end_time.unwrap_or_else(end)]
     }
 }
