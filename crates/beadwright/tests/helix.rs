@@ -151,5 +151,23 @@ fn two_walls_are_no_helix() {
     let mesh = Mesh::from_triangles(vertices, triangles).0;
     let error = plan::plan("two", &mesh, &profile(true), &Task::new()).unwrap_err();
     assert!(matches!(error, PlanError::NoHelix { layer: 1, passes: 2 }), "{error}");
-    assert!(error.to_string().contains("layer 1"), "{error}");
+    assert!(error.to_string().contains("layer 1 is not one closed wall (it has 2 passes)"), "{error}");
+}
+
+/// Where a controller holds no more points, the arc is lit again, and the wall rises on as if it had not.
+#[test]
+fn a_helix_longer_than_a_program_is_lit_again_and_said() {
+    let mut profile = profile(true);
+    let krl = profile.dialects.krl.as_mut().unwrap();
+    krl.max_megabytes = 0.1;
+    let plan = planned(&tube(40.0, 7.54, 40.0, 0.0), &profile);
+    let starts = plan.summary.metrics.arc_starts;
+    assert!((2..=plan.layers.len() as u64 as _).contains(&starts), "{starts}");
+    let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
+    assert!(text.iter().any(|t| t.contains("lit again")), "{text:?}");
+    let settings = plan::deposit_settings(&profile);
+    let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+    assert!(!findings.iter().any(|f| f.kind == "points"), "{findings:?}");
+    let heights: Vec<f64> = plan.layers.iter().flat_map(|l| &l.passes[0].points).map(|p| p.z).collect();
+    assert!(heights.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "it rises all the way");
 }

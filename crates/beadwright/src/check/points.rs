@@ -34,7 +34,7 @@ fn fault(layer: &Layer, pass: &Pass) -> Option<String> {
         return Some("all points lie on one spot, where the arc would burn through.".to_owned());
     }
     // The turn of a helix rises from the layer below.
-    let lowest = layer.z - if layer.lit.before { 1.0 + OFF_HEIGHT } else { OFF_HEIGHT } * layer.height;
+    let lowest = layer.z - if layer.lit.is_turn() { 1.0 + OFF_HEIGHT } else { OFF_HEIGHT } * layer.height;
     let off = pass.points.iter().find(|p| p.z < lowest || p.z > layer.z + OFF_HEIGHT * layer.height);
     off.map(|p| format!("a point lies at z {:.2} mm, but the layer at {:.2} mm.", p.z, layer.z))
 }

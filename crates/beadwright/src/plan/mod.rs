@@ -192,8 +192,9 @@ pub enum PlanError<E> {
     Empty(String),
     /// A layer that is not one closed wall, though all are to be turns of a helix.
     #[error(
-        "layer {layer} is not one closed wall but {passes} passes, and wall.helix makes one helix of all layers. Leave wall.helix \
-         out, plan a surface as walls (--surface wall), or plan the part up to there."
+        "layer {layer} is not one closed wall ({}), and wall.helix makes one helix of all layers. Leave wall.helix out, plan a \
+         surface as walls (--surface wall), or plan the part up to there.",
+        if *passes == 1 { "its pass is open".to_owned() } else { format!("it has {passes} passes") }
     )]
     NoHelix {
         /// Number of the layer, from 1.
