@@ -12,6 +12,7 @@ use beadwright::plan::{self, Plan, PlanError};
 use beadwright::profile::Profile;
 use beadwright::program::Turns;
 use beadwright::task::Task;
+use beadwright::warning::WarningKind;
 use beadwright::{check, plan_file};
 use common::{profile_by, tube};
 
@@ -138,6 +139,28 @@ fn turns_are_put_together_for_programs() {
     assert!(rest.len() == 1 && rest[0].index == 4 && !rest[0].lit.is_turn());
     let apart = taken(&|index| !(2..=5).contains(&index));
     assert_eq!(apart.iter().map(|layer| layer.index).collect::<Vec<_>>(), [0, 6]);
+}
+
+/// A limit of temperature that a helix cannot keep is said.
+#[test]
+fn a_helix_hotter_than_the_limit_is_said() {
+    let mut profile = profile(true);
+    let limits =
+        beadwright::heat::Interpass { max_temperature: 100.0, min_temperature: None, reorder: true, along: true };
+    profile.interpass = Some(limits);
+    let plan = planned(&tube(30.0, 7.54, 40.0, 0.0), &profile);
+    assert!(plan.layers.iter().all(|layer| layer.passes.len() == 1 && layer.passes[0].wait == 0.0));
+    let hot = plan.summary.warnings.summaries().find(|w| w.kind == WarningKind::HotAhead).unwrap();
+    assert!(hot.count > plan.layers.len() / 2 && hot.largest.size > 150.0, "{hot:?}");
+}
+
+/// A wall of two beads is one closed loop, and no helix.
+#[test]
+fn a_loop_of_two_beads_is_no_helix() {
+    let mut profile = profile(true);
+    "loop".clone_into(&mut profile.fill.strategy);
+    let error = plan::plan("two", &tube(40.0, 13.0, 10.0, 0.0), &profile, &Task::new()).unwrap_err();
+    assert!(matches!(error, PlanError::NoHelix { layer: 1, passes: 1 }), "{error}");
 }
 
 /// What is not one closed wall is refused with the layer.

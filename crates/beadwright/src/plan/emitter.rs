@@ -94,7 +94,9 @@ impl<S: Sink> Emitter<'_, S> {
         let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let (place, peak) = heat.peak();
-            if heat.start <= limits.max_temperature + NOISE && peak > limits.max_temperature + NOISE {
+            // A start is cool, or cannot be waited for: that is another warning. A helix begins its turns as hot as they are.
+            let is_asked = heat.start <= limits.max_temperature + NOISE || layer.lit.is_turn();
+            if is_asked && peak > limits.max_temperature + NOISE {
                 let place = place_on(pass, place as f64 * build.spacing());
                 layer.warnings.push(Warning { kind: WarningKind::HotAhead, layer: layer.index, place, size: peak });
             }

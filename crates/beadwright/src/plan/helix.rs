@@ -5,7 +5,7 @@
 //! [`Lit::LEAST`] of a bead, so the second turn begins with too much metal, and the last one ends early by as much.
 
 use crate::layer::{Layer, Lit};
-use crate::pass::{Along, Pass, Segment};
+use crate::pass::{Along, Pass, PassKind, Segment};
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::polyline;
@@ -61,7 +61,8 @@ impl Helix {
     pub(super) fn turn(&mut self, layer: &mut Layer, bead_width: f64) -> Result<(), NoTurn> {
         let (index, passes) = (layer.index, layer.passes.len());
         let [pass] = &mut layer.passes[..] else { return Err(NoTurn { layer: index, passes }) };
-        if !pass.closed || pass.points.len() < 3 {
+        // A loop of two beads is one closed pass, too.
+        if !pass.closed || pass.kind != PassKind::Wall || pass.points.len() < 3 {
             return Err(NoTurn { layer: index, passes });
         }
         let places = places(pass, self.below.as_ref().map(|(.., torch)| *torch), PIECE * bead_width);

@@ -194,7 +194,7 @@ pub enum PlanError<E> {
     #[error(
         "layer {layer} is not one closed wall ({}), and wall.helix makes one helix of all layers. Leave wall.helix out, plan a \
          surface as walls (--surface wall), or plan the part up to there.",
-        if *passes == 1 { "its pass is open".to_owned() } else { format!("it has {passes} passes") }
+        if *passes == 1 { "its pass is open, or no single bead along a wall".to_owned() } else { format!("it has {passes} passes") }
     )]
     NoHelix {
         /// Number of the layer, from 1.
