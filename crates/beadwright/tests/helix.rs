@@ -160,7 +160,10 @@ fn a_loop_of_two_beads_is_no_helix() {
     let mut profile = profile(true);
     "loop".clone_into(&mut profile.fill.strategy);
     let error = plan::plan("two", &tube(40.0, 13.0, 10.0, 0.0), &profile, &Task::new()).unwrap_err();
-    assert!(matches!(error, PlanError::NoHelix { layer: 1, passes: 1 }), "{error}");
+    assert!(
+        matches!(error, PlanError::NoHelix { layer: 1, .. }) && error.to_string().contains("no single bead"),
+        "{error}"
+    );
 }
 
 /// What is not one closed wall is refused with the layer.
@@ -173,24 +176,39 @@ fn two_walls_are_no_helix() {
     let triangles = one.triangles.iter().copied().chain(two.triangles.iter().map(|t| t.map(|k| k + count))).collect();
     let mesh = Mesh::from_triangles(vertices, triangles).0;
     let error = plan::plan("two", &mesh, &profile(true), &Task::new()).unwrap_err();
-    assert!(matches!(error, PlanError::NoHelix { layer: 1, passes: 2 }), "{error}");
-    assert!(error.to_string().contains("layer 1 is not one closed wall (it has 2 passes)"), "{error}");
+    assert!(matches!(error, PlanError::NoHelix { layer: 1, .. }), "{error}");
+    assert!(
+        error.to_string().contains("layer 1 cannot be a turn of the helix that wall.helix asks for: it has 2 passes."),
+        "{error}"
+    );
 }
 
 /// Where a controller holds no more points, the arc is lit again, and the wall rises on as if it had not.
 #[test]
 fn a_helix_longer_than_a_program_is_lit_again_and_said() {
-    let mut profile = profile(true);
-    let krl = profile.dialects.krl.as_mut().unwrap();
-    krl.max_megabytes = 0.1;
-    let plan = planned(&tube(40.0, 7.54, 40.0, 0.0), &profile);
-    let starts = plan.summary.metrics.arc_starts;
-    assert!((2..=plan.layers.len() as u64 as _).contains(&starts), "{starts}");
-    let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
-    assert!(text.iter().any(|t| t.contains("lit again")), "{text:?}");
-    let settings = plan::deposit_settings(&profile);
-    let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
-    assert!(!findings.iter().any(|f| f.kind == "points"), "{findings:?}");
-    let heights: Vec<f64> = plan.layers.iter().flat_map(|l| &l.passes[0].points).map(|p| p.z).collect();
-    assert!(heights.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "it rises all the way");
+    let mesh = tube(40.0, 7.54, 40.0, 0.0);
+    let turn = planned(&mesh, &profile(true)).layers[1].passes[0].points.len();
+    for (turns, fits) in [(9, true), (7, true), (5, true), (2, false)] {
+        let mut profile = profile(true);
+        // A move takes at most 102 characters.
+        profile.dialects.krl.as_mut().unwrap().max_megabytes = (102 * turns * turn) as f64 * 1e-6;
+        let plan = match plan::plan("tube", &mesh, &profile, &Task::new()) {
+            Ok(plan) => plan,
+            Err(error) => {
+                let text = error.to_string();
+                assert!(!fits && text.contains("layer 1 cannot be a turn") && text.contains("three turns"), "{text}");
+                continue;
+            }
+        };
+        let starts = plan.layers.iter().filter(|layer| !layer.lit.before).count();
+        assert!(fits && starts > 1 && starts <= plan.layers.len() / 2, "{turns}: {starts}");
+        assert!(plan.layers.iter().all(|layer| layer.lit.is_turn()), "no turn is alone");
+        let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
+        assert!(text.iter().any(|t| t.contains("lit again")), "{text:?}");
+        let settings = plan::deposit_settings(&profile);
+        let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+        assert!(!findings.iter().any(|f| f.kind == "points"), "{findings:?}");
+        let heights: Vec<f64> = plan.layers.iter().flat_map(|l| &l.passes[0].points).map(|p| p.z).collect();
+        assert!(heights.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9), "it rises all the way");
+    }
 }

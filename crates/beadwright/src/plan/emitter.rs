@@ -61,7 +61,8 @@ impl<S: Sink> Emitter<'_, S> {
             level_layers::share(&mut layer, self.profile);
         }
         if let Some(helix) = &mut self.helix {
-            self.no_turn = self.no_turn.or(helix.turn(&mut layer, self.profile.bead.width).err());
+            let turn = helix.turn(&mut layer, self.profile.bead.width);
+            self.no_turn = self.no_turn.take().or(turn.err());
         }
         relight::relight(&mut layer, self.profile);
         self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);

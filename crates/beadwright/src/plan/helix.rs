@@ -12,16 +12,17 @@ use planar::polyline;
 
 /// Pieces are at most this long, in bead widths, so that they follow the turn below.
 const PIECE: f64 = 2.0;
-/// Points in which a turn may grow over the one before, as a factor.
-const GROWS: f64 = 1.2;
+/// Points of the next two turns, as a factor of those of one: each may have a fifth more than the one before. Where a program has no
+/// room for them, the arc goes out, so no turn is ever alone.
+const NEXT_TWO: f64 = 1.2 + 1.2 * 1.2;
 
 /// A layer of which no turn can be made.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct NoTurn {
     /// Index of the layer.
     pub layer: usize,
-    /// How many passes it has.
-    pub passes: usize,
+    /// Why, as a clause.
+    pub why: String,
 }
 
 /// The helix so far.
@@ -57,17 +58,18 @@ impl Helix {
     /// Makes a turn of the only pass of a layer.
     ///
     /// # Errors
-    /// [`NoTurn`] where it is not one closed wall.
+    /// [`NoTurn`] where it is not one closed wall, or too long for a program.
     pub(super) fn turn(&mut self, layer: &mut Layer, bead_width: f64) -> Result<(), NoTurn> {
-        let (index, passes) = (layer.index, layer.passes.len());
-        let [pass] = &mut layer.passes[..] else { return Err(NoTurn { layer: index, passes }) };
+        let (index, count) = (layer.index, layer.passes.len());
+        let none = |why: String| Err(NoTurn { layer: index, why });
+        let [pass] = &mut layer.passes[..] else { return none(format!("it has {count} passes")) };
         // A loop of two beads is one closed pass, too.
         if !pass.closed || pass.kind != PassKind::Wall || pass.points.len() < 3 {
-            return Err(NoTurn { layer: index, passes });
+            return none("its pass is open, or no single bead along a wall".to_owned());
         }
         let places = places(pass, self.below.as_ref().map(|(.., torch)| *torch), PIECE * bead_width);
         let ring: Vec<DVec2> = places.iter().map(|place| place.at).collect();
-        let is_last = index + 1 == self.layers;
+        let left = self.layers - index - 1;
         let mut turn = Turn::default();
         match &self.below {
             Some((below, z, torch)) => {
@@ -80,7 +82,7 @@ impl Helix {
             }
             None => places.iter().for_each(|place| turn.add(place.at, layer.z, place, 1.0)),
         }
-        if is_last && self.turns > 0 {
+        if left == 0 && self.turns > 0 {
             for place in places.iter().skip(1).take_while(|place| place.part <= 1.0 - Lit::LEAST) {
                 turn.add(place.at, layer.z, place, 1.0 - place.part);
             }
@@ -88,11 +90,14 @@ impl Helix {
         *pass = turn.pass(pass);
         let count = pass.points.len();
         self.points += count;
-        let fits = |most: usize| (self.points as f64 + GROWS * count as f64) < most as f64;
-        let after = !is_last && self.longest.is_none_or(fits);
+        let fit = self.longest.is_none_or(|most| self.points as f64 + NEXT_TWO * (count as f64) < most as f64);
+        if !fit && !self.lit && left > 0 {
+            return none("a program of the controller is too small for three turns".to_owned());
+        }
+        let after = left == 1 || (left > 1 && fit);
         layer.lit = Lit { before: self.lit, after };
         let end = pass.end().unwrap_or_default().truncate();
-        if !after && !is_last {
+        if !after && left > 0 {
             let (kind, size) = (WarningKind::Relit, 1.0);
             layer.warnings.push(Warning { kind, layer: index, place: end, size });
         }

@@ -192,15 +192,14 @@ pub enum PlanError<E> {
     Empty(String),
     /// A layer that is not one closed wall, though all are to be turns of a helix.
     #[error(
-        "layer {layer} is not one closed wall ({}), and wall.helix makes one helix of all layers. Leave wall.helix out, plan a \
-         surface as walls (--surface wall), or plan the part up to there.",
-        if *passes == 1 { "its pass is open, or no single bead along a wall".to_owned() } else { format!("it has {passes} passes") }
+        "layer {layer} cannot be a turn of the helix that wall.helix asks for: {why}. Leave wall.helix out, plan a surface as walls \
+         (--surface wall), or plan the part up to there."
     )]
     NoHelix {
         /// Number of the layer, from 1.
         layer: usize,
-        /// How many passes it has.
-        passes: usize,
+        /// Why, as a clause.
+        why: String,
     },
     /// Parts cannot be welded one after another with this profile.
     #[error("the parts cannot be welded one after another: {0}")]
@@ -558,8 +557,8 @@ fn run<S: Sink + Send>(
             || ready.into_iter().try_for_each(|layer| emitter.emit(layer)),
         );
         emitted.map_err(PlanError::Sink)?;
-        if let Some(NoTurn { layer, passes }) = emitter.no_turn {
-            return Err(PlanError::NoHelix { layer: layer + 1, passes });
+        if let Some(NoTurn { layer, why }) = emitter.no_turn {
+            return Err(PlanError::NoHelix { layer: layer + 1, why });
         }
         ready = filled?;
     }
