@@ -16,6 +16,8 @@ pub enum PassKind {
     Skeleton,
     /// Along the middle of a wall.
     Wall,
+    /// A dot: the arc burns on the spot.
+    Spot,
 }
 
 impl PassKind {
@@ -26,6 +28,7 @@ impl PassKind {
             Self::Infill => "infill",
             Self::Skeleton => "skeleton",
             Self::Wall => "wall",
+            Self::Spot => "spot",
         }
     }
 }

@@ -16,6 +16,7 @@ use beadwright::layer::{Extent, Layer};
 use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::plan;
+use beadwright::process::{Dot, Spot};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
@@ -195,6 +196,28 @@ fn a_helix_is_one_pass_in_every_dialect() {
         assert!(weld.points.windows(2).all(|p| p[1][2] >= p[0][2] - 1e-9), "{name}");
         let (first, last) = (weld.points[0][2], weld.points[weld.points.len() - 1][2]);
         assert!((first - plan.layers[0].z).abs() < 2e-3 && (last - 24.0).abs() < 0.5 * 2.0, "{name}: {first} {last}");
+    }
+}
+
+/// A dot is a pass in every dialect, and its arc burns as long as it should.
+#[test]
+fn a_dot_takes_its_time_in_every_dialect() {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    profile.spot = Some(Spot { time: 0.9, height: 2.6 });
+    let mesh = common::tube(3.6, 3.6 - 1e-3, 8.0, 0.0);
+    let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
+    let passes: Vec<&Pass> = plan.layers.iter().flat_map(|l| &l.passes).collect();
+    assert!(passes.len() == 4 && passes.iter().all(|pass| pass.kind == PassKind::Spot));
+    for (name, _, motion) in &all_of(&plan.layers) {
+        assert_eq!(motion.welds.len(), passes.len(), "{name}");
+        for (weld, pass) in motion.welds.iter().zip(&passes) {
+            assert!((length(weld) - Dot::LENGTH).abs() < 2e-3, "{name}: {}", length(weld));
+            let planned = pass.seconds(&profile.process);
+            let seconds = weld.speeds.last().map(|speed| length(weld) / speed);
+            // Speeds have one decimal in some languages, and none at all are read from a printer's program.
+            let near = |seconds: f64| (seconds / planned - 1.0).abs() < 0.1;
+            assert!(seconds.is_none_or(near), "{name}: {seconds:?} s for {planned}");
+        }
     }
 }
 

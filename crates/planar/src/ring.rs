@@ -102,6 +102,17 @@ impl Ring {
         self.edges().map(|(a, b)| (a - origin).perp_dot(b - origin)).sum::<f64>() / 2.0
     }
 
+    /// The centroid of the area it bounds, mm; `None` where it bounds none.
+    pub fn centroid(&self) -> Option<DVec2> {
+        let origin = *self.0.first()?;
+        let triangles = self.edges().map(|(a, b)| (a - origin, b - origin));
+        let (area, moment) = triangles.fold((0.0, DVec2::ZERO), |(area, moment), (a, b)| {
+            let twice = a.perp_dot(b);
+            (area + twice, moment + (a + b) / 3.0 * twice)
+        });
+        (area.abs() > 1e-9).then(|| origin + moment / area)
+    }
+
     /// Perimeter, mm.
     pub fn length(&self) -> f64 {
         self.edges().map(|(a, b)| a.distance(b)).sum()

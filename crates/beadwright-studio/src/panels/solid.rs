@@ -5,7 +5,6 @@ use crate::actions::Action;
 use crate::studio::Studio;
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
-use beadwright::pass::PassKind;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 use glam::DVec3;
 
@@ -109,8 +108,7 @@ fn legend(studio: &Studio, ui: &mut Ui) {
     let dark = !studio.window.settings.light;
     if studio.view.colour == Colour::Kind {
         let used = |kind| studio.plans.own.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
-        let kinds = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
-        for kind in kinds.into_iter().filter(|kind| used(*kind)) {
+        for kind in palette::KINDS.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));
             ui.label(studio.language().word("kind", kind.name()));

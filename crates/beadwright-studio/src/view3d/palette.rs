@@ -18,7 +18,8 @@ pub const START: Rgb = [40, 190, 200];
 pub const END: Rgb = [222, 62, 54];
 
 /// The kinds of passes, in the order of their colours.
-pub const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
+pub const KINDS: [PassKind; 5] =
+    [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall, PassKind::Spot];
 
 /// The colour of a kind of pass. Those without red, green or blue cones tell them apart too (`tests/colours.rs`).
 pub fn kind(kind: PassKind) -> Rgb {
@@ -26,7 +27,7 @@ pub fn kind(kind: PassKind) -> Rgb {
         PassKind::Contour => [52, 100, 230],
         PassKind::Infill => [252, 168, 48],
         PassKind::Skeleton => [14, 194, 140],
-        PassKind::Wall => [170, 133, 204],
+        PassKind::Wall | PassKind::Spot => [170, 133, 204],
     }
 }
 

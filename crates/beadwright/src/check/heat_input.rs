@@ -21,7 +21,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let sentence = |(heat, limit)| format!("the heat input is {heat:.0} J/mm; the limit is {limit} J/mm.");
     let everywhere = over(process, process.deposition_speed).map(|found| CHECK.of_plan(sentence(found)));
     // Wider beads have more metal and more heat.
-    let wide = subject.passes().filter(|_| everywhere.is_none()).filter_map(|(layer, i, pass)| {
+    let wide = subject.beads().filter(|_| everywhere.is_none()).filter_map(|(layer, i, pass)| {
         let process = process.at_layer(layer.index);
         let (s, found) = pass.segments().find_map(|s| Some((s, over(&process, s.pace)?)))?;
         Some(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), sentence(found)))

@@ -34,6 +34,7 @@ pub use rehearsal::rehearse;
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
 use crate::finding::{Finding, Severity};
 use crate::layer::Layer;
+use crate::pass::PassKind;
 use crate::plan::{self, Summary};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
@@ -286,6 +287,11 @@ impl Subject<'_> {
     /// Every pass with its layer and its index in it.
     fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+    }
+
+    /// Those that are beads: of dots the profile says how long they take and how high they are.
+    fn beads(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
+        self.passes().filter(|(_, _, pass)| pass.kind != PassKind::Spot)
     }
 
     /// Time for which the torch welds a layer, s.

@@ -16,7 +16,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let soonest = subject.profile.soonest_arc_end();
     let process = &subject.profile.process;
     let time = |pass: &Pass| pass.seconds(process);
-    let short = subject.passes().filter(|(_, _, pass)| pass.points.len() > 1 && time(pass) < 0.999 * soonest);
+    let short = subject.beads().filter(|(_, _, pass)| pass.points.len() > 1 && time(pass) < 0.999 * soonest);
     let text = |time: f64| format!("the torch is over it in {time:.2} s; its arc takes {soonest} s to start.");
     short.map(|(layer, i, pass)| CHECK.of_pass(layer, i, pass.start(), text(time(pass)))).collect()
 }

@@ -17,7 +17,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let limits = &subject.profile.check;
     let (low, high) = (limits.min_speed.unwrap_or(0.25 * nominal), limits.max_speed.unwrap_or(4.0 * nominal));
     let mut findings = Vec::new();
-    for (layer, i, pass) in subject.passes() {
+    for (layer, i, pass) in subject.beads() {
         let process = process.at_layer(layer.index);
         // A range does not hold NaN.
         let outside = |pace: f64| !(low..=high).contains(&process.speed_at(pace)) || !pace.is_finite();

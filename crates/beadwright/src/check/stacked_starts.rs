@@ -2,7 +2,7 @@
 
 use super::{Check, Finding, Subject};
 use crate::layer::Layer;
-use crate::pass::Pass;
+use crate::pass::{Pass, PassKind};
 
 pub(super) const CHECK: Check = Check {
     name: "stacked-starts",
@@ -41,5 +41,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 fn starts(layer: &Layer) -> impl Iterator<Item = (usize, glam::DVec3)> + '_ {
     let start = |(i, pass): (usize, &Pass)| Some((i, pass.start().filter(|p| p.is_finite())?));
     let lit_anew = layer.passes.iter().enumerate().filter(|_| !layer.lit.before);
+    // A column of dots has no other place.
+    let lit_anew = lit_anew.filter(|(_, pass)| pass.kind != PassKind::Spot);
     lit_anew.filter_map(start)
 }

@@ -12,11 +12,12 @@ use serde_json::{Value, json};
 pub(super) const FORMAT: Format = Format { extension: "glb", purpose: "the shape as built, for viewers", write };
 
 /// Kinds of passes with their colours: red, green, blue, 0 to 1.
-const COLOURS: [(PassKind, [f64; 3]); 4] = [
+const COLOURS: [(PassKind, [f64; 3]); 5] = [
     (PassKind::Contour, [0.12, 0.44, 0.84]),
     (PassKind::Infill, [0.91, 0.53, 0.16]),
     (PassKind::Skeleton, [0.49, 0.34, 0.76]),
     (PassKind::Wall, [0.06, 0.55, 0.55]),
+    (PassKind::Spot, [0.06, 0.55, 0.55]),
 ];
 
 /// From mm with z upwards to m with y upwards, column by column.

@@ -19,7 +19,7 @@ fn colour(kind: PassKind) -> &'static str {
         PassKind::Contour => "#1f6fd6",
         PassKind::Infill => "#e8862a",
         PassKind::Skeleton => "#7e57c2",
-        PassKind::Wall => "#0f8b8d",
+        PassKind::Wall | PassKind::Spot => "#0f8b8d",
     }
 }
 

@@ -11,7 +11,7 @@ pub(super) const FORMAT: Format =
     Format { extension: "vtp", purpose: "lines with values, for ParaView and VTK", write };
 
 /// The numbers that stand for the kinds of passes.
-const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
+const KINDS: [PassKind; 5] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall, PassKind::Spot];
 
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let pieces = beads.pieces();

@@ -22,6 +22,7 @@ pub mod angle;
 pub mod compound;
 pub mod contour;
 pub mod coverage;
+pub mod dot;
 pub mod fermat;
 pub mod hilbert;
 pub mod hybrid;

@@ -11,7 +11,7 @@ use crate::heat::{LONGEST_WAIT, NOISE, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
 use crate::metrics::Metrics;
 use crate::order;
-use crate::pass::Pass;
+use crate::pass::{Pass, PassKind};
 use crate::profile::Profile;
 use crate::slice::Slice;
 use crate::warning::{Warning, WarningKind, Warnings};
@@ -136,7 +136,8 @@ impl<S: Sink> Emitter<'_, S> {
             doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
         }
         let soonest = profile.soonest_arc_end();
-        let unsteady = |pass: &&Pass| pass.seconds(&profile.process) < 0.999 * soonest;
+        // A dot takes as long as it took in the trial.
+        let unsteady = |pass: &&Pass| pass.kind != PassKind::Spot && pass.seconds(&profile.process) < 0.999 * soonest;
         for pass in layer.passes.iter().filter(unsteady) {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
         }

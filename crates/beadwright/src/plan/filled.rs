@@ -5,7 +5,7 @@ use super::scan_lines::Planned;
 use crate::fill::contour::rings_only;
 use crate::fill::coverage::Coverage;
 use crate::fill::sound::{self, Fault};
-use crate::fill::{Fill, FillSettings, Path, Strategy};
+use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
 use crate::profile::Profile;
 use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
@@ -134,9 +134,17 @@ fn fill_layer(
             Fill::default()
         };
         let is_left_out = own.is_empty();
+        let told = slice.warnings.len();
         for stage in &mut own.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
+        if own.is_empty()
+            && let Some(dot) = profile.dot().and_then(|size| dot::dot(island, slice.height, &size))
+        {
+            slice.warnings.truncate(told);
+            own.stages = vec![vec![dot]];
+        }
+        let is_left_out = is_left_out && own.is_empty();
         let cover = Cover::of(&own, island, profile, &reach);
         planned_area += cover.area;
         let places =

@@ -2,11 +2,13 @@
 
 mod by_layer;
 mod cost;
+mod spot;
 mod start_stop;
 mod torch_shape;
 
 pub use by_layer::LayerProcess;
 pub use cost::Cost;
+pub use spot::{Dot, Spot};
 pub use start_stop::StartStop;
 pub use torch_shape::TorchShape;
 

@@ -4,6 +4,7 @@ use super::Profile;
 use crate::dialect::{self, PLACEHOLDERS, own};
 use crate::fill;
 use crate::limit::{Broken, Limit};
+use crate::process::Follow;
 use crate::template;
 
 pub(super) fn first_broken(p: &Profile) -> Option<Broken> {
@@ -39,6 +40,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.weave.iter().flat_map(|weave| weave.limits()).collect(),
         p.one_loop.limits(),
         p.start_stop.limits(),
+        p.spot.iter().flat_map(|spot| spot.limits()).collect(),
         p.cost.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),
         p.heat.iter().flat_map(|heat| heat.limits()).collect(),
@@ -86,6 +88,10 @@ fn contradiction(p: &Profile) -> Option<Broken> {
             let (key, value) = ("interpass.max_temperature".to_owned(), limits.max_temperature.to_string());
             return Some(Broken { key, value, reason: format!("{other} is not below it.") });
         }
+    }
+    if let (Some(spot), Follow::WireFeed) = (&p.spot, p.process.follow) {
+        let reason = "a dot is as large as its time is long, so process.follow must be \"speed\".".to_owned();
+        return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });
     }
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));

@@ -42,7 +42,7 @@ use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
-use crate::process::{Cost, Process, StartStop, TorchShape, Travel, Wire};
+use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
@@ -137,6 +137,8 @@ pub struct Profile {
     /// How passes begin and end, and how long layers wait; optional.
     #[serde(default)]
     pub start_stop: StartStop,
+    /// How a dot is welded, for islands in which a bead has no room; optional.
+    pub spot: Option<Spot>,
     /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
     /// Prices; optional.
@@ -275,10 +277,17 @@ impl Profile {
             None => 1.0,
         };
         let wall = rise.filter(|_| kind == PassKind::Wall);
-        move |width| match wall {
-            Some(rise) => nominal * bead.area() / (width * rise),
-            None => nominal * thinner * self.bead.law.pace(&bead, width),
+        let dot = self.dot().filter(|_| kind == PassKind::Spot);
+        move |width| match (wall, dot) {
+            (_, Some(dot)) => dot.pace(width),
+            (Some(rise), None) => nominal * bead.area() / (width * rise),
+            (None, None) => nominal * thinner * self.bead.law.pace(&bead, width),
         }
+    }
+
+    /// The dot that the process lays; `None` without `[spot]`.
+    pub fn dot(&self) -> Option<Dot> {
+        self.spot.map(|spot| spot.dot(self.process.deposition_speed * self.bead().area()))
     }
 
     /// Distance between neighbouring centre-lines, mm.

@@ -147,7 +147,7 @@ fn kind(kind: PassKind) -> u32 {
         PassKind::Contour => 0,
         PassKind::Infill => 1,
         PassKind::Skeleton => 2,
-        PassKind::Wall => 3,
+        PassKind::Wall | PassKind::Spot => 3,
     }
 }
 

@@ -158,7 +158,7 @@ fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>,
         PassKind::Contour => CONTOUR,
         PassKind::Infill => INFILL,
         PassKind::Skeleton => SKELETON,
-        PassKind::Wall => WALL,
+        PassKind::Wall | PassKind::Spot => WALL,
     };
     svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
     push_fixed(svg, width, 3);

@@ -64,9 +64,11 @@ impl WarningKind {
                 "a place is thinner than wall.thinnest, or a short neck, or the strategy is raster, which welds no thin walls",
                 "take another strategy than raster, a narrower bead, or a thicker part",
             ),
-            Self::IslandTooSmall => {
-                ("island-too-small", "a whole island is narrower than a bead", "take a narrower bead or a larger part")
-            }
+            Self::IslandTooSmall => (
+                "island-too-small",
+                "a whole island is narrower than a bead",
+                "take a narrower bead or a larger part, or say how dots are welded (`[spot]`)",
+            ),
             Self::ThinWall => (
                 "thin-wall",
                 "a wall is thinner than the narrowest bead, so metal lies beside it",

@@ -1,7 +1,7 @@
 //! A pass as it is welded: with its overlap, hot start and lead-out.
 
 use crate::layer::Lit;
-use crate::pass::{Along, Pass};
+use crate::pass::{Along, Pass, PassKind};
 use crate::process::StartStop;
 use glam::DVec3;
 
@@ -27,7 +27,9 @@ pub fn path(pass: &Pass, ends: &StartStop) -> Vec<(DVec3, f64)> {
 /// height `bead_height` (mm). The metal that fills craters is not included.
 pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     let mut moves = moves(pass, ends);
-    hump_and_crater(&mut moves, ends, bead_height);
+    if pass.kind != PassKind::Spot {
+        hump_and_crater(&mut moves, ends, bead_height);
+    }
     if moves.len() < 2 {
         return pass.clone();
     }
@@ -56,7 +58,9 @@ fn moves(pass: &Pass, ends: &StartStop) -> Vec<Move> {
     if pass.closed {
         overlap(&mut moves, ends.end_overlap);
     }
-    lead(&mut moves, ends);
+    if pass.kind != PassKind::Spot {
+        lead(&mut moves, ends);
+    }
     moves
 }
 

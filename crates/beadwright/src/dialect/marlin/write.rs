@@ -200,7 +200,7 @@ impl MarlinGcode {
 /// The name that G-code viewers know for a kind of pass.
 fn type_name(kind: PassKind) -> &'static str {
     match kind {
-        PassKind::Contour | PassKind::Wall => "External perimeter",
+        PassKind::Contour | PassKind::Wall | PassKind::Spot => "External perimeter",
         PassKind::Infill => "Solid infill",
         PassKind::Skeleton => "Gap fill",
     }

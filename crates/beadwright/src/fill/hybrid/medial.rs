@@ -85,7 +85,7 @@ fn is_knot(ladder: &Ladder) -> bool {
 /// A line across a piece that has no axis to speak of, from its farthest corner through its middle; none where it would
 /// be too short.
 fn across(piece: &Polygon, outermost: &Region, settings: &FillSettings) -> Option<Line> {
-    let middle = centroid(piece.outer.points())?;
+    let middle = piece.outer.centroid()?;
     let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(middle).total_cmp(&b.distance_squared(middle));
     let to = *piece.outer.points().iter().max_by(far)?;
     let way = (middle - to).try_normalize()?;
@@ -250,17 +250,6 @@ fn line(rungs: &[Rung], j: usize, n: usize, settings: &FillSettings) -> Line {
         closed: false,
         contour: false,
     }
-}
-
-/// The middle of the area that a ring bounds.
-fn centroid(points: &[DVec2]) -> Option<DVec2> {
-    let origin = *points.first()?;
-    let triangles = points.windows(2).map(|w| (w[0] - origin, w[1] - origin));
-    let (area, moment) = triangles.fold((0.0, DVec2::ZERO), |(area, moment), (a, b)| {
-        let twice = a.perp_dot(b);
-        (area + twice, moment + (a + b) / 3.0 * twice)
-    });
-    (area.abs() > 1e-9).then(|| origin + moment / area)
 }
 
 /// Extends free ends to a stepover before the contour that lies beyond; a line otherwise too short to be laid is
