@@ -21,9 +21,8 @@ pub fn above(mesh: &Mesh, z: f64) -> Option<(Mesh, RepairReport)> {
         let corners: Vec<u32> = std::iter::once(outer).chain(holes.iter().copied()).flatten().copied().collect();
         let ring = |ring: &[u32]| Ring::new(places(ring, &cut.vertices));
         let face = Polygon { outer: ring(outer), holes: holes.iter().map(|hole| ring(hole)).collect() };
-        let points = places(&corners, &cut.vertices);
         // Seen from below.
-        triangles.extend(cap(&face, &points).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
+        triangles.extend(cap(&face).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
     }
     let floor = |vertices: Vec<DVec3>| vertices.into_iter().map(|v| v - DVec3::Z * z).collect();
     let (vertices, triangles) = compact(&cut.vertices, &triangles);

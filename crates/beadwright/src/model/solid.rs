@@ -3,9 +3,7 @@
 use glam::{DVec2, DVec3};
 use planar::triangulate::triangulate;
 use planar::{Polygon, Ring};
-use rstar::primitives::GeomWithData;
-use rstar::{AABB, RTree};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// A closed surface of triangles, mm.
@@ -37,7 +35,7 @@ impl Solid {
                 below += count;
             }
         }
-        solid.caps(&cap(base, &points), solid.vertices.len().saturating_sub(points.len()));
+        solid.caps(&cap(base), solid.vertices.len().saturating_sub(points.len()));
         solid
     }
 
@@ -106,43 +104,132 @@ impl Solid {
     }
 }
 
-/// Points with their numbers, by where they lie.
-type Numbered = RTree<GeomWithData<[f64; 2], usize>>;
-
-/// How far a point may lie beside an edge and still be on it, mm.
-const ON_EDGE_MM: f64 = 1e-9;
-
-/// Triangles over `base`, whose points are `points`. Ear clipping skips points in line with their neighbours; edges are
-/// split at these points, so that the cap has the same edges as the walls.
-pub(super) fn cap(base: &Polygon, points: &[DVec2]) -> Vec<[usize; 3]> {
-    let numbered = points.iter().enumerate().map(|(i, p)| GeomWithData::new(p.to_array(), i));
-    let near = RTree::bulk_load(numbered.collect());
+/// Triangles over `base` as indices into its points. Ear clipping passes over points in line with their neighbours; triangles are
+/// split there, so that the cap has the same edges as the walls.
+pub(super) fn cap(base: &Polygon) -> Vec<[usize; 3]> {
     let mut open = triangulate(base);
+    let mut lacks = Lacks::of(base, &open);
     let mut done = Vec::with_capacity(open.len());
     while let Some([a, b, c]) = open.pop() {
         let edges = [[a, b, c], [b, c, a], [c, a, b]];
-        let split = edges.iter().find_map(|&[i, j, k]| Some(([i, j, k], point_within(&near, points, i, j)?)));
-        match split {
-            Some(([i, j, k], middle)) => {
-                open.extend([[i, middle, k], [middle, j, k]].iter().filter(|t| !t[..2].contains(&k)));
-            }
+        match edges.iter().find_map(|&[i, j, k]| Some((k, lacks.way(i, j)?))) {
+            Some((k, way)) => open.extend(way.windows(2).map(|step| [step[0], step[1], k])),
             None => done.push([a, b, c]),
         }
     }
     done
 }
 
-/// The first point on the edge from `i` to `j`, strictly between the two.
-fn point_within(near: &Numbered, points: &[DVec2], i: usize, j: usize) -> Option<usize> {
-    let along = points[j] - points[i];
-    let length = along.length();
-    let rim = DVec2::splat(ON_EDGE_MM);
-    let (low, high) = (points[i].min(points[j]) - rim, points[i].max(points[j]) + rim);
-    let around = near.locate_in_envelope(&AABB::from_corners(low.to_array(), high.to_array()));
-    let within = around.map(|point| point.data).filter(|&k| {
-        let to = points[k] - points[i];
-        let (beside, ahead) = (along.perp_dot(to), along.dot(to));
-        beside.abs() < ON_EDGE_MM * length && ahead > ON_EDGE_MM * length && ahead < length * (length - ON_EDGE_MM)
-    });
-    within.min()
+/// What the edges of triangles lack to a closed cap.
+struct Lacks {
+    /// Edges to which there is nothing on the other side, and which are not on the rim.
+    single: HashSet<[usize; 2]>,
+    /// The edges that ought to be on their other side, and those of the rim that no triangle has: where they lead from each point.
+    missing: HashMap<usize, Vec<usize>>,
+}
+
+impl Lacks {
+    fn of(base: &Polygon, triangles: &[[usize; 3]]) -> Self {
+        let edges: HashSet<[usize; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let (mut rim, mut first) = (HashSet::new(), 0);
+        for ring in base.rings() {
+            let count = ring.points().len();
+            rim.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
+            first += count;
+        }
+        let single: HashSet<[usize; 2]> =
+            edges.iter().copied().filter(|&[i, j]| !edges.contains(&[j, i]) && !rim.contains(&[i, j])).collect();
+        let mut missing: HashMap<usize, Vec<usize>> = HashMap::new();
+        let beside = single.iter().map(|&[i, j]| [j, i]);
+        let mut all: Vec<[usize; 2]> = rim.into_iter().filter(|edge| !edges.contains(edge)).chain(beside).collect();
+        all.sort_unstable();
+        all.into_iter().for_each(|[i, j]| missing.entry(i).or_default().push(j));
+        Self { single, missing }
+    }
+
+    /// The points that an edge passed over, with its ends, if it is single; its pieces are then missing no more.
+    fn way(&mut self, i: usize, j: usize) -> Option<Vec<usize>> {
+        if !self.single.remove(&[i, j]) {
+            return None;
+        }
+        // The way that was gone so far, and how many of the ways on from each of its points were tried.
+        let (mut way, mut tried) = (vec![i], vec![0]);
+        while let (Some(&at), Some(count)) = (way.last(), tried.last_mut()) {
+            let next = self.missing.get(&at).and_then(|ways| ways.get(*count)).copied();
+            *count += 1;
+            match next {
+                Some(next) if next == j => {
+                    way.push(next);
+                    break;
+                }
+                Some(next) if way.contains(&next) => {}
+                Some(next) => {
+                    way.push(next);
+                    tried.push(0);
+                }
+                None => {
+                    way.pop();
+                    tried.pop();
+                }
+            }
+        }
+        for step in way.windows(2) {
+            self.missing.entry(step[0]).or_default().retain(|&to| to != step[1]);
+            self.single.remove(&[step[1], step[0]]);
+        }
+        (way.len() > 2).then_some(way)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use std::f64::consts::SQRT_2;
+
+    /// Every edge of the cap has another triangle on its other side or is one of the rim, and the area is that of the base.
+    fn check(base: &Polygon) {
+        let points: Vec<DVec2> = base.rings().flat_map(|ring| ring.points().to_vec()).collect();
+        let cap = cap(base);
+        let area: f64 = cap.iter().map(|t| t.map(|i| points[i])).map(|[a, b, c]| (b - a).perp_dot(c - a) / 2.0).sum();
+        assert!((area / base.area() - 1.0).abs() < 1e-9, "{area} for {}", base.area());
+        let mut edges: Vec<[usize; 2]> = cap.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        edges.sort_unstable();
+        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "an edge belongs to two triangles on one side");
+        let (all, mut rim) = (edges.iter().copied().collect::<HashSet<_>>(), Vec::new());
+        rim.extend(edges.into_iter().filter(|&[i, j]| !all.contains(&[j, i])));
+        let mut first = 0;
+        let wanted = base.rings().flat_map(|ring| {
+            let (start, count) = (first, ring.points().len());
+            first += count;
+            (0..count).map(move |k| [start + k, start + (k + 1) % count])
+        });
+        let mut wanted: Vec<[usize; 2]> = wanted.collect();
+        wanted.sort_unstable();
+        assert!(rim == wanted, "an edge inside the cap is open, or one of the rim is missing");
+    }
+
+    /// A square with many points on its sides, `off` (mm) beside them at most.
+    fn square(middle: DVec2, side: f64, degrees: f64, off: f64, random: &mut Random) -> Ring {
+        let corner = |k: usize| middle + DVec2::from_angle(TAU / 4.0 * k as f64 + degrees.to_radians()) * side / SQRT_2;
+        let sides = (0..4).flat_map(|k| (0..40).map(move |i| (k, f64::from(i) / 40.0)));
+        let mut any = || off * (2.0 * random.unit() - 1.0);
+        let mut beside = || DVec2::new(any(), any());
+        Ring::new(sides.map(|(k, part)| corner(k).lerp(corner(k + 1), part) + beside()).collect())
+    }
+
+    /// A cut through a flat face of many triangles has points in line but for the last digits.
+    #[test]
+    fn a_cap_with_many_points_in_line_is_closed() {
+        let mut random = Random::new(1);
+        for degrees in [0.0, 17.0, 45.0] {
+            for off in [0.0, 1e-15, 1e-12, 1e-10, 1e-9, 1e-6] {
+                let outer = square(DVec2::ZERO, 60.0, degrees, off, &mut random);
+                let middles = [-20.0, -10.0, 0.0, 10.0, 20.0].map(|x| DVec2::from_angle(f64::to_radians(degrees)) * x);
+                let holes = middles.map(|m| square(m, 6.0, degrees, off, &mut random).reversed()).to_vec();
+                check(&Polygon { outer: outer.clone(), holes: Vec::new() });
+                check(&Polygon { outer, holes });
+            }
+        }
+    }
 }
