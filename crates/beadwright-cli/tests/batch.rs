@@ -188,7 +188,7 @@ fn what_should_not_be_welded_is_told() {
     let rows: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("rows.json")).unwrap()).unwrap();
     assert!(rows[0]["error"].is_null() && rows[0]["metrics"]["arc_starts"].as_u64() > Some(0));
     let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("should not be welded: ") && told.contains("nothing lies below"), "{told}");
+    assert!(told.contains("should not be welded: ") && told.contains("no bead lies below"), "{told}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("1 of 1 plans should not be welded as they are"));
 }
 

@@ -246,7 +246,9 @@ fn every_shared_model_plans_or_is_refused() {
             Some(0) => {}
             Some(1) => assert!(said.starts_with("error: ") && said.lines().count() == 1, "{}: {said}", path.display()),
             Some(3) => {
-                let reason = said.contains("nothing lies below") || said.contains("less than half over metal");
+                let reason = said.contains("no bead lies below")
+                    || said.contains("above the plate")
+                    || said.contains("over nothing");
                 assert!(reason && said.contains(" z "), "{}: {said}", path.display());
             }
             code => panic!("{}: {code:?} {said}", path.display()),

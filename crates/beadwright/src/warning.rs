@@ -35,9 +35,12 @@ pub enum WarningKind {
     Bare,
     /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
     Unsound,
-    /// Nothing lies below the first bead, or below a whole layer; the size is the gap, mm.
+    /// No bead has room in the lowest layers, so the first would be laid above the plate; the size is how high, mm.
+    HighStart,
+    /// No bead lies below a whole layer; the size is the gap, mm.
     NothingBelow,
-    /// Less than half of a pass lies over metal; the size is its length, mm.
+    /// Less than half of a pass lies over metal, or a long stretch of it is clear of any; the size is the length without
+    /// metal below, mm.
     InTheAir,
     /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
@@ -71,7 +74,7 @@ pub const SLIVER_MM: f64 = 0.05;
 impl WarningKind {
     /// Whether a program with such a fault is not written unless somebody insists.
     pub fn forbids(self) -> bool {
-        matches!(self, Self::Unsound | Self::NothingBelow | Self::InTheAir)
+        matches!(self, Self::Unsound | Self::HighStart | Self::NothingBelow | Self::InTheAir)
     }
 
     /// How much a warning of this kind matters.
@@ -193,8 +196,7 @@ impl WarningSummary {
                 times("wall", "walls")
             ),
             WarningKind::IslandTooSmall => format!(
-                "{layers}: {} narrower than a bead left out, {total:.1} mm² in all, the largest {size:.1} mm² \
-                 {place}.",
+                "{layers}: {} left out in which no bead has room, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::Refilled => format!(
@@ -215,12 +217,15 @@ impl WarningSummary {
                 "{layers}: {} in which passes leave the part or cross each other {place}.",
                 times("island", "islands")
             ),
-            WarningKind::NothingBelow => format!(
-                "{layers}: nothing lies below; the beads would be laid {size:.2} mm above the plate or the last bead {place}."
+            WarningKind::HighStart => format!(
+                "{layers}: the first bead would be laid {size:.2} mm above the plate {place}, since none has room below."
             ),
+            WarningKind::NothingBelow => {
+                format!("{layers}: no bead lies below; these would be laid {size:.2} mm above the last one {place}.")
+            }
             WarningKind::InTheAir => format!(
-                "{layers}: {} less than half over metal, {total:.1} mm in all, the longest {size:.1} mm {place}.",
-                times("pass lies", "passes lie")
+                "{layers}: {} over nothing, for {total:.1} mm in all, the most {size:.1} mm {place}.",
+                times("pass hangs", "passes hang")
             ),
             WarningKind::HangingIsland => format!(
                 "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
@@ -279,8 +284,15 @@ impl WarningSummary {
                 "The surface has a hole or a slit there: mend the model, or bridge wider gaps (slice.close_gap, mm)."
             }
             WarningKind::ContoursUnited => "Check the picture of the layer.",
-            WarningKind::IslandTooSmall => "A narrower bead or a larger part would be needed.",
-            WarningKind::NothingBelow => "Cut the model off below, or take a narrower bead that fills what lies there.",
+            WarningKind::IslandTooSmall => {
+                "A narrower bead or a larger part would be needed; small round ones can get dots ([spot])."
+            }
+            WarningKind::HighStart => {
+                "Begin there (--from-z, with this number of mm), or take a narrower bead (bead.width)."
+            }
+            WarningKind::NothingBelow => {
+                "Begin there (--from-z), or take a narrower bead (bead.width), which has room in the layers below."
+            }
             WarningKind::InTheAir => {
                 "Turn the part (--orient), begin above the place (--from-z), or add metal below that is machined off."
             }

@@ -99,3 +99,42 @@ fn steps_of_less_than_half_a_bead_are_on_metal() {
     assert_eq!(plan.summary.forbidden, [] as [String; 0]);
     assert!(told(&plan, WarningKind::InTheAir).is_none());
 }
+
+/// A long loop of which a corner hangs far out lies on metal for most of its length; the corner does not.
+#[test]
+fn a_long_pass_that_hangs_somewhere_is_in_the_air() {
+    let slab = [(0.0, 200.0), (0.0, 60.0), (0.0, 8.0)];
+    let with_tongue = |reach: f64, degrees: f64| {
+        let upper = [(0.0, 200.0), (0.0, 60.0), (8.0, 12.0)];
+        let tongue = [(80.0, 110.0), (55.0, 60.0 + reach), (8.0, 12.0)];
+        planned(&blocks(&[slab, upper, tongue], degrees), "loop")
+    };
+    for degrees in [0.0, 23.0] {
+        let plan = with_tongue(40.0, degrees);
+        let air = told(&plan, WarningKind::InTheAir).unwrap();
+        assert_eq!((air.layers.clone(), plan.summary.forbidden.clone()), (vec![(4, 4)], vec![air.sentence()]));
+        assert!(air.total > 60.0 && air.total < 300.0, "{}: the tongue is 40 mm long and 30 mm wide", air.total);
+        let place = DVec2::from_angle(-f64::to_radians(degrees)).rotate(air.largest.place);
+        let middle = DVec2::from_angle(-f64::to_radians(degrees)).rotate(plan_middle(&plan));
+        let off = place - middle;
+        assert!(off.y > 28.0 && off.x.abs() < 25.0, "{off}: on the tongue");
+        assert_eq!(with_tongue(3.0, degrees).summary.forbidden, [] as [String; 0], "half a bead beyond the edge holds");
+    }
+}
+
+/// The middle of the plate below the part.
+fn plan_middle(plan: &Plan) -> DVec2 {
+    let outline = plan.layers[0].islands[0].outer.points();
+    let (low, high) = outline.iter().fold((outline[0], outline[0]), |(low, high), p| (low.min(*p), high.max(*p)));
+    (low + high) / 2.0
+}
+
+/// The whole of a layer is no small place of it.
+#[test]
+fn a_layer_that_hangs_is_not_left_out() {
+    let foot = [(0.0, 12.0), (0.0, 12.0), (0.0, 6.0)];
+    let aside = [(40.0, 52.0), (0.0, 12.0), (6.0, 8.0)];
+    let plan = planned(&blocks(&[foot, aside], 0.0), "loop");
+    assert!(told(&plan, WarningKind::HangingIsland).is_none());
+    assert_eq!(plan.summary.forbidden.len(), 1);
+}

@@ -447,3 +447,47 @@ proptest! {
         prop_assert!(axis.length() <= 20.0 * region.perimeter());
     }
 }
+
+/// A ring with teeth outside, and a cut in it: of its axis without spurs one branch remains.
+#[test]
+fn a_wall_with_teeth_is_one_branch_without_them() {
+    for cut in [false, true] {
+        let teeth = 12;
+        let outer: Vec<DVec2> = (0..4 * teeth)
+            .map(|k| {
+                DVec2::from_angle(TAU * (f64::from(k) + 0.3) / f64::from(4 * teeth))
+                    * if k % 4 < 2 { 20.0 } else { 28.0 }
+            })
+            .collect();
+        let mut region = Region::from(Polygon { outer: Ring::new(outer), holes: vec![circle(15.0, 60).reversed()] });
+        if cut {
+            region = region.difference(&polygon(&[(0.0, -1.0), (40.0, -1.0), (40.0, 1.0), (0.0, 1.0)]));
+        }
+        let axis = axis(&region).pruned(CORNER);
+        assert!(axis.branches.len() > teeth as usize, "teeth have branches");
+        let reach = |nodes: &[Node]| nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum::<f64>();
+        let longest = axis.clone().without_spurs(|nodes| reach(nodes) < 14.0);
+        let [branch] = &longest.branches[..] else { panic!("{} branches", longest.branches.len()) };
+        assert_eq!((branch.is_closed(), longest.degrees().len()), (!cut, if cut { 2 } else { 1 }));
+        let around = reach(&branch.nodes) / (TAU * 18.5);
+        assert!((around - 1.0).abs() < 0.15, "{around} of the way around");
+        assert_eq!(axis.clone().without_spurs(|_| false), axis, "nothing is joined where nothing goes");
+    }
+}
+
+/// Of a star of short arms the longest way through remains.
+#[test]
+fn the_longest_way_through_spurs_remains() {
+    let arm = |degrees: f64, length: f64| {
+        let (way, w) = (DVec2::from_angle(degrees.to_radians()), 1.0);
+        let side = way.perp() * w;
+        let corners = [-side, length * way - side, length * way + side, side].map(|p| (p.x, p.y));
+        polygon(&corners)
+    };
+    let star =
+        [(0.0, 6.0), (125.0, 9.0), (240.0, 7.0)].iter().fold(Region::EMPTY, |all, &(a, l)| all.union(&arm(a, l)));
+    let axis = axis(&star).pruned(CORNER).without_spurs(|_| true);
+    let [branch] = &axis.branches[..] else { panic!("{} branches", axis.branches.len()) };
+    let length: f64 = branch.nodes.windows(2).map(|w| w[0].at.distance(w[1].at)).sum();
+    assert!((length - 14.0).abs() < 0.7, "{length}: the arms of 7 and 9, less half a thickness at both ends");
+}

@@ -76,7 +76,7 @@ pub const CHECKS: [Check; 24] = [
 /// Checks whose findings the plan warns of by itself.
 const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
     (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir]),
-    (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::NothingBelow]),
+    (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::HighStart, WarningKind::NothingBelow]),
     (&short_arc::CHECK, &[WarningKind::ShortArc]),
 ];
 

@@ -65,7 +65,7 @@ impl<S: Sink> Emitter<'_, S> {
             self.no_turn = self.no_turn.take().or(turn.err());
         }
         relight::relight(&mut layer, self.profile);
-        self.support.judge(&mut layer, self.profile.bead.width, self.profile.fill.infill_density >= 1.0);
+        self.support.judge(&mut layer, self.profile);
         self.warm(&mut layer);
         self.doubts(&mut layer);
         self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
@@ -121,7 +121,8 @@ impl<S: Sink> Emitter<'_, S> {
         if let Some(first) = layer.passes.first() {
             let gap = layer.z - layer.height - self.built;
             if gap > LARGE_GAP * layer.height {
-                doubt(WarningKind::NothingBelow, first.start().unwrap_or_default().truncate(), gap);
+                let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
+                doubt(kind, first.start().unwrap_or_default().truncate(), gap);
             } else if !self.below.is_empty() {
                 let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
                 if let Some((area, place)) = overhang(&self.below, &layer.islands, reach, width) {

@@ -134,15 +134,16 @@ fn fill_layer(
             Fill::default()
         };
         let is_left_out = own.is_empty();
-        let told = slice.warnings.len();
+        let (told, alone) = (slice.warnings.len(), short_but_alone(&own, profile, slice.index));
         for stage in &mut own.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
+        let dot = || profile.dot().and_then(|size| dot::dot(island, slice.height, &size));
         if own.is_empty()
-            && let Some(dot) = profile.dot().and_then(|size| dot::dot(island, slice.height, &size))
+            && let Some(pass) = dot().or(alone)
         {
             slice.warnings.truncate(told);
-            own.stages = vec![vec![dot]];
+            own.stages = vec![vec![pass]];
         }
         let is_left_out = is_left_out && own.is_empty();
         let cover = Cover::of(&own, island, profile, &reach);
@@ -266,6 +267,17 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize,
         }
         keep
     });
+}
+
+/// A short pass without which an island stays empty is at least this long, in bead widths.
+const ALONE: f64 = 0.25;
+
+/// The longest pass of an island whose passes are all shorter than `fill.min_pass_length`, if it can be welded at all: what
+/// lies above needs its metal.
+fn short_but_alone(fill: &Fill, profile: &Profile, layer: usize) -> Option<Path> {
+    let longest = fill.stages.iter().flatten().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let is_short = (ALONE * profile.bead.width..profile.fill.min_pass_length).contains(&longest.length());
+    (is_short && arc_time(longest, profile, layer) >= profile.soonest_arc_end()).then(|| longest.clone())
 }
 
 /// How long the torch takes along a pass, s.

@@ -3,6 +3,7 @@
 use crate::fill::line_index::LineIndex;
 use crate::layer::Layer;
 use crate::pass::Pass;
+use crate::profile::Profile;
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::polyline::distance_squared_to_segment;
@@ -10,8 +11,13 @@ use planar::{Polygon, Region};
 
 /// A pass with less than this part of its length over metal lies in the air.
 const LEAST: f64 = 0.5;
-/// A new island in the air is left out up to this area, in squared bead widths.
+/// So does one with a stretch of this length, in bead widths, that is clear of all metal below.
+const BRIDGE: f64 = 2.0;
+/// A place is clear of a bead this far beyond its edge, in bead widths: less than a quarter of what is welded there lies on it.
+const CLEAR: f64 = 0.25;
+/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer.
 const SMALL: f64 = 4.0;
+const SMALL_PART: f64 = 0.5;
 /// A pass in the air is left out up to this length, in bead widths.
 const STUB: f64 = 2.0;
 /// Places per bead width at which a pass is looked at.
@@ -38,13 +44,21 @@ struct Metal {
 }
 
 impl Support {
-    /// Warns of passes that lie in the air, takes small islands out that hang, and remembers the layer for the next one.
-    /// `solid` tells whether layers are filled; on sparse ones the next lie as if they were.
-    pub(super) fn judge(&mut self, layer: &mut Layer, width: f64, solid: bool) {
+    /// Warns of passes that lie in the air, takes small islands out that hang, and remembers the layer for the next one. On
+    /// sparse layers the next lie as if they were filled, and what is printed bridges gaps.
+    pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
+        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
         if let Some(metal) = self.metal.take().filter(|_| !alike) {
-            let over = |p: DVec2| metal.is_at(p) || (!solid && self.islands.iter().any(|island| island.contains(p)));
-            let hanging: Vec<bool> = layer.passes.iter().map(|pass| hangs(pass, width, over)).collect();
+            let within = |p: DVec2| !solid && self.islands.iter().any(|island| island.contains(p));
+            let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
+                true => Below::Metal,
+                false if metal.is_at(p, CLEAR * width) => Below::Edge,
+                false => Below::Air,
+            };
+            let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
+            let hanging: Vec<Option<Hanging>> =
+                layer.passes.iter().map(|pass| hanging(pass, width / SAMPLES, bridge, below)).collect();
             self.left_out = self.take_out(layer, &hanging, width);
         } else if !alike {
             self.left_out.clear();
@@ -60,31 +74,32 @@ impl Support {
 
     /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. The islands
     /// taken out.
-    fn take_out(&self, layer: &mut Layer, hanging: &[bool], width: f64) -> Vec<Polygon> {
-        if !hanging.contains(&true) {
+    fn take_out(&self, layer: &mut Layer, hanging: &[Option<Hanging>], width: f64) -> Vec<Polygon> {
+        if hanging.iter().all(Option::is_none) {
             return Vec::new();
         }
         let start = |pass: &Pass| pass.start().unwrap_or_default().truncate();
         let island_of = |pass: &Pass| layer.islands.iter().position(|island| island.contains(start(pass)));
         let of: Vec<Option<usize>> = layer.passes.iter().map(island_of).collect();
+        let largest = (SMALL * width * width).min(SMALL_PART * layer.islands.iter().map(Polygon::area).sum::<f64>());
         let small = |i: usize| {
             let island = &layer.islands[i];
-            let all = of.iter().zip(hanging).all(|(of, hangs)| *of != Some(i) || *hangs);
-            all && island.area() <= SMALL * width * width && !self.left_out.iter().any(|lower| stands_on(island, lower))
+            let all = of.iter().zip(hanging).all(|(of, hanging)| *of != Some(i) || hanging.is_some());
+            all && island.area() <= largest && !self.left_out.iter().any(|lower| stands_on(island, lower))
         };
         let out: Vec<bool> = (0..layer.islands.len()).map(small).collect();
         let (mut kept, mut taken) = (Vec::new(), vec![false; layer.islands.len()]);
-        for ((pass, of), hangs) in std::mem::take(&mut layer.passes).into_iter().zip(of).zip(hanging) {
-            match of.filter(|i| *hangs && out[*i]) {
+        for ((pass, of), hanging) in std::mem::take(&mut layer.passes).into_iter().zip(of).zip(hanging) {
+            match of.filter(|i| hanging.is_some() && out[*i]) {
                 Some(i) => taken[i] = true,
-                None if *hangs && pass.length() <= STUB * width => {
+                None if hanging.is_some() && pass.length() <= STUB * width => {
                     let (kind, size) = (WarningKind::HangingIsland, pass.length() * width);
                     layer.warnings.push(Warning { kind, layer: layer.index, place: start(&pass), size });
                 }
                 None => {
-                    if *hangs {
-                        let (kind, size) = (WarningKind::InTheAir, pass.length());
-                        layer.warnings.push(Warning { kind, layer: layer.index, place: start(&pass), size });
+                    if let Some(Hanging { length: size, place }) = *hanging {
+                        let kind = WarningKind::InTheAir;
+                        layer.warnings.push(Warning { kind, layer: layer.index, place, size });
                     }
                     kept.push(pass);
                 }
@@ -108,11 +123,35 @@ fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
     common > STANDS * island.area().min(lower.area())
 }
 
-/// Whether less than `LEAST` of a pass's length lies over metal.
-fn hangs(pass: &Pass, width: f64, over: impl Fn(DVec2) -> bool) -> bool {
-    let places = places_along(pass, width / SAMPLES);
-    let needed = (LEAST * places.len() as f64).ceil() as usize;
-    places.into_iter().filter(|place| over(*place)).take(needed).count() < needed
+/// What lies below a place.
+#[derive(Clone, Copy, PartialEq)]
+enum Below {
+    Metal,
+    /// The edge of a bead is near: the next bead holds on to it.
+    Edge,
+    Air,
+}
+
+/// How a pass hangs.
+#[derive(Clone, Copy)]
+struct Hanging {
+    /// How much of it has no metal below, mm.
+    length: f64,
+    /// The middle of the longest such stretch.
+    place: DVec2,
+}
+
+/// Whether less than `LEAST` of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is clear of it; looked at
+/// in steps (mm).
+fn hanging(pass: &Pass, step: f64, bridge: f64, below: impl Fn(DVec2) -> Below) -> Option<Hanging> {
+    let places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
+    let is_free = |below: Below| below != Below::Metal;
+    let free = places.iter().filter(|(_, below)| is_free(*below)).count();
+    let stretches = |a: &(DVec2, Below), b: &(DVec2, Below)| is_free(a.1) == is_free(b.1);
+    let longest = places.chunk_by(stretches).filter(|s| is_free(s[0].1)).max_by_key(|stretch| stretch.len())?;
+    let clear = places.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1 == Below::Air).map(<[_]>::len).max().unwrap_or(0);
+    let hangs = (places.len() - free) < (LEAST * places.len() as f64).ceil() as usize || clear as f64 * step >= bridge;
+    hangs.then(|| Hanging { length: free as f64 * step, place: longest[longest.len() / 2].0 })
 }
 
 /// Places on a pass, `step` (mm) apart.
@@ -135,7 +174,7 @@ impl Metal {
         let halves: Vec<Vec<f64>> =
             passes.iter().map(|pass| pass.segments().map(|piece| piece.width / 2.0).collect()).collect();
         let widest = halves.iter().flatten().copied().fold(width / 2.0, f64::max);
-        let mut index = LineIndex::new(widest);
+        let mut index = LineIndex::new(widest + CLEAR * width);
         for (number, pass) in passes.iter().enumerate() {
             let ends = pass.segments().next().map(|piece| piece.from).into_iter().chain(pass.segments().map(|p| p.to));
             index.add_line(number, &ends.map(|p| p.truncate()).collect::<Vec<_>>());
@@ -143,9 +182,10 @@ impl Metal {
         Self { index, halves }
     }
 
-    fn is_at(&self, p: DVec2) -> bool {
+    /// Whether metal lies at a place, or within `reach` (mm) of it.
+    fn is_at(&self, p: DVec2, reach: f64) -> bool {
         self.index.near(p).any(|(line, piece, a, b)| {
-            let half = self.halves[line].get(piece).copied().unwrap_or_default();
+            let half = self.halves[line].get(piece).copied().unwrap_or_default() + reach;
             distance_squared_to_segment(p, a, b) <= half * half
         })
     }

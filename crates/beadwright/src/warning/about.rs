@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -25,6 +25,7 @@ impl WarningKind {
         Self::Refilled,
         Self::Bare,
         Self::Unsound,
+        Self::HighStart,
         Self::NothingBelow,
         Self::InTheAir,
         Self::HangingIsland,
@@ -66,7 +67,7 @@ impl WarningKind {
             ),
             Self::IslandTooSmall => (
                 "island-too-small",
-                "a whole island is narrower than a bead",
+                "no bead has room in an island",
                 "take a narrower bead or a larger part, or say how dots are welded (`[spot]`)",
             ),
             Self::ThinWall => (
@@ -89,15 +90,21 @@ impl WarningKind {
                 "passes leave the part or cross each other, and nothing could replace them",
                 "take another strategy or another bead.width; the program is not written unless you insist",
             ),
+            Self::HighStart => (
+                "high-start",
+                "no bead has room in the lowest layers, as where a round part lies on the plate, so the first would be laid in the air",
+                "begin where it has room (`--from-z MM`), stand the part on a flat face (`--lay-flat`), or take a narrower bead; \
+                 the program is not written unless you insist",
+            ),
             Self::NothingBelow => (
                 "nothing-below",
-                "the first bead of a place would be laid in the air",
-                "stand the part on the plate (`--lay-flat`, `--from-z MM`), or turn it; the program is not written \
-                 unless you insist",
+                "the beads of a whole layer would be laid in the air",
+                "begin there (`--from-z MM`), turn the part, or take a narrower bead, which has room in the layers below; the \
+                 program is not written unless you insist",
             ),
             Self::InTheAir => (
                 "in-the-air",
-                "less than half of a pass lies over the beads below",
+                "a pass has no bead below for more than half of its length, or for two bead widths on end",
                 "turn the part (`--orient`, `--lay-flat`), begin above the place (`--from-z MM`), or add metal below that is \
                  machined off; the program is not written unless you insist",
             ),

@@ -21,6 +21,51 @@ impl MedialAxis {
         self
     }
 
+    /// Without spurs: branches from a free end to a junction, as into the teeth of a gear, that `is_spur` tells by their nodes
+    /// from the free end on. The shortest goes first, and branches that are then the only two at a junction become one
+    /// before the next is looked at; so the longest way through a tree of spurs remains.
+    #[must_use]
+    pub fn without_spurs(mut self, is_spur: impl Fn(&[Node]) -> bool) -> Self {
+        loop {
+            let degrees = self.degrees();
+            let mut spurs: Vec<(f64, usize, usize)> = Vec::new();
+            for (number, branch) in self.branches.iter().enumerate() {
+                let [from, to] = [degrees[branch.from], degrees[branch.to]];
+                let mut nodes = branch.nodes.clone();
+                let junction = match (from, to) {
+                    (1, 3..) => branch.to,
+                    (3.., 1) => {
+                        nodes.reverse();
+                        branch.from
+                    }
+                    _ => continue,
+                };
+                if is_spur(&nodes) {
+                    spurs.push((length(&nodes), number, junction));
+                }
+            }
+            spurs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (mut touched, mut gone) = (vec![false; degrees.len()], vec![false; self.branches.len()]);
+            for (_, number, junction) in spurs {
+                gone[number] = !std::mem::replace(&mut touched[junction], true);
+            }
+            if !gone.contains(&true) {
+                return self;
+            }
+            let mut free = vec![false; degrees.len()];
+            for branch in self.branches.iter().zip(&gone).filter(|(_, gone)| **gone).map(|(branch, _)| branch) {
+                [branch.from, branch.to].into_iter().filter(|&end| degrees[end] == 1).for_each(|end| free[end] = true);
+            }
+            let mut number = 0;
+            self.branches.retain(|_| {
+                number += 1;
+                !gone[number - 1]
+            });
+            self.drop_junctions(&free);
+            self = self.joined();
+        }
+    }
+
     /// Without the free branches along which the radius grows, from end to end, as fast as at an object angle below
     /// `min_angle`: noise with a sharp tip.
     pub(super) fn without_noise(mut self, min_angle: f64) -> Self {

@@ -196,8 +196,9 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let (short, candidates): (Vec<bool>, Vec<Polygon>) =
         candidates.filter(|(short, piece)| !short || between.joins(piece)).unzip();
     let axis = axis(&candidates, &whole, limits);
+    let alone = open.polygons().is_empty();
     for (piece, short) in candidates.into_iter().zip(short) {
-        let walls = walls(&piece, short, &axis, limits);
+        let walls = walls(&piece, Neck { short, alone }, &axis, limits);
         if !walls.is_empty() {
             thin.extend(walls);
             pieces.push(piece);
@@ -260,24 +261,35 @@ fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     // The piece is extended beyond its mouths, so that the axis runs straight through them.
     let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round(limits));
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
-    MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER)
+    // Teeth and bumps: they would cut the wall on which they stand in short pieces.
+    let is_spur = |nodes: &[Node]| length(nodes) < SHORTEST * limits.bead_width;
+    MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER).without_spurs(is_spur)
 }
 
-/// The walls of a thin piece; `short` for a neck between two thick parts that is hardly longer than thick.
-fn walls(piece: &Polygon, short: bool, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
+/// What is known of the necks of a thin piece.
+#[derive(Debug, Clone, Copy)]
+struct Neck {
+    /// The piece is a neck between two thick parts, and hardly longer than thick.
+    short: bool,
+    /// The island has no thick part that passes could fill instead: its walls go through the shortest neck.
+    alone: bool,
+}
+
+/// The walls of a thin piece.
+fn walls(piece: &Polygon, neck: Neck, axis: &MedialAxis, limits: &ThinLimits) -> Vec<ThinWall> {
     let Some(bounds) = Bounds::of(piece.outer.points().iter().copied()) else { return Vec::new() };
     let near = |node: &Node| node.at.cmpge(bounds.min).all() && node.at.cmple(bounds.max).all();
     let branches = axis.branches.iter().filter(|branch| branch.nodes.iter().any(near));
-    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, short, limits)).collect();
+    let mut walls: Vec<ThinWall> = branches.flat_map(|branch| walls_along(branch, piece, neck, limits)).collect();
     drop_stubs(&mut walls, limits);
-    let double = if short { DOUBLE_IF_SHORT } else { NEARLY_DOUBLE } * limits.double;
-    let neck = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= double);
+    let double = if neck.short { DOUBLE_IF_SHORT } else { NEARLY_DOUBLE } * limits.double;
+    let nearly = |wall: &ThinWall| wall.nodes.iter().all(|node| 2.0 * node.radius >= double);
     let hangs = |wall: &ThinWall| wall.ends.iter().any(|end| matches!(end, End::Mouth(_)));
-    if walls.iter().all(|wall| neck(wall) && hangs(wall)) { Vec::new() } else { walls }
+    if walls.iter().all(|wall| nearly(wall) && hangs(wall)) { Vec::new() } else { walls }
 }
 
 /// The stretches of a branch that lie within the thin piece and are wide enough for a bead.
-fn walls_along(branch: &Branch, piece: &Polygon, short: bool, limits: &ThinLimits) -> Vec<ThinWall> {
+fn walls_along(branch: &Branch, piece: &Polygon, neck: Neck, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
     let fits_by = |width: f64| -> Vec<bool> {
@@ -288,12 +300,17 @@ fn walls_along(branch: &Branch, piece: &Polygon, short: bool, limits: &ThinLimit
     let is_long = |stretch: &Range<usize>| {
         let wider = |k: Option<usize>| k.filter(|k| *k < nodes.len()).is_some_and(|k| fits[k] || !inside[k]);
         let is_neck = wider(stretch.start.checked_sub(1)) && wider(Some(stretch.end));
-        length(&nodes[stretch.clone()]) >= if is_neck { NECK } else { SHORTEST } * limits.bead_width
+        let least = match (is_neck, neck.alone) {
+            (true, true) => 0.0,
+            (true, false) => NECK,
+            (false, _) => SHORTEST,
+        };
+        length(&nodes[stretch.clone()]) >= least * limits.bead_width
     };
     let long: Vec<Range<usize>> = stretches(&thinner).into_iter().filter(is_long).collect();
     long.into_iter().flatten().for_each(|k| fits[k] = true);
     // A neck may be shorter than the distance of two nodes.
-    let longer = |stretch: Range<usize>| match short && stretch.len() < 2 {
+    let longer = |stretch: Range<usize>| match neck.short && stretch.len() < 2 {
         true => stretch.start.saturating_sub(1)..(stretch.end + 1).min(nodes.len()),
         false => stretch,
     };
