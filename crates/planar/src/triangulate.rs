@@ -1,6 +1,7 @@
-//! Triangles that fill a polygon with holes (ear clipping).
+//! Triangles that fill a polygon with holes: fast, by ear clipping, or with just its edges as their outer edges.
 
 use crate::Polygon;
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// Triangles as indices into the polygon's points, outer ring first and then the holes in order; counter-clockwise.
 pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
@@ -19,4 +20,49 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
     };
     let triangles = indices.as_chunks::<3>().0;
     triangles.iter().map(|t| ccw(t).map(|k| t[k])).collect()
+}
+
+/// As [`triangulate`], but every edge of the polygon is an edge of one triangle, and every other edge one of two, also where points
+/// lie in line to the last digit: the constrained Delaunay triangulation. Ear clipping passes over such points. Of edges that cross
+/// each other, one is not among those of the triangles.
+pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
+    let (mut corners, mut edges) = (Vec::new(), Vec::new());
+    for ring in polygon.rings() {
+        let (first, count) = (corners.len(), ring.points().len());
+        edges.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
+        corners.extend((first..).zip(ring.points()).map(|(number, p)| Corner { at: Point2::new(p.x, p.y), number }));
+    }
+    let Ok(all) = ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| {}) else {
+        return triangulate(polygon);
+    };
+    // From the hull inwards, every edge of the polygon leads from outside to inside or back.
+    let (mut known, mut inside) = (vec![false; all.num_all_faces()], Vec::new());
+    let mut open: Vec<_> = all.convex_hull().map(|edge| (edge.rev(), false)).collect();
+    while let Some((edge, was_inside)) = open.pop() {
+        let Some(face) = edge.face().as_inner() else { continue };
+        if std::mem::replace(&mut known[face.index()], true) {
+            continue;
+        }
+        let is_inside = was_inside != edge.is_constraint_edge();
+        if is_inside {
+            inside.push(face.vertices().map(|corner| corner.data().number));
+        }
+        open.extend(face.adjacent_edges().map(|edge| (edge.rev(), is_inside)));
+    }
+    inside
+}
+
+/// A point of a polygon.
+struct Corner {
+    at: Point2<f64>,
+    /// Its index.
+    number: usize,
+}
+
+impl HasPosition for Corner {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.at
+    }
 }

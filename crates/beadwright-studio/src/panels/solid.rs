@@ -107,7 +107,8 @@ fn warm(studio: &mut Studio, ui: &mut Ui) {
 fn legend(studio: &Studio, ui: &mut Ui) {
     let dark = !studio.window.settings.light;
     if studio.view.colour == Colour::Kind {
-        let used = |kind| studio.plans.own.layers.iter().flat_map(|layer| &layer.passes).any(|pass| pass.kind == kind);
+        let passes = || studio.plans.own.layers.iter().flat_map(|layer| &layer.passes);
+        let used = |kind| passes().any(|pass| palette::kind(pass.kind) == palette::kind(kind));
         for kind in palette::KINDS.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));

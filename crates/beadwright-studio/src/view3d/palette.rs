@@ -17,9 +17,8 @@ pub const START: Rgb = [40, 190, 200];
 /// See [`START`].
 pub const END: Rgb = [222, 62, 54];
 
-/// The kinds of passes, in the order of their colours.
-pub const KINDS: [PassKind; 5] =
-    [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall, PassKind::Spot];
+/// The kinds of passes, in the order of their colours; dots look like walls.
+pub const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
 
 /// The colour of a kind of pass. Those without red, green or blue cones tell them apart too (`tests/colours.rs`).
 pub fn kind(kind: PassKind) -> Rgb {

@@ -3,9 +3,9 @@
 //! A vertex exactly on the plane counts as above it, for all its triangles alike, as in slicing. Where the surface has holes
 //! at the plane, they stay open.
 
-use super::solid::cap;
 use super::{Mesh, RepairReport};
 use glam::{DVec2, DVec3};
+use planar::triangulate::triangulate_by_edges;
 use planar::{Polygon, Ring};
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub fn above(mesh: &Mesh, z: f64) -> Option<(Mesh, RepairReport)> {
         let ring = |ring: &[u32]| Ring::new(places(ring, &cut.vertices));
         let face = Polygon { outer: ring(outer), holes: holes.iter().map(|hole| ring(hole)).collect() };
         // Seen from below.
-        triangles.extend(cap(&face).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
+        triangles.extend(triangulate_by_edges(&face).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
     }
     let floor = |vertices: Vec<DVec3>| vertices.into_iter().map(|v| v - DVec3::Z * z).collect();
     let (vertices, triangles) = compact(&cut.vertices, &triangles);

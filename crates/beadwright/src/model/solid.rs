@@ -1,9 +1,9 @@
 //! Outlines become closed triangle meshes, wound counter-clockwise seen from outside.
 
 use glam::{DVec2, DVec3};
-use planar::triangulate::triangulate;
+use planar::triangulate::triangulate_by_edges;
 use planar::{Polygon, Ring};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// A closed surface of triangles, mm.
@@ -35,7 +35,7 @@ impl Solid {
                 below += count;
             }
         }
-        solid.caps(&cap(base), solid.vertices.len().saturating_sub(points.len()));
+        solid.caps(&triangulate_by_edges(base), solid.vertices.len().saturating_sub(points.len()));
         solid
     }
 
@@ -101,135 +101,5 @@ impl Solid {
         let at = |k: u32| (DVec2::from_angle(TAU * f64::from(k) / f64::from(count)) * p.x).extend(p.y);
         self.vertices.extend((0..count).map(at));
         first
-    }
-}
-
-/// Triangles over `base` as indices into its points. Ear clipping passes over points in line with their neighbours; triangles are
-/// split there, so that the cap has the same edges as the walls.
-pub(super) fn cap(base: &Polygon) -> Vec<[usize; 3]> {
-    let mut open = triangulate(base);
-    let mut lacks = Lacks::of(base, &open);
-    let mut done = Vec::with_capacity(open.len());
-    while let Some([a, b, c]) = open.pop() {
-        let edges = [[a, b, c], [b, c, a], [c, a, b]];
-        match edges.iter().find_map(|&[i, j, k]| Some((k, lacks.way(i, j)?))) {
-            Some((k, way)) => open.extend(way.windows(2).map(|step| [step[0], step[1], k])),
-            None => done.push([a, b, c]),
-        }
-    }
-    done
-}
-
-/// What the edges of triangles lack to a closed cap.
-struct Lacks {
-    /// Edges to which there is nothing on the other side, and which are not on the rim.
-    single: HashSet<[usize; 2]>,
-    /// The edges that ought to be on their other side, and those of the rim that no triangle has: where they lead from each point.
-    missing: HashMap<usize, Vec<usize>>,
-}
-
-impl Lacks {
-    fn of(base: &Polygon, triangles: &[[usize; 3]]) -> Self {
-        let edges: HashSet<[usize; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        let (mut rim, mut first) = (HashSet::new(), 0);
-        for ring in base.rings() {
-            let count = ring.points().len();
-            rim.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
-            first += count;
-        }
-        let single: HashSet<[usize; 2]> =
-            edges.iter().copied().filter(|&[i, j]| !edges.contains(&[j, i]) && !rim.contains(&[i, j])).collect();
-        let mut missing: HashMap<usize, Vec<usize>> = HashMap::new();
-        let beside = single.iter().map(|&[i, j]| [j, i]);
-        let mut all: Vec<[usize; 2]> = rim.into_iter().filter(|edge| !edges.contains(edge)).chain(beside).collect();
-        all.sort_unstable();
-        all.into_iter().for_each(|[i, j]| missing.entry(i).or_default().push(j));
-        Self { single, missing }
-    }
-
-    /// The points that an edge passed over, with its ends, if it is single; its pieces are then missing no more.
-    fn way(&mut self, i: usize, j: usize) -> Option<Vec<usize>> {
-        if !self.single.remove(&[i, j]) {
-            return None;
-        }
-        // The way that was gone so far, and how many of the ways on from each of its points were tried.
-        let (mut way, mut tried) = (vec![i], vec![0]);
-        while let (Some(&at), Some(count)) = (way.last(), tried.last_mut()) {
-            let next = self.missing.get(&at).and_then(|ways| ways.get(*count)).copied();
-            *count += 1;
-            match next {
-                Some(next) if next == j => {
-                    way.push(next);
-                    break;
-                }
-                Some(next) if way.contains(&next) => {}
-                Some(next) => {
-                    way.push(next);
-                    tried.push(0);
-                }
-                None => {
-                    way.pop();
-                    tried.pop();
-                }
-            }
-        }
-        for step in way.windows(2) {
-            self.missing.entry(step[0]).or_default().retain(|&to| to != step[1]);
-            self.single.remove(&[step[1], step[0]]);
-        }
-        (way.len() > 2).then_some(way)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-    use std::f64::consts::SQRT_2;
-
-    /// Every edge of the cap has another triangle on its other side or is one of the rim, and the area is that of the base.
-    fn check(base: &Polygon) {
-        let points: Vec<DVec2> = base.rings().flat_map(|ring| ring.points().to_vec()).collect();
-        let cap = cap(base);
-        let area: f64 = cap.iter().map(|t| t.map(|i| points[i])).map(|[a, b, c]| (b - a).perp_dot(c - a) / 2.0).sum();
-        assert!((area / base.area() - 1.0).abs() < 1e-9, "{area} for {}", base.area());
-        let mut edges: Vec<[usize; 2]> = cap.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        edges.sort_unstable();
-        assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "an edge belongs to two triangles on one side");
-        let (all, mut rim) = (edges.iter().copied().collect::<HashSet<_>>(), Vec::new());
-        rim.extend(edges.into_iter().filter(|&[i, j]| !all.contains(&[j, i])));
-        let mut first = 0;
-        let wanted = base.rings().flat_map(|ring| {
-            let (start, count) = (first, ring.points().len());
-            first += count;
-            (0..count).map(move |k| [start + k, start + (k + 1) % count])
-        });
-        let mut wanted: Vec<[usize; 2]> = wanted.collect();
-        wanted.sort_unstable();
-        assert!(rim == wanted, "an edge inside the cap is open, or one of the rim is missing");
-    }
-
-    /// A square with many points on its sides, `off` (mm) beside them at most.
-    fn square(middle: DVec2, side: f64, degrees: f64, off: f64, random: &mut Random) -> Ring {
-        let corner = |k: usize| middle + DVec2::from_angle(TAU / 4.0 * k as f64 + degrees.to_radians()) * side / SQRT_2;
-        let sides = (0..4).flat_map(|k| (0..40).map(move |i| (k, f64::from(i) / 40.0)));
-        let mut any = || off * (2.0 * random.unit() - 1.0);
-        let mut beside = || DVec2::new(any(), any());
-        Ring::new(sides.map(|(k, part)| corner(k).lerp(corner(k + 1), part) + beside()).collect())
-    }
-
-    /// A cut through a flat face of many triangles has points in line but for the last digits.
-    #[test]
-    fn a_cap_with_many_points_in_line_is_closed() {
-        let mut random = Random::new(1);
-        for degrees in [0.0, 17.0, 45.0] {
-            for off in [0.0, 1e-15, 1e-12, 1e-10, 1e-9, 1e-6] {
-                let outer = square(DVec2::ZERO, 60.0, degrees, off, &mut random);
-                let middles = [-20.0, -10.0, 0.0, 10.0, 20.0].map(|x| DVec2::from_angle(f64::to_radians(degrees)) * x);
-                let holes = middles.map(|m| square(m, 6.0, degrees, off, &mut random).reversed()).to_vec();
-                check(&Polygon { outer: outer.clone(), holes: Vec::new() });
-                check(&Polygon { outer, holes });
-            }
-        }
     }
 }

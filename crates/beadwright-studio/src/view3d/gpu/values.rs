@@ -4,7 +4,7 @@
 use super::chunks::{Card, Chunk, Counts};
 use super::growing::Growing;
 use crate::view3d::beads::LayerBeads;
-use crate::view3d::palette::KINDS;
+use crate::view3d::palette::{self, KINDS};
 use crate::view3d::scene::Scene;
 use crate::view3d::style::Colour;
 
@@ -96,7 +96,8 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
         }
         Colour::Kind => {
             for pass in layer.passes() {
-                let kind = KINDS.iter().position(|k| *k == pass.kind).unwrap_or_default();
+                let colour = palette::kind(pass.kind);
+                let kind = KINDS.iter().position(|k| palette::kind(*k) == colour).unwrap_or_default();
                 out.extend(std::iter::repeat_n(kind as f32, pass.segments.len()));
             }
         }
