@@ -24,9 +24,9 @@ const SCRIPT: &str = include_str!("convert.py");
 /// A sentence where there is no converter, it fails, or what it writes is not closed.
 pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     let kind = if is_step(&bytes) {
-        "STEP file"
+        "a STEP file"
     } else if is_iges(&bytes) && has_surfaces(&bytes) {
-        "IGES file with surfaces"
+        "an IGES file with surfaces"
     } else {
         return Ok(bytes);
     };
@@ -44,13 +44,13 @@ pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     let done = command.stdin(Stdio::null()).output();
     let done = done.map_err(|error| {
         anyhow::anyhow!(
-            "{}: this is a {kind}, and the converter {program} cannot be started: {error}. {REMEDY}",
+            "{}: this is {kind}, and the converter {program} cannot be started: {error}. {REMEDY}",
             path.display()
         )
     })?;
     let told = String::from_utf8_lossy(&done.stderr);
     if told.contains("No module named 'OCP'") {
-        anyhow::bail!("{}: this is a {kind}, which needs a converter. {REMEDY}", path.display());
+        anyhow::bail!("{}: this is {kind}, which needs a converter. {REMEDY}", path.display());
     }
     let written = std::fs::read(&stl);
     match (done.status.success(), written) {

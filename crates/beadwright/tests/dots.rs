@@ -93,12 +93,12 @@ fn a_post_too_small_for_a_bead_is_a_column_of_dots_with_its_metal() {
             assert!((laid / wanted - 1.0).abs() < 1e-4, "{corners} {degrees}: {laid} for {wanted}");
             let middle = ring.centroid().unwrap();
             let off = |pass: &&Pass| ((pass.points[0] + pass.points[1]) / 2.0).truncate().distance(middle);
-            assert!(passes.iter().all(|pass| off(&pass) < 1e-3), "{corners} {degrees}");
+            assert!(passes.iter().all(|pass| off(pass) < 1e-3), "{corners} {degrees}");
             let findings =
                 check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
             // A post does not cool between dots, and a round one does not end where a square one does.
             let known = |kind: &str| ["cooling", "outside"].contains(&kind);
-            assert!(findings.iter().all(|finding| known(&finding.kind)), "{corners} {degrees}: {findings:?}");
+            assert!(findings.iter().all(|finding| known(finding.kind)), "{corners} {degrees}: {findings:?}");
         }
     }
 }

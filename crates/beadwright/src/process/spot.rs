@@ -7,6 +7,7 @@
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 /// A dot as it was welded in a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,12 +52,12 @@ impl Dot {
     /// to 0.1 mm/s.
     pub const LENGTH: f64 = 1.0;
     /// A dot is welded for at least and at most this many times as long as in the trial.
-    const TIMES: [f64; 2] = [0.5, 2.0];
+    const TIMES: RangeInclusive<f64> = 0.5..=2.0;
 
     /// Diameter, mm, of a dot with so much metal, mm³; `None` where that is too far from what was tried.
     pub fn diameter_of(&self, metal: f64) -> Option<f64> {
         let times = metal / self.metal;
-        (times >= Self::TIMES[0] && times <= Self::TIMES[1]).then(|| self.diameter * times.sqrt())
+        Self::TIMES.contains(&times).then(|| self.diameter * times.sqrt())
     }
 
     /// For how long the arc burns for a dot of a diameter, mm, in s.
