@@ -113,7 +113,7 @@ impl Pass {
 
 #[pymethods]
 impl Pass {
-    /// What it is for: contour, infill, skeleton or wall.
+    /// What it is for: contour, infill, skeleton, wall or spot.
     #[getter]
     fn kind(&self) -> &'static str {
         self.pass().kind.name()

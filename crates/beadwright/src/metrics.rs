@@ -131,7 +131,7 @@ impl Metrics {
                 self.pause(pause);
             }
             let approach = self.torch.approach(start);
-            let welded = self.torch.weld(&path(pass, self.torch.ends()));
+            let welded = self.torch.weld(pass.kind, &path(pass, self.torch.ends()));
             let retract = self.torch.retract();
             let wire = self.rates.wire_feed_speed * welded.metal;
             // A helix is one pass.

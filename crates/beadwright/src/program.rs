@@ -327,7 +327,7 @@ impl Programmer {
             out.push(Instruction::Weld { to, circle, speed, last: i + 1 == pieces.len(), attitude });
             from = to;
         }
-        let seconds = self.torch.weld(&moves).crater;
+        let seconds = self.torch.weld(pass.kind, &moves).crater;
         if seconds > 0.0 {
             let ratio = Some(self.torch.crater_feed()).filter(|_| self.sets_feed);
             self.feed = ratio;

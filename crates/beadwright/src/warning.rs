@@ -218,13 +218,13 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::HighStart => format!(
-                "{layers}: the first bead would be laid {size:.2} mm above the plate {place}, since none has room below."
+                "{layers}: no bead has room in the layers below; the first would be laid {size:.2} mm above the plate {place}."
             ),
             WarningKind::NothingBelow => {
                 format!("{layers}: no bead lies below; these would be laid {size:.2} mm above the last one {place}.")
             }
             WarningKind::InTheAir => format!(
-                "{layers}: {} over nothing, for {total:.1} mm in all, the most {size:.1} mm {place}.",
+                "{layers}: {} over nothing, for {total:.1} mm in all, the longest for {size:.1} mm {place}.",
                 times("pass hangs", "passes hang")
             ),
             WarningKind::HangingIsland => format!(
@@ -285,7 +285,7 @@ impl WarningSummary {
             }
             WarningKind::ContoursUnited => "Check the picture of the layer.",
             WarningKind::IslandTooSmall => {
-                "A narrower bead or a larger part would be needed; small round ones can get dots ([spot])."
+                "A narrower bead or a larger part would be needed; small round islands can be built of dots ([spot])."
             }
             WarningKind::HighStart => {
                 "Begin there (--from-z, with this number of mm), or take a narrower bead (bead.width)."

@@ -4,6 +4,7 @@
 mod solids;
 
 use beadwright::example;
+use beadwright::glam::DVec3;
 use beadwright::model::{Mesh, cut};
 use solids::{cuboid, facets_of, flipped, imported, joined, sphere};
 
@@ -63,4 +64,20 @@ fn holes_and_steps() {
         assert_eq!(repair.open_edges, 0, "{z}: {repair:?}");
     }
     assert_eq!(facets_of(&hollow).len(), 24);
+}
+
+/// The section of a part may cross itself by a little; it is cut all the same, and stays closed.
+#[test]
+fn a_prism_whose_section_crosses_itself_is_cut() {
+    let outline = [(0.0, 0.0), (40.0, 0.0), (40.0, 19.98), (39.98, 20.0), (40.0, 20.0), (39.98, 19.98), (0.0, 20.0)];
+    let count = outline.len() as u32;
+    let vertices = [0.0, 12.0].iter().flat_map(|&z| outline.iter().map(move |&(x, y)| DVec3::new(x, y, z))).collect();
+    let walls = (0..count).map(|k| (k, (k + 1) % count));
+    let walls = walls.flat_map(|(a, b)| [[a, b, b + count], [a, b + count, a + count]]);
+    let caps = (2..count).flat_map(|k| [[0, k, k - 1], [count, count + k - 1, count + k]]);
+    let (mesh, repair) = Mesh::from_triangles(vertices, walls.chain(caps).collect());
+    assert_eq!(repair.open_edges, 0, "{repair:?}");
+    let (cut, repair) = cut::above(&mesh, 5.0).unwrap();
+    assert_eq!(repair.open_edges, 0, "{repair:?}");
+    assert!((cut.volume() / mesh.volume() - 7.0 / 12.0).abs() < 1e-4, "{} of {}", cut.volume(), mesh.volume());
 }

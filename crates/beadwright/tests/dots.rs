@@ -124,3 +124,31 @@ fn dots_are_refused_where_the_wire_feed_changes_and_not_the_time() {
     let refused = Profile::parse(&text).unwrap_err().to_string();
     assert!(refused.contains("spot.time") && refused.contains("process.follow"), "{refused}");
 }
+
+/// The time of the trial is all the time for which the arc burns on a dot.
+#[test]
+fn no_crater_is_filled_on_a_dot_and_none_is_woven() {
+    let mut profile = profile();
+    let mesh = prism(&polygon(4, 4.6, 0.0));
+    let arc = |profile: &Profile| planned(&mesh, profile).summary.metrics.arc_time_s;
+    let without = arc(&profile);
+    profile.start_stop.crater_fill_time = 0.8;
+    assert_eq!(arc(&profile), without);
+    let text = Profile::built_in_text("cmt-al2319-kuka").unwrap();
+    let both = format!("{text}\n[spot]\ntime = 0.9\nheight = 2.6\n\n[weave]\nlength = 3.0\namplitude = 2.0\n");
+    let refused = Profile::parse(&both).unwrap_err().to_string();
+    assert!(refused.contains("spot.time") && refused.contains("weave"), "{refused}");
+}
+
+#[test]
+fn a_dot_holds_the_allowance_too() {
+    let mut profile = profile();
+    profile.fill.machining_allowance = 0.3;
+    let ring = polygon(40, 3.4, 0.0);
+    let plan = planned(&prism(&ring), &profile);
+    let passes = || plan.layers.iter().flat_map(|layer| &layer.passes);
+    assert!(passes().count() > 0 && passes().all(|pass| pass.kind == PassKind::Spot));
+    let laid: f64 = passes().map(|pass| rate(&profile) * pass.seconds(&profile.process)).sum();
+    let wanted = PI * 3.7_f64.powi(2) * HIGH;
+    assert!((laid / wanted - 1.0).abs() < 0.01, "{laid} for {wanted}");
+}

@@ -2,6 +2,7 @@
 
 use crate::Polygon;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use std::collections::HashMap;
 
 /// Triangles as indices into the polygon's points, outer ring first and then the holes in order; counter-clockwise.
 pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
@@ -23,8 +24,8 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
 }
 
 /// As [`triangulate`], but every edge of the polygon is an edge of one triangle, and every other edge one of two, also where points
-/// lie in line to the last digit: the constrained Delaunay triangulation. Ear clipping passes over such points. Of edges that cross
-/// each other, one is not among those of the triangles.
+/// lie in line to the last digit, which ear clipping passes over: the constrained Delaunay triangulation. Where edges of the
+/// polygon cross each other, the triangles overlap, some of them clockwise, and their areas still add up.
 pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let (mut corners, mut edges) = (Vec::new(), Vec::new());
     for ring in polygon.rings() {
@@ -32,9 +33,17 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
         edges.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
         corners.extend((first..).zip(ring.points()).map(|(number, p)| Corner { at: Point2::new(p.x, p.y), number }));
     }
-    let Ok(all) = ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| {}) else {
-        return triangulate(polygon);
-    };
+    // An edge that is run there and back bounds nothing.
+    let mut times: HashMap<[usize; 2], u32> = HashMap::new();
+    let place = |k: usize| (corners[k].at.x.to_bits(), corners[k].at.y.to_bits());
+    let mut first_at = HashMap::new();
+    let numbers: Vec<usize> = (0..corners.len()).map(|k| *first_at.entry(place(k)).or_insert(k)).collect();
+    let same = |[i, j]: [usize; 2]| [numbers[i].min(numbers[j]), numbers[i].max(numbers[j])];
+    edges.iter().for_each(|edge| *times.entry(same(*edge)).or_default() += 1);
+    edges.retain(|edge| times[&same(*edge)] % 2 == 1);
+    let mut crossed = false;
+    let all = ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| crossed = true);
+    let Some(all) = all.ok().filter(|_| !crossed) else { return fans(polygon) };
     // From the hull inwards, every edge of the polygon leads from outside to inside or back.
     let (mut known, mut inside) = (vec![false; all.num_all_faces()], Vec::new());
     let mut open: Vec<_> = all.convex_hull().map(|edge| (edge.rev(), false)).collect();
@@ -50,6 +59,17 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
         open.extend(face.adjacent_edges().map(|edge| (edge.rev(), is_inside)));
     }
     inside
+}
+
+/// A fan from the first point of each ring: closed, with the area of the polygon, whatever it looks like; its triangles overlap.
+fn fans(polygon: &Polygon) -> Vec<[usize; 3]> {
+    let (mut triangles, mut first) = (Vec::new(), 0);
+    for ring in polygon.rings() {
+        let count = ring.points().len();
+        triangles.extend((2..count).map(|k| [first, first + k - 1, first + k]));
+        first += count;
+    }
+    triangles
 }
 
 /// A point of a polygon.

@@ -106,3 +106,15 @@ proptest! {
         assert_closed(&region.polygons()[0], "a star");
     }
 }
+
+/// A hole that shares an edge with the outline, as cuts make them: the edge bounds nothing.
+#[test]
+fn an_edge_run_there_and_back_bounds_nothing() {
+    let ring = |points: &[(f64, f64)]| Ring::new(points.iter().map(|&(x, y)| DVec2::new(x, y)).collect());
+    let outer = ring(&[(0.0, 0.0), (10.0, 0.0), (30.0, 0.0), (40.0, 0.0), (40.0, 20.0), (0.0, 20.0)]);
+    let hole = ring(&[(10.0, 0.0), (10.0, 8.0), (30.0, 8.0), (30.0, 0.0)]);
+    let base = Polygon { outer, holes: vec![hole] };
+    let points: Vec<DVec2> = base.rings().flat_map(|ring| ring.points()).copied().collect();
+    let total: f64 = triangulate_by_edges(&base).iter().map(|t| area(&t.map(|i| points[i]))).sum();
+    assert!((total - 640.0).abs() < 1e-9, "{total}");
+}

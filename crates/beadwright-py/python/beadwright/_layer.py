@@ -31,7 +31,7 @@ class Pass:
 
     @property
     def kind(self) -> str:
-        """What it is for: contour, infill, skeleton or wall."""
+        """What it is for: contour, infill, skeleton, wall or spot."""
         return self._inner.kind
 
     @property

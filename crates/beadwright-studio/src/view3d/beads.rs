@@ -162,7 +162,7 @@ impl LayerBeads {
             let speed = |pace: f64| torch.speed_at(pace);
             let even: f64 = pass.segments().map(|s| s.length() / speed(s.pace)).sum();
             let speeds: Vec<f64> = pass.segments().map(|s| speed(s.pace)).collect();
-            let welded = torch.weld(&path(pass, torch.ends()));
+            let welded = torch.weld(pass.kind, &path(pass, torch.ends()));
             arc_start += welded.before;
             // Overlaps, slow starts and acceleration are spread evenly along the pass.
             let (stretch, mut clock) = (if even > 0.0 { welded.moving / even } else { 1.0 }, arc_start);

@@ -67,7 +67,7 @@ impl Walk {
             moves = Tilt::divided(moves, wide);
         }
         let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
-        let welded = self.torch.weld(&moves);
+        let welded = self.torch.weld(pass.kind, &moves);
         let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / self.torch.speed_at(w[1].1)).sum();
         // Speeding up and slowing down is spread over the pass.
         let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };

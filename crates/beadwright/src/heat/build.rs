@@ -299,7 +299,7 @@ impl Build {
         self.catch_up(Some((layer, start.truncate())));
         let moves = path(pass, self.torch.ends());
         let temperature = self.surface(layer, start.truncate());
-        let welded = self.torch.weld(&moves);
+        let welded = self.torch.weld(pass.kind, &moves);
         self.spend(welded.before);
         let at = self.now;
         let wait = pause.map_or(0.0, |pause| pause.seconds);

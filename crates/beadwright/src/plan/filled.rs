@@ -6,6 +6,7 @@ use crate::fill::contour::rings_only;
 use crate::fill::coverage::Coverage;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
+use crate::pass::PassKind;
 use crate::profile::Profile;
 use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
@@ -138,11 +139,13 @@ fn fill_layer(
         for stage in &mut own.stages {
             drop_short(stage, profile, slice.index, &mut slice.warnings);
         }
-        let dot = || profile.dot().and_then(|size| dot::dot(island, slice.height, &size));
+        let dot = || dot_in(island, profile, slice.height);
         if own.is_empty()
             && let Some(pass) = dot().or(alone)
         {
-            slice.warnings.truncate(told);
+            let kept = |told: &Warning| pass.kind == PassKind::Spot || told.size == pass.length();
+            let of_island = slice.warnings.split_off(told);
+            slice.warnings.extend(of_island.into_iter().filter(|told| !kept(told)));
             own.stages = vec![vec![pass]];
         }
         let is_left_out = is_left_out && own.is_empty();
@@ -267,6 +270,18 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize,
         }
         keep
     });
+}
+
+/// The dot that fills an island with its allowance, if the process welds dots and one fits.
+fn dot_in(island: &Polygon, profile: &Profile, height: f64) -> Option<Path> {
+    let size = profile.dot()?;
+    match profile.fill.machining_allowance {
+        0.0 => dot::dot(island, height, &size),
+        allowance => match island.offset(allowance, Join::ROUND).polygons() {
+            [grown] => dot::dot(grown, height, &size),
+            _ => None,
+        },
+    }
 }
 
 /// A short pass without which an island stays empty is at least this long, in bead widths.

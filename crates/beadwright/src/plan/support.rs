@@ -144,7 +144,12 @@ struct Hanging {
 /// Whether less than `LEAST` of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is clear of it; looked at
 /// in steps (mm).
 fn hanging(pass: &Pass, step: f64, bridge: f64, below: impl Fn(DVec2) -> Below) -> Option<Hanging> {
-    let places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
+    let mut places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
+    if pass.closed {
+        // No stretch runs through the seam.
+        let held = places.iter().position(|(_, below)| *below == Below::Metal).unwrap_or(0);
+        places.rotate_left(held);
+    }
     let is_free = |below: Below| below != Below::Metal;
     let free = places.iter().filter(|(_, below)| is_free(*below)).count();
     let stretches = |a: &(DVec2, Below), b: &(DVec2, Below)| is_free(a.1) == is_free(b.1);

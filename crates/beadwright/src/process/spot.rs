@@ -24,7 +24,7 @@ impl Spot {
     /// The limits of the numbers.
     pub(crate) fn limits(&self) -> Vec<Limit> {
         limits! {
-            "spot.time": self.time, 0.05, 60.0, "s", "a dot takes about as long as a bead takes for its width";
+            "spot.time": self.time, 0.05, 10.0, "s", "a dot takes about as long as a bead takes for its width";
             "spot.height": self.height, 0.2, 30.0, "mm", "a dot is about as high as a bead";
         }
     }

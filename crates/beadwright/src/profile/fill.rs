@@ -51,7 +51,7 @@ pub struct FillSection {
     /// Spacing of the scan lines: spread evenly (`even`), exactly one stepover apart (`exact`, Liu et al. 2022, eq 11),
     /// or spread evenly between the long edges parallel to them (`fitted`).
     pub raster_spacing: RasterSpacing,
-    /// Minimum length of a pass, mm; shorter passes are left out with a warning, but for the only pass of an island.
+    /// Minimum length of a pass, mm; shorter passes are left out with a warning, except the only one of an island.
     pub min_pass_length: f64,
     /// Whether `compound`, `hilbert` and `partition` lay the perimeters before the infill; default false.
     #[serde(default)]

@@ -89,6 +89,10 @@ fn contradiction(p: &Profile) -> Option<Broken> {
             return Some(Broken { key, value, reason: format!("{other} is not below it.") });
         }
     }
+    if let (Some(spot), Some(_)) = (&p.spot, &p.weave) {
+        let reason = "the torch stands while it welds a dot, so [spot] does not go with [weave].".to_owned();
+        return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });
+    }
     if let (Some(spot), Follow::WireFeed) = (&p.spot, p.process.follow) {
         let reason = "a dot is as large as its time is long, so process.follow must be \"speed\".".to_owned();
         return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });

@@ -4,6 +4,7 @@ use super::WeldSettings;
 use super::path::lit_ends;
 use crate::layer::Lit;
 use crate::motion::Motion;
+use crate::pass::PassKind;
 use crate::process::{Process, StartStop};
 use glam::DVec3;
 
@@ -229,8 +230,9 @@ impl Torch {
         (length, time)
     }
 
-    /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them.
-    pub fn weld(&mut self, moves: &[(DVec3, f64)]) -> Welded {
+    /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them. A dot has no crater
+    /// that would be filled.
+    pub fn weld(&mut self, kind: PassKind, moves: &[(DVec3, f64)]) -> Welded {
         let (mut length, mut steady, mut metal) = (0.0, 0.0, 0.0);
         for ends in moves.windows(2) {
             let (piece, pace) = (ends[0].0.distance(ends[1].0), ends[1].1);
@@ -243,7 +245,7 @@ impl Torch {
             (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
             _ => steady,
         };
-        let crater = self.ends.crater_fill_time;
+        let crater = if kind == PassKind::Spot { 0.0 } else { self.ends.crater_fill_time };
         let filling = crater * self.crater_feed();
         let metal = metal + filling;
         let [before, after] = self.delays();
