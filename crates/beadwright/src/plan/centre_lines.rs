@@ -42,7 +42,7 @@ fn weld_sections(
     let line = |section: &Section| Line { nodes: section.points.iter().map(node).collect(), closed: section.closed };
     let mut fill = wall::along(&sections.iter().map(line).collect::<Vec<_>>(), &settings);
     for stage in &mut fill.stages {
-        drop_short(stage, profile, index, &mut slice.warnings);
+        drop_short(stage, None, profile, index, &mut slice.warnings);
     }
     let along = |closed: bool| {
         let lines = sections.iter().filter(|section| section.closed == closed).map(|section| section.points.clone());

@@ -6,7 +6,7 @@ use crate::fill::contour::rings_only;
 use crate::fill::coverage::Coverage;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
-use crate::pass::PassKind;
+use crate::process::Dot;
 use crate::profile::Profile;
 use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
@@ -134,21 +134,21 @@ fn fill_layer(
         } else {
             Fill::default()
         };
-        let is_left_out = own.is_empty();
-        let (told, alone) = (slice.warnings.len(), short_but_alone(&own, profile, slice.index));
-        for stage in &mut own.stages {
-            drop_short(stage, profile, slice.index, &mut slice.warnings);
-        }
-        let dot = || dot_in(island, profile, slice.height);
-        if own.is_empty()
-            && let Some(pass) = dot().or(alone)
-        {
-            let kept = |told: &Warning| pass.kind == PassKind::Spot || told.size == pass.length();
-            let of_island = slice.warnings.split_off(told);
-            slice.warnings.extend(of_island.into_iter().filter(|told| !kept(told)));
-            own.stages = vec![vec![pass]];
-        }
-        let is_left_out = is_left_out && own.is_empty();
+        let mut passes = own.stages.iter().flatten();
+        let dot = profile.dot().filter(|_| !passes.any(|pass| is_long_enough(pass, profile, slice.index)));
+        let is_left_out = match dot.and_then(|dot| dot_in(island, profile, slice.height, &dot)) {
+            Some(pass) => {
+                own.stages = vec![vec![pass]];
+                false
+            }
+            None => {
+                let (is_left_out, alone) = (own.is_empty(), short_but_alone(&own, profile, slice.index));
+                for stage in &mut own.stages {
+                    drop_short(stage, alone.as_ref(), profile, slice.index, &mut slice.warnings);
+                }
+                is_left_out
+            }
+        };
         let cover = Cover::of(&own, island, profile, &reach);
         planned_area += cover.area;
         let places =
@@ -256,15 +256,19 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     })
 }
 
-/// Leaves out passes that are too short to weld, with a warning.
-pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize, warnings: &mut Vec<Warning>) {
-    let (shortest, soonest) = (profile.fill.min_pass_length, profile.soonest_arc_end());
+/// Leaves out passes that are too short to weld, but for one to be kept, with a warning.
+pub(super) fn drop_short(
+    stage: &mut Vec<Path>,
+    kept: Option<&Path>,
+    profile: &Profile,
+    layer: usize,
+    warnings: &mut Vec<Warning>,
+) {
     stage.retain(|pass| {
         let length = pass.length();
-        let steady = length >= shortest && arc_time(pass, profile, layer) >= soonest;
-        let keep = steady && pass.points.len() >= 2;
+        let keep = kept == Some(pass) || is_long_enough(pass, profile, layer);
         // A zigzag that touches a corner with a line of no length loses nothing.
-        if !keep && length > 0.1 * shortest {
+        if !keep && length > 0.1 * profile.fill.min_pass_length {
             let place = pass.points.first().copied().unwrap_or_default();
             warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
         }
@@ -272,15 +276,17 @@ pub(super) fn drop_short(stage: &mut Vec<Path>, profile: &Profile, layer: usize,
     });
 }
 
-/// The dot that fills an island with its allowance, if the process welds dots and one fits.
-fn dot_in(island: &Polygon, profile: &Profile, height: f64) -> Option<Path> {
-    let size = profile.dot()?;
-    match profile.fill.machining_allowance {
-        0.0 => dot::dot(island, height, &size),
-        allowance => match island.offset(allowance, Join::ROUND).polygons() {
-            [grown] => dot::dot(grown, height, &size),
-            _ => None,
-        },
+/// Whether a pass is long enough to be welded, and its arc is steady before it is over.
+fn is_long_enough(pass: &Path, profile: &Profile, layer: usize) -> bool {
+    let is_long = pass.points.len() >= 2 && pass.length() >= profile.fill.min_pass_length;
+    is_long && arc_time(pass, profile, layer) >= profile.soonest_arc_end()
+}
+
+/// The dot that fills an island with its allowance, if one fits.
+fn dot_in(island: &Polygon, profile: &Profile, height: f64, dot: &Dot) -> Option<Path> {
+    match island.offset(profile.fill.machining_allowance, Join::ROUND).polygons() {
+        [grown] => dot::dot(grown, height, dot),
+        _ => None,
     }
 }
 

@@ -28,40 +28,36 @@ impl MedialAxis {
     pub fn without_spurs(mut self, is_spur: impl Fn(&[Node]) -> bool) -> Self {
         loop {
             let degrees = self.degrees();
-            let mut spurs: Vec<(f64, usize, usize)> = Vec::new();
+            let mut spurs: Vec<(f64, usize, [usize; 2])> = Vec::new();
             for (number, branch) in self.branches.iter().enumerate() {
-                let [from, to] = [degrees[branch.from], degrees[branch.to]];
-                let mut nodes = branch.nodes.clone();
-                let junction = match (from, to) {
-                    (1, 3..) => branch.to,
-                    (3.., 1) => {
-                        nodes.reverse();
-                        branch.from
-                    }
+                let (free, junction) = match (degrees[branch.from], degrees[branch.to]) {
+                    (1, 3..) => (branch.from, branch.to),
+                    (3.., 1) => (branch.to, branch.from),
                     _ => continue,
                 };
+                let mut nodes = branch.nodes.clone();
+                if free == branch.to {
+                    nodes.reverse();
+                }
                 if is_spur(&nodes) {
-                    spurs.push((length(&nodes), number, junction));
+                    spurs.push((length(&nodes), number, [free, junction]));
                 }
             }
             spurs.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let (mut touched, mut gone) = (vec![false; degrees.len()], vec![false; self.branches.len()]);
-            for (_, number, junction) in spurs {
-                gone[number] = !std::mem::replace(&mut touched[junction], true);
-            }
-            if !gone.contains(&true) {
+            if spurs.is_empty() {
                 return self;
             }
-            let mut free = vec![false; degrees.len()];
-            for branch in self.branches.iter().zip(&gone).filter(|(_, gone)| **gone).map(|(branch, _)| branch) {
-                [branch.from, branch.to].into_iter().filter(|&end| degrees[end] == 1).for_each(|end| free[end] = true);
+            // At each junction one spur goes before the others are looked at again.
+            let (mut touched, mut ends) = (vec![false; degrees.len()], vec![false; degrees.len()]);
+            let mut gone = vec![false; self.branches.len()];
+            for (_, number, [end, junction]) in spurs {
+                if !std::mem::replace(&mut touched[junction], true) {
+                    (gone[number], ends[end]) = (true, true);
+                }
             }
-            let mut number = 0;
-            self.branches.retain(|_| {
-                number += 1;
-                !gone[number - 1]
-            });
-            self.drop_junctions(&free);
+            let mut gone = gone.into_iter();
+            self.branches.retain(|_| gone.next() == Some(false));
+            self.drop_junctions(&ends);
             self = self.joined();
         }
     }
