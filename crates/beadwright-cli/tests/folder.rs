@@ -220,7 +220,7 @@ fn case_1615_runs_killed_around_the_commit_leave_one_set_or_the_other() {
         assert!(run(&out, height).status().unwrap().success());
         content(&out)
     };
-    let (old_height, new_height) = ("layers.height=1.6", "layers.height=1.7");
+    let (old_height, new_height) = ("layers.height=1.6", "layers.height=1.61");
     let (old, new) = (set("old", old_height), set("new", new_height));
     assert!(old.keys().eq(new.keys()) && old != new && new.len() > 6, "{} and {} files", old.len(), new.len());
     let (mut seen, mut into_nothing) = ([0, 0], [0, 0]);

@@ -43,11 +43,25 @@ fn four_parts_grow_together() {
     let at = folder.path();
     for name in PARTS {
         assert!(beadwright(at, &["example", name, "-o", &format!("{name}.stl")]).status.success());
-        let plan = ["plan", &format!("{name}.stl"), "--no-deposit", "-o", name, "-s", "contour"];
+        // Level layers lie as high as the metal of all parts makes them.
+        let (file, flat) = (format!("{name}.stl"), "layers.level=false");
+        let plan = ["plan", &file, "--no-deposit", "-o", name, "-s", "contour", "--set", flat];
         assert!(beadwright(at, &plan).status.success());
     }
     let with: Vec<String> = PARTS[1..].iter().map(|name| format!("--with={name}.stl")).collect();
-    let mut plan = vec!["plan", "cross.stl", "--no-deposit", "-s", "contour", "-o", "all", "--gap", "25"];
+    let mut plan = vec![
+        "plan",
+        "cross.stl",
+        "--no-deposit",
+        "-s",
+        "contour",
+        "-o",
+        "all",
+        "--gap",
+        "25",
+        "--set",
+        "layers.level=false",
+    ];
     plan.extend(with.iter().map(String::as_str));
     let said = beadwright(at, &plan);
     let text = String::from_utf8_lossy(&said.stdout).into_owned();

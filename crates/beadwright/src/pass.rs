@@ -1,7 +1,7 @@
 //! A pass in space: the path with the arc on, and the width and pace along it.
 
 use crate::process::Process;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// What a pass is for.
@@ -148,6 +148,12 @@ impl Pass {
             width: self.width.after(i),
             pace: self.pace.after(i),
         })
+    }
+
+    /// The path seen from above, mm; that of a closed pass ends where it began.
+    pub fn line(&self) -> Vec<DVec2> {
+        let again = self.closed.then(|| self.points.first()).flatten();
+        self.points.iter().chain(again).map(|p| p.truncate()).collect()
     }
 
     /// Where the arc starts.

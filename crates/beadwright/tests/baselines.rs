@@ -11,7 +11,7 @@ use beadwright::plan;
 use beadwright::planar::{DVec2, Polygon, Ring};
 use beadwright::slice::Slicer;
 use beadwright::task::Task;
-use common::profile_by;
+use common::{flat, profile_by};
 use std::f64::consts::PI;
 
 const BASELINES: [&str; 5] = ["spiral", "fermat", "hilbert", "partition", "mat"];
@@ -183,7 +183,7 @@ fn contours_in_place_of_walls_bring_the_metal_of_the_part() {
         let mut mesh = example::find(name).unwrap().mesh();
         mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
         let filled = |strategy: &str| {
-            let plan = plan::plan(name, &mesh, &profile_by("cmt-al2319-kuka", strategy), &Task::new()).unwrap();
+            let plan = plan::plan(name, &mesh, &flat(profile_by("cmt-al2319-kuka", strategy)), &Task::new()).unwrap();
             plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.part_volume_mm3
         };
         let (wall, contour) = (filled("wall"), filled("contour"));

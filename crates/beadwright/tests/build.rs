@@ -13,7 +13,7 @@ use beadwright::pass::{Along, Pass};
 use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
-use common::{planned, profile, profile_by};
+use common::{flat, planned, profile, profile_by};
 use std::f64::consts::TAU;
 
 /// Fifty layers each of a straight wall and of a blade that turns on its way up.
@@ -74,7 +74,7 @@ fn metal(layer: &Layer, profile: &Profile) -> f64 {
 
 #[test]
 fn the_surface_holds_the_metal_that_was_laid() {
-    let cross = profile("cmt-al2319-kuka");
+    let cross = flat(profile("cmt-al2319-kuka"));
     let layers = planned("cross", &cross).layers;
     let straight = walls().remove(0);
     for (part, layers, profile) in [("cross", layers, cross), straight] {

@@ -264,6 +264,7 @@ fn turned_plan(part: &str, turn: f64, strategy: &str, gap: f64) -> Plan {
     let mut profile = Profile::built_in("plasma-304-cnc").unwrap();
     profile.fill.strategy = strategy.to_owned();
     profile.fill.contour_gap = gap;
+    profile.layers.level = false;
     let mut mesh = example::find(part).unwrap().mesh();
     mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
     plan::plan(part, &mesh, &profile, &Task::new()).unwrap()

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::with_all_dialects;
+use common::{flat, with_all_dialects};
 mod readers;
 
 use beadwright::dialect::fanuc::FanucSpeed;
@@ -429,7 +429,7 @@ fn large_programs_come_in_volumes() {
 /// divided between passes.
 #[test]
 fn no_volume_is_larger_than_it_may_be() {
-    let mut profile = profile();
+    let mut profile = flat(profile());
     profile.fill.strategy = "contour".to_owned();
     (profile.program.chord_tolerance, profile.program.arcs, profile.program.restart) = (0.0, false, true);
     profile.dialects.krl.as_mut().unwrap().max_points = 200;

@@ -12,14 +12,14 @@ use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::Plan;
 use beadwright::profile::Profile;
 use beadwright::program::Weave;
-use common::{planned, profile};
+use common::{flat, planned, profile};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
 type Files = BTreeMap<String, String>;
 
 fn plan_of(name: &str) -> (Plan, Profile) {
-    let mut profile = profile(name);
+    let mut profile = flat(profile(name));
     profile.fill.strategy = "contour".to_owned();
     profile.program.chord_tolerance = 0.05;
     profile.program.arcs = true;

@@ -27,6 +27,7 @@ fn profile(name: &str, strategy: &str, angle: f64) -> Profile {
     let mut profile = Profile::built_in(name).unwrap();
     profile.fill.strategy = strategy.to_owned();
     profile.fill.raster_angle = angle;
+    profile.layers.level = false;
     profile
 }
 
@@ -138,9 +139,15 @@ fn the_crossing_test_finds_crossings() {
 
 #[test]
 fn no_two_passes_of_a_layer_cross() {
-    each_case(|case, plan, _| {
+    each_case(|case, plan, profile| {
         for layer in plan.layers.iter().step_by(3) {
             assert_eq!(crossing(layer), None, "{case}, layer {}", layer.index);
+        }
+        let name = case.split(' ').next().unwrap();
+        let mut level = profile.clone();
+        level.layers.level = true;
+        for layer in plan_of(&example::find(name).unwrap().mesh(), &level).layers.iter().step_by(4) {
+            assert_eq!(crossing(layer), None, "{case}, level layer {}", layer.index);
         }
     });
 }

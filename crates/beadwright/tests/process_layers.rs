@@ -8,7 +8,7 @@ use beadwright::dialect;
 use beadwright::layer::Layer;
 use beadwright::process::{Follow, LayerProcess};
 use beadwright::profile::Profile;
-use common::{planned, profile, read_back};
+use common::{flat, planned, profile, read_back};
 
 /// The first two layers at 1.25 times the speed, with job 7.
 fn faster(mut profile: Profile) -> Profile {
@@ -45,7 +45,7 @@ fn plain_speed(follow: Follow, pace: f64) -> f64 {
 
 #[test]
 fn programs_tell_speed_feed_and_job() {
-    let mut profile = profile("cmt-al2319-kuka");
+    let mut profile = flat(profile("cmt-al2319-kuka"));
     profile.fill.strategy = "contour".to_owned();
     let nominal = profile.process.deposition_speed;
     let krl = profile.dialects.krl.as_mut().unwrap();

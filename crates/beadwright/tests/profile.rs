@@ -212,6 +212,7 @@ fn only_optional_keys_may_be_missing() {
         "krl.arctech",
         "krl.hooks",
         "krl.routines",
+        "layers.level",
         "urscript.hooks",
         "urscript.routines",
         "safety.supplies",

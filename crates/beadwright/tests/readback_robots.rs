@@ -14,7 +14,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{dialect, example, simulate};
-use common::with_all_dialects;
+use common::{flat, with_all_dialects};
 use glam::DVec3;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -108,7 +108,7 @@ fn every_dialect_of_a_hybrid_layer_reads_back_as_planned() {
 
 #[test]
 fn every_dialect_is_judged_alike() {
-    let profile = profile();
+    let profile = flat(profile());
     let plan = hybrid(&profile);
     let mesh = example::find("cross").unwrap().mesh();
     let settings = DepositSettings { step: 0.75, ..plan::deposit_settings(&profile) };

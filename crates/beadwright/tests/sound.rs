@@ -15,7 +15,7 @@ use beadwright::slice::LayerFit;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use beadwright::{Layer, Mesh};
-use common::profile_by;
+use common::{flat, profile_by};
 use families::{FAMILIES, extruded, fault, islands, line};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -68,7 +68,7 @@ fn case_1603_the_hybrid_does_not_cross_itself() {
 fn case_1604_what_is_left_of_the_height_is_told() {
     let mesh = import(&case("box60x60x2.99.stl"), &Task::new()).unwrap().mesh;
     let plan_by = |fit: LayerFit| {
-        let mut profile = profile_by("cmt-al2319-kuka", "loop");
+        let mut profile = flat(profile_by("cmt-al2319-kuka", "loop"));
         profile.layers.fit = fit;
         let found = plan::plan("box", &mesh, &profile, &Task::new()).unwrap();
         assert!(!found.layers.iter().any(|layer| layer.passes.is_empty()));
@@ -87,6 +87,8 @@ fn case_1604_what_is_left_of_the_height_is_told() {
     let metal = |plan: &Plan| plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.mesh_volume_mm3.unwrap();
     assert!((metal(&even) / (metal(&fixed) * 2.99 / 2.0) - 1.0).abs() < 0.02, "the metal follows the layers' height");
     assert_eq!(even.layers.len(), 2);
+    let level = planned("box60x60x2.99.stl", "loop");
+    assert!((level.layers.last().unwrap().z - 2.99).abs() < 1e-6 && told(&level).is_none());
 }
 
 /// What changes sides at a vertex crosses, and what touches there does not, at any turn.
@@ -207,6 +209,12 @@ fn wrong(islands: &[Polygon], profile: &Profile) -> Option<String> {
     plan.layers.iter().find_map(|layer| fault(layer).or_else(|| untold(layer)))
 }
 
+/// What crosses or lies outside once the metal is shared out.
+fn crossing(islands: &[Polygon], profile: &Profile) -> Option<String> {
+    let mesh = extruded(islands, 2.0 * profile.layers.height)?;
+    plan::plan("part", &mesh, profile, &Task::new()).ok()?.layers.iter().find_map(fault)
+}
+
 /// Where the area that a layer is said to cover is wrong by more than 1 %, measured with polygons instead of rows.
 fn untold(layer: &Layer) -> Option<String> {
     // Pieces of one width, to a hundredth of a millimetre, are buffered together.
@@ -237,7 +245,8 @@ fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {
             let (family, seed) = ((number % 8) as usize, first + number / 8);
             let islands = islands(family, seed);
             let wrong = move |strategy: &str| {
-                let why = wrong(&islands, &profile_by("cmt-al2319-kuka", strategy))?;
+                let level = profile_by("cmt-al2319-kuka", strategy);
+                let why = wrong(&islands, &flat(level.clone())).or_else(|| crossing(&islands, &level))?;
                 Some(format!("{} {seed} by {strategy}, {why}", FAMILIES[family]))
             };
             STRATEGIES.iter().filter_map(|strategy| wrong(strategy.name())).collect::<Vec<_>>()

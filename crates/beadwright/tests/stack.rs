@@ -6,7 +6,7 @@ use beadwright::deposit::{DepositSettings, Nominal, Stack, stack::Growth};
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan};
-use beadwright::{Model, Placement, Profile, Task, check, example};
+use beadwright::{Judge, Model, Placement, Profile, Task, check, example};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 
@@ -190,15 +190,25 @@ fn built(plan: &Plan, profile: &Profile) -> Growth {
 #[test]
 fn level_layers_end_where_the_plan_does() {
     for (name, least) in
-        [("cross", 0.99), ("gear", 0.97), ("plate", 0.97), ("star", 0.97), ("vase", 0.97), ("propeller", 0.85)]
+        [("cross", 0.99), ("gear", 0.99), ("plate", 0.99), ("star", 0.99), ("vase", 0.98), ("propeller", 0.93)]
     {
         for degrees in [0.0, 23.0] {
             let (plan, profile) = planned(name, degrees, true);
             let ended = built(&plan, &profile);
             assert!(ended.within >= least && ended.mean.abs() < 0.6, "{name} at {degrees}°: {ended:?}");
+            let high = example::find(name).unwrap().mesh().bounds().1.z;
+            assert!(
+                (plan.layers.last().unwrap().z - high).abs() < 1e-6,
+                "{name} at {degrees}°: all of the part is built"
+            );
+            let mut judge = Judge::new(plan::deposit_settings(&profile));
+            plan.layers.iter().for_each(|layer| drop(judge.layer(layer)));
+            let outside = judge.total().outside_percent();
+            assert!(outside < 1.5, "{name} at {degrees}°: {outside} % beside the part");
             let metrics = &plan.summary.metrics;
             let metal = metrics.deposited_volume_mm3 / metrics.part_volume_mm3;
-            assert!((metal - 1.0).abs() < 0.04, "{name} at {degrees}°: {metal} of the metal of its slices");
+            // Corners hold less than their beads would need.
+            assert!((metal - 1.0).abs() < 0.05, "{name} at {degrees}°: {metal} of the metal of its slices");
         }
     }
 }

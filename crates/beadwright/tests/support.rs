@@ -8,7 +8,7 @@ use beadwright::plan::{self, Plan};
 use beadwright::planar::DVec2;
 use beadwright::task::Task;
 use beadwright::warning::{WarningKind, WarningSummary};
-use common::profile;
+use common::{flat, profile};
 
 /// Blocks (x, y, z from and to, mm), turned about z by some degrees.
 fn blocks(blocks: &[[(f64, f64); 3]], degrees: f64) -> Mesh {
@@ -27,7 +27,7 @@ fn blocks(blocks: &[[(f64, f64); 3]], degrees: f64) -> Mesh {
 }
 
 fn planned(mesh: &Mesh, strategy: &str) -> Plan {
-    let mut profile = profile("cmt-al2319-kuka");
+    let mut profile = flat(profile("cmt-al2319-kuka"));
     profile.fill.strategy = strategy.to_owned();
     plan::plan("part", mesh, &profile, &Task::new()).unwrap()
 }

@@ -89,6 +89,7 @@ fn slicing_can_be_watched_and_stopped() {
 fn planning_can_be_watched_and_stopped() {
     let (mesh, mut profile) = (ball(), Profile::built_in("plasma-304-cnc").unwrap());
     profile.layers.height = 0.5;
+    profile.layers.level = false;
     // Loops take more time for so many layers than is waited for here.
     "compound".clone_into(&mut profile.fill.strategy);
     check("plan", Stage::Plan, |task| match plan::plan("ball", &mesh, &profile, task) {

@@ -20,11 +20,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 }
 
 fn in_layer(layer: &Layer) -> Vec<Finding> {
-    let line = |pass: &Pass| -> Vec<DVec2> {
-        let again = pass.closed.then(|| pass.points.first()).flatten();
-        pass.points.iter().chain(again).map(|p| p.truncate()).collect()
-    };
-    let lines: Vec<Vec<DVec2>> = layer.passes.iter().map(line).collect();
+    let lines: Vec<Vec<DVec2>> = layer.passes.iter().map(Pass::line).collect();
     let mut last = None;
     // One finding a pass.
     let fresh = |found: &(usize, usize, DVec2)| last.replace(found.0) != Some(found.0);

@@ -172,8 +172,7 @@ pub(super) fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64
 
 /// The place at a distance along a pass, mm, seen from above.
 fn place_on(pass: &Pass, way: f64) -> DVec2 {
-    let ends = pass.segments().map(|piece| piece.to.truncate());
-    let line: Vec<DVec2> = pass.start().map(|start| start.truncate()).into_iter().chain(ends).collect();
+    let line = pass.line();
     planar::polyline::point_at(&line, way).or(line.first().copied()).unwrap_or_default()
 }
 

@@ -9,22 +9,28 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LayersSection {
-    /// Thickness of a layer, mm; for walls it is used only where their layer heights are not predicted (`foretell`).
+    /// Thickness of a layer with many beads side by side, mm; for walls it is used only where their layer heights are not
+    /// predicted (`foretell`).
     pub height: f64,
     /// How the layers fit the height of a solid: `fixed` (layers of this thickness, as many as come nearest to the
     /// height), `last` (one more layer where the part would end above the last), or `even` (the nearest number of equal
-    /// layers, each laid at the pace that fills it); default fixed. What is left over is told.
+    /// layers, each laid at the pace that fills it); default fixed. What is left over is told. Level layers end with the part.
     #[serde(default)]
     pub fit: LayerFit,
-    /// Whether layers of solids are as high as the metal of their passes fills their slices, and the metal goes where the
-    /// slice needs it: more to beads at the rim, less to beads between others; default false. Without it, a part with few
-    /// beads side by side ends lower than planned.
-    #[serde(default)]
+    /// Whether layers of solids are as high as the metal of their passes fills their slices, a wide one `height`, end with the
+    /// part, and have the metal where the slice needs it: more in beads at the rim, less in beads between others; default
+    /// true. Without it, all layers are of one height and all beads alike, and a part with few beads side by side ends lower
+    /// than planned.
+    #[serde(default = "yes")]
     pub level: bool,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
     /// thickness apart: `auto` (for the strategy `wall` only), `always` or `never`; default auto.
     #[serde(default)]
     pub foretell: Foretell,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// When the heights of layers are predicted from the bead.

@@ -32,6 +32,8 @@ const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
 pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let mut profile = Profile::built_in("cmt-al2319-kuka").map_err(|e| wrong(&e))?;
     profile.fill.strategy = "hybrid".to_owned();
+    // The paper's layers are of one height, its beads of one speed.
+    profile.layers.level = false;
     let literal = literal(&profile, ScanAlong::Auto);
     let mesh = part("propeller", 0.0)?;
     let entries = entries(&mesh, &profile, task)?;

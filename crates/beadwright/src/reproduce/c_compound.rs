@@ -141,6 +141,7 @@ impl Case<'_> {
     fn judged(&self, task: &Task) -> Result<Entry, ReproduceError> {
         let wrong = |e: &dyn std::fmt::Display| ReproduceError(e.to_string());
         let mut profile = Profile::built_in("plasma-304-cnc").map_err(|e| wrong(&e))?;
+        profile.layers.level = false;
         profile.fill.contour_gap = self.gap;
         profile.fill.raster_angle = 90.0;
         profile.fill.raster_turn = RasterTurn::Fixed;

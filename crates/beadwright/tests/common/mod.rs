@@ -15,6 +15,12 @@ pub(crate) fn profile(name: &str) -> Profile {
     Profile::built_in(name).unwrap()
 }
 
+/// The same with layers of one height and beads as the strategy lays them: no metal is shared out.
+pub(crate) fn flat(mut profile: Profile) -> Profile {
+    profile.layers.level = false;
+    profile
+}
+
 /// A built-in profile with a strategy.
 pub(crate) fn profile_by(name: &str, strategy: &str) -> Profile {
     let mut profile = profile(name);

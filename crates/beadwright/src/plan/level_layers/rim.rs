@@ -1,0 +1,53 @@
+//! Wider beads stay inside the outline.
+//!
+//! A bead along the outline is laid half its planned width inside. Where it gets more metal than planned it becomes wider,
+//! on both sides alike if it stayed: metal beside the part. Moved inwards by all of it, it would pile up on its neighbour.
+//! So it moves by half of what lies outside.
+
+use glam::DVec2;
+use planar::{Region, Ring};
+use rstar::RTree;
+use rstar::primitives::Line;
+
+/// A bead moves by this part of what would lie outside.
+const INWARDS: f64 = 0.6;
+/// What counts as no way at all, mm.
+const NOTHING: f64 = 1e-6;
+/// A place in a corner is moved away from one side after the other, this often.
+const TURNS: usize = 4;
+/// A place is moved only if that takes it away from the outline by this part of what it should gain: one in the middle of a
+/// wall leaves one side for the other.
+const GAIN: f64 = 0.4;
+
+/// The outline of what the beads of a layer fill.
+pub(super) struct Rim(RTree<Line<[f64; 2]>>);
+
+impl Rim {
+    pub(super) fn of(region: &Region) -> Self {
+        let edges = region.rings().flat_map(Ring::edges).map(|(a, b)| Line::new(a.to_array(), b.to_array()));
+        Self(RTree::bulk_load(edges.collect()))
+    }
+
+    /// How a place of a bead moves that is laid wider than planned, mm: inwards as far as it would lie over the outline.
+    pub(super) fn shift(&self, from: DVec2, planned: f64, laid: f64) -> DVec2 {
+        let most = INWARDS * (laid - planned) / 2.0;
+        let Some(foot) = self.foot(from).filter(|_| most > NOTHING) else { return DVec2::ZERO };
+        let before = from.distance(foot);
+        let wanted = (laid / 2.0 - before).min(most);
+        let mut at = from;
+        for _ in 0..TURNS {
+            let Some(foot) = self.foot(at) else { break };
+            let short = before + wanted - at.distance(foot);
+            let Some(inwards) = (at - foot).try_normalize().filter(|_| short > NOTHING) else { break };
+            at += short * inwards;
+        }
+        let gain = self.foot(at).map_or(0.0, |after| at.distance(after) - before);
+        if gain > GAIN * wanted { at - from } else { DVec2::ZERO }
+    }
+
+    /// The nearest point of the outline.
+    fn foot(&self, p: DVec2) -> Option<DVec2> {
+        let edge = self.0.nearest_neighbor(&p.to_array())?;
+        Some(edge.nearest_point(&p.to_array()).into())
+    }
+}

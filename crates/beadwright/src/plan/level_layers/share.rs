@@ -1,0 +1,260 @@
+//! Metal where the slice needs it.
+
+use super::rim::Rim;
+use crate::deposit::Nominal;
+use crate::deposit::field::Grid;
+use crate::fill::sound;
+use crate::layer::{self, Layer};
+use crate::pass::{Along, Pass, PassKind, Segment};
+use crate::profile::Profile;
+use glam::DVec2;
+use planar::{Join, Region, polyline};
+
+/// A piece gets at most this many times the metal of its bead.
+pub(super) const MOST: f64 = 1.2;
+/// Pieces on which the metal is found, in widths of the nominal bead.
+const PIECE: f64 = 0.25;
+/// Metal is evened out over this distance before and behind a piece, in widths.
+const AROUND: f64 = 1.0;
+/// Pieces that need the same metal but for this fraction get the same.
+const ALIKE: f64 = 0.06;
+/// Shifts inwards are evened out over this distance, in widths.
+const EVEN: f64 = 0.5;
+/// Points that lie no farther from the line between their neighbours are dropped, in widths.
+const STRAIGHT: f64 = 0.006;
+/// A place belongs to a pass at most this far away, in widths.
+const REACH: f64 = 0.75;
+/// Grid points across a bead.
+const ACROSS: f64 = 8.0;
+
+/// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those
+/// around it needs as a multiple of what they hold.
+pub(super) struct Share {
+    pieces: Vec<Segment>,
+    pub(super) held: Vec<f64>,
+    pub(super) needs: Vec<f64>,
+}
+
+fn metal_of(piece: &Segment, nominal: &Nominal) -> f64 {
+    piece.length() * nominal.bead_at(piece.width, piece.pace).area()
+}
+
+fn nominal(profile: &Profile) -> Nominal {
+    crate::plan::deposit_settings(profile).nominal
+}
+
+/// What the passes of a layer hold and need.
+pub(super) fn shares(layer: &Layer, region: &Region, profile: &Profile) -> Vec<Share> {
+    let nominal = nominal(profile);
+    let width = nominal.bead.width;
+    // A dot holds what its place needs already.
+    let pieces = |pass: &Pass| if pass.kind == PassKind::Spot { Vec::new() } else { cut(pass, PIECE * width) };
+    let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(pieces).collect();
+    // Where beads lie side by side, their metal makes layers.height, whatever the profile says of the bead.
+    let wide = nominal.bead.rise(profile.stepover()) / profile.layers.height;
+    let areas = strips(layer, region, pieces.iter().flatten(), width);
+    let mut areas = areas.iter();
+    let share = |(pass, pieces): (&Pass, Vec<Segment>)| {
+        let wanted: Vec<f64> = areas.by_ref().take(pieces.len()).map(|area| area * layer.height).collect();
+        let held: Vec<f64> = pieces.iter().map(|piece| metal_of(piece, &nominal)).collect();
+        let lengths: Vec<f64> = pieces.iter().map(Segment::length).collect();
+        let near = |piece| around(piece, &lengths, pass.closed, AROUND * width);
+        let sum = |values: &[f64], piece| near(piece).map(|k| values[k]).sum::<f64>();
+        let need = |piece| match sum(&held, piece) {
+            have if have > 0.0 => wide * sum(&wanted, piece) / have,
+            _ => 1.0,
+        };
+        Share { needs: (0..pieces.len()).map(need).collect(), pieces, held }
+    };
+    layer.passes.iter().zip(pieces).map(share).collect()
+}
+
+/// What the beads of a layer should fill: its islands with what is milled off.
+pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
+    let region = Region::from_normalised(layer.islands.clone());
+    match profile.fill.machining_allowance {
+        allowance if allowance > 0.0 => region.offset(allowance, Join::ROUND),
+        _ => region,
+    }
+}
+
+/// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
+/// it, is as wide as the law of the bead says, and stays inside the outline.
+pub(in crate::plan) fn share(layer: &mut Layer, profile: &Profile) {
+    let (nominal, region) = (nominal(profile), region(layer, profile));
+    let (shares, rim) = (shares(layer, &region, profile), Rim::of(&region));
+    let (narrowest, widest) = profile.fill_settings(layer.index).wall.width_limits;
+    let laid = |(pass, share): (&Pass, &Share)| {
+        let Share { pieces, held, needs } = share;
+        if pieces.is_empty() {
+            return (pass.clone(), pass.clone());
+        }
+        let laid = |(piece, need): (&Segment, f64)| {
+            let bead = nominal.bead_at(piece.width, piece.pace);
+            let (narrowest, widest) = (piece.width.min(narrowest), piece.width.max(widest));
+            let metal = |width: f64| profile.bead.law.bead(&bead, width).area() / bead.area();
+            let factor = need.clamp(MOST.recip(), MOST).clamp(metal(narrowest), metal(widest));
+            let width = profile.bead.law.width_of_area(&bead, factor * bead.area()).clamp(narrowest, widest);
+            Segment { width, pace: piece.pace / factor, ..*piece }
+        };
+        let wider: Vec<Segment> = pieces.iter().zip(needs.iter().copied()).map(laid).collect();
+        let laid: Vec<Segment> = pieces.iter().zip(in_runs(needs, held)).map(laid).collect();
+        let along =
+            |shifts: &[DVec2]| joined(pass, &laid, &places(pieces, shifts, pass.closed), STRAIGHT * nominal.bead.width);
+        let shifts = shifts(pieces, &wider, pass.closed, &rim, EVEN * nominal.bead.width);
+        (along(&shifts), along(&vec![DVec2::ZERO; shifts.len()]))
+    };
+    let (moved, stayed) = layer.passes.iter().zip(&shares).map(laid).unzip();
+    layer.passes = uncrossed(moved, stayed);
+}
+
+/// Passes that would cross, once their beads moved inwards, stay where they were planned.
+fn uncrossed(mut moved: Vec<Pass>, stayed: Vec<Pass>) -> Vec<Pass> {
+    loop {
+        let lines: Vec<Vec<DVec2>> = moved.iter().map(Pass::line).collect();
+        let mut crossing: Vec<usize> = sound::crossings(&lines).flat_map(|(one, other, _)| [one, other]).collect();
+        crossing.retain(|&pass| moved[pass] != stayed[pass]);
+        if crossing.is_empty() {
+            return moved;
+        }
+        crossing.into_iter().for_each(|pass| moved[pass].clone_from(&stayed[pass]));
+    }
+}
+
+/// How pieces move once they are laid wider, evened out over `reach` (mm).
+fn shifts(planned: &[Segment], wider: &[Segment], closed: bool, rim: &Rim, reach: f64) -> Vec<DVec2> {
+    let shift = |(planned, wider): (&Segment, &Segment)| {
+        let middle = planned.from.midpoint(planned.to).truncate();
+        rim.shift(middle, planned.width, wider.width)
+    };
+    let shifts: Vec<DVec2> = planned.iter().zip(wider).map(shift).collect();
+    let lengths: Vec<f64> = planned.iter().map(Segment::length).collect();
+    let even = |piece: usize| {
+        let (sum, way) = around(piece, &lengths, closed, reach)
+            .fold((DVec2::ZERO, 0.0), |(sum, way), k| (sum + lengths[k] * shifts[k], way + lengths[k]));
+        if way > 0.0 { sum / way } else { DVec2::ZERO }
+    };
+    (0..planned.len()).map(even).collect()
+}
+
+/// Where pieces begin that are shifted, and where the last of an open pass ends.
+fn places(pieces: &[Segment], shifts: &[DVec2], closed: bool) -> Vec<DVec2> {
+    let before = |k: usize| match k {
+        0 if closed => shifts.len() - 1,
+        _ => k.saturating_sub(1),
+    };
+    let start = |(k, piece): (usize, &Segment)| piece.from.truncate() + shifts[before(k)].midpoint(shifts[k]);
+    let end = pieces.last().zip(shifts.last()).map(|(piece, shift)| piece.to.truncate() + shift);
+    pieces.iter().enumerate().map(start).chain(end.filter(|_| !closed)).collect()
+}
+
+/// A pass in pieces of at most `longest` (mm).
+fn cut(pass: &Pass, longest: f64) -> Vec<Segment> {
+    let parts = |piece: Segment| {
+        let count = (piece.length() / longest).ceil().max(1.0);
+        let at = move |k: f64| piece.from.lerp(piece.to, k / count);
+        (0..count as usize).map(move |k| Segment { from: at(k as f64), to: at(k as f64 + 1.0), ..piece })
+    };
+    pass.segments().flat_map(parts).collect()
+}
+
+/// Area of the slice nearest to each piece, mm².
+fn strips<'a>(layer: &Layer, region: &Region, pieces: impl Iterator<Item = &'a Segment>, width: f64) -> Vec<f64> {
+    let Some(bounds) = layer::bounds(std::slice::from_ref(layer)) else { return Vec::new() };
+    let (grid, reach) = (Grid::covering(&bounds, 0.0, width / ACROSS), REACH * width);
+    let mut nearest = vec![(f64::INFINITY, 0_usize); grid.points()];
+    let mut count = 0;
+    for (index, piece) in pieces.enumerate() {
+        let (a, b) = (piece.from.truncate(), piece.to.truncate());
+        let (low, high) = (a.min(b) - reach, a.max(b) + reach);
+        for row in grid.rows_between(low.y, high.y) {
+            for column in grid.columns_between(low.x, high.x) {
+                let distance = planar::polyline::distance_squared_to_segment(grid.place(column, row), a, b);
+                let known = &mut nearest[row * grid.columns + column];
+                if distance < known.0 {
+                    *known = (distance, index);
+                }
+            }
+        }
+        count = index + 1;
+    }
+    let (mut areas, mut inside) = (vec![0.0; count], 0.0);
+    for (row, crossings) in region.rows(grid.place(0, 0).y, grid.step, grid.rows).iter().enumerate() {
+        for ends in crossings.chunks_exact(2) {
+            for column in grid.columns_between(ends[0], ends[1]) {
+                let (distance, index) = nearest[row * grid.columns + column];
+                inside += 1.0;
+                if distance <= reach * reach {
+                    areas[index] += 1.0;
+                }
+            }
+        }
+    }
+    // Few points lie across a wall: each stands for as much as makes them the area of the slice.
+    let each = if inside > 0.0 { region.area() / inside } else { 0.0 };
+    areas.iter_mut().for_each(|area| *area *= each);
+    areas
+}
+
+/// The pieces of a pass that end within a distance (mm) before and behind a piece, and the piece itself.
+fn around(piece: usize, lengths: &[f64], closed: bool, distance: f64) -> impl Iterator<Item = usize> {
+    let count = lengths.len();
+    let next = move |at: usize, forth: bool| match (forth, closed) {
+        (true, true) => Some((at + 1) % count),
+        (false, true) => Some((at + count - 1) % count),
+        (true, false) => Some(at + 1).filter(|&next| next < count),
+        (false, false) => at.checked_sub(1),
+    };
+    let side = move |forth: bool| {
+        let mut left = distance;
+        std::iter::successors(next(piece, forth), move |&at| next(at, forth)).take_while(move |&at| {
+            left -= lengths[at];
+            at != piece && left >= 0.0
+        })
+    };
+    std::iter::once(piece).chain(side(true)).chain(side(false))
+}
+
+/// The factors, those of neighbours that hardly differ replaced by their mean over the metal held: a program gets a new speed
+/// only where it matters.
+fn in_runs(factors: &[f64], held: &[f64]) -> Vec<f64> {
+    let mut even = Vec::with_capacity(factors.len());
+    while even.len() < factors.len() {
+        let first = even.len();
+        let alike = |factor: &&f64| (**factor / factors[first] - 1.0).abs() <= ALIKE;
+        let run = factors[first..].iter().take_while(alike).count().max(1);
+        let weight: f64 = held[first..first + run].iter().sum();
+        let sum: f64 = (first..first + run).map(|i| factors[i] * held[i]).sum();
+        even.extend(std::iter::repeat_n(if weight > 0.0 { sum / weight } else { 1.0 }, run));
+    }
+    even
+}
+
+/// A pass from its pieces, whose ends lie at `places`, without the points between two that are alike and in line within a
+/// tolerance (mm).
+fn joined(pass: &Pass, pieces: &[Segment], places: &[DVec2], tolerance: f64) -> Pass {
+    let height = pass.points.first().map_or(0.0, |point| point.z);
+    let (mut points, mut widths, mut paces) = (Vec::new(), Vec::new(), Vec::new());
+    let mut corners = pass.points.iter().peekable();
+    let place = |k: usize| places[k % places.len()];
+    let starts = pieces.iter().enumerate().filter_map(|(k, piece)| {
+        let corner = corners.next_if(|corner| **corner == piece.from).is_some();
+        let same = k.checked_sub(1).is_some_and(|k| pieces[k].width == piece.width && pieces[k].pace == piece.pace);
+        (corner || !same).then_some(k)
+    });
+    let starts: Vec<usize> = starts.chain([pieces.len()]).collect();
+    for stretch in starts.windows(2) {
+        let line: Vec<DVec2> = (stretch[0]..=stretch[1]).map(place).collect();
+        let mut line = polyline::simplify(&line, tolerance);
+        line.pop();
+        widths.extend(line.iter().map(|_| pieces[stretch[0]].width));
+        paces.extend(line.iter().map(|_| pieces[stretch[0]].pace));
+        points.extend(line.into_iter().map(|p| p.extend(height)));
+    }
+    if let Some(last) = pieces.last().filter(|_| !pass.closed) {
+        points.push(place(pieces.len()).extend(height));
+        widths.push(last.width);
+        paces.push(last.pace);
+    }
+    Pass { points, width: Along::Each(widths), pace: Along::Each(paces), ..pass.clone() }
+}
