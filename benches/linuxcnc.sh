@@ -21,12 +21,12 @@ if [ -z "${BEADWRIGHT_RS274:-}" ]; then
     BEADWRIGHT_RS274="$folder/rs274"
     export BEADWRIGHT_RS274
 fi
-cargo test -p beadwright --test cnc -- --ignored --nocapture linuxcnc
+cargo test -p beadwright --test it -- --ignored --nocapture cnc::linuxcnc
 # The lines that end the arc run only where LinuxCNC is installed; halrun does not run for root.
 BEADWRIGHT_HALRUN="${BEADWRIGHT_HALRUN:-$(command -v halrun || true)}"
 if [ -n "$BEADWRIGHT_HALRUN" ]; then
     export BEADWRIGHT_HALRUN
-    cargo test -p beadwright --test cnc -- --ignored --nocapture hal_ends
+    cargo test -p beadwright --test it -- --ignored --nocapture cnc::hal_ends
 else
     echo "halrun is not installed, so examples/cells/linuxcnc-arc.hal was not run."
 fi

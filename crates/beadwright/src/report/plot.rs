@@ -41,7 +41,7 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
-/// Told apart without red, green or blue cones too (`tests/page_colours.rs`; most are Okabe and Ito's, 2008).
+/// Told apart without red, green or blue cones too (`tests/it/page_colours.rs`; most are Okabe and Ito's, 2008).
 const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
 /// How lines are broken: every colour comes back in another way.
 const DASHES: [&str; 3] = ["none", "9 4", "2 4"];

@@ -1,0 +1,18 @@
+//! All tests of the crate as one program: each file is a module, `cargo test -p beadwright-cli --test it FILE::` runs one.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
+
+mod bad_input;
+mod batch;
+mod book;
+mod cli;
+mod convert;
+mod deviation;
+mod exports;
+mod folder;
+mod heat;
+mod height;
+mod opened_elsewhere;
+mod own_dialect;
+mod serve;
+mod streams;
+mod together;

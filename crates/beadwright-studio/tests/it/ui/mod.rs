@@ -1,0 +1,20 @@
+//! The window, headless, by the widgets a person uses.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod background;
+mod basic;
+mod compare;
+mod edit;
+mod export;
+mod faults;
+mod files;
+mod flat;
+mod keyboard;
+mod linked;
+mod pictures;
+mod place;
+mod placement;
+mod play;
+mod scan;
+mod start;
+mod words;

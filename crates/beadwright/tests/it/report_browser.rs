@@ -1,0 +1,150 @@
+//! `report.html` in a real browser, without a window: what a reader does, and nothing on the console. Where there is no
+//! chromium, the tests say so and pass.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::print_stderr, reason = "says why nothing was tested")]
+
+use crate::common;
+
+use beadwright::model::RepairReport;
+use beadwright::plan::Plan;
+use beadwright::profile::Profile;
+use beadwright::report::Report;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const FLAGS: &str = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
+    --enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking --disable-component-update \
+    --disable-sync --virtual-time-budget=300000 --dump-dom";
+
+/// Reports faults and the steps of a test in the title of the page, which then stands in the text that comes back.
+const BEFORE: &str = "<script>
+const faults = [];
+addEventListener('error', event => faults.push(event.message));
+addEventListener('unhandledrejection', event => faults.push(String(event.reason)));
+console.error = (...words) => faults.push(words.join(' '));
+</script>";
+
+fn chromium() -> Option<PathBuf> {
+    let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&paths).map(|folder| folder.join("chromium")).find(|file| file.is_file());
+    let program = named.or(found);
+    if program.is_none() {
+        eprintln!("no chromium here (CHROMIUM names one): not tested");
+    }
+    program
+}
+
+fn page(plan: &Plan, profile: &Profile) -> String {
+    let mut report = Report::new(&plan.header, profile);
+    plan.layers.iter().for_each(|layer| report.layer(layer, None));
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
+    report.finish(&plan.summary, &RepairReport::default(), &["a.src".to_owned()], &findings)
+}
+
+/// What a script (the body of an asynchronous function) gives in the page, as JSON; faults of the page fail the test.
+fn ask(html: &str, script: &str) -> Option<serde_json::Value> {
+    let program = chromium()?;
+    // Every test has a folder of its own, as each runs in its own thread.
+    let name = std::thread::current().name().unwrap_or("page").replace(':', "-");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
+    std::fs::create_dir_all(&folder).unwrap();
+    let after = format!(
+        "<script>(async () => {{
+           const rest = ms => new Promise(done => setTimeout(done, ms));
+           while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(20);
+           {script}
+         }})().catch(error => {{ faults.push(String(error)); return null; }})
+           .then(value => {{ document.body.dataset.told = JSON.stringify({{ value, faults }}); }});
+         </script></body>"
+    );
+    let html = html.replace("<head>", &format!("<head>{BEFORE}")).replace("</body>", &after);
+    let file = folder.join("report.html");
+    std::fs::write(&file, html).unwrap();
+    let mut command = Command::new(program);
+    command.args(FLAGS.split_whitespace()).arg(format!("--user-data-dir={}", folder.join("user").display()));
+    let output = command.arg(format!("file://{}", file.display())).stderr(Stdio::null()).output().unwrap();
+    let dom = String::from_utf8(output.stdout).unwrap();
+    let told = dom.split_once("data-told=\"").expect("the page tells").1.split_once('"').unwrap().0;
+    let told: serde_json::Value = serde_json::from_str(&told.replace("&quot;", "\"").replace("&amp;", "&")).unwrap();
+    assert_eq!(told["faults"], serde_json::json!([]));
+    Some(told["value"].clone())
+}
+
+#[test]
+fn layers_and_views_are_shared_by_both_pictures() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("propeller", &profile);
+    let script = "
+        const first = shown.index;
+        slider.value = 3;
+        slider.oninput();
+        while (shown.index !== 3) await rest(5);
+        document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+        while (shown.index !== 4) await rest(5);
+        const ramps = ['order', 'width', 'speed', 'time', 'kind'].map(by => {
+          document.querySelector(`[name=colour][value=${by}]`).click();
+          return [shown.by, $('key-ramp').hidden, $('ramp-low').textContent];
+        });
+        pointOutNext(1);
+        await rest(50);
+        return { first, now: $('layer-now').textContent, ramps, tip: $('tip').textContent, layers: space.scene?.layers.filter(Boolean).length };";
+    let Some(told) = ask(&page(&plan, &profile), script) else { return };
+    assert_eq!(told["first"], plan.layers.len() - 1, "the whole part is shown first");
+    assert!(told["now"].as_str().unwrap().starts_with(&format!("5 of {}", plan.layers.len())));
+    let pieces = || plan.layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| pass.segments());
+    let least = pieces().map(|piece| piece.width).fold(f64::MAX, f64::min);
+    assert_eq!(told["ramps"][1], serde_json::json!(["width", false, format!("{least:.2} mm")]));
+    assert_eq!(told["ramps"][4][1], true);
+    let tip = told["tip"].as_str().unwrap();
+    let first = plan.layers[4].passes[0].segments().next().unwrap();
+    let speed = profile.process.speed_at(first.pace);
+    for word in ["Layer 5, pass 1 of", &format!("{:.2} mm wide", first.width), &format!("{speed:.1} mm/s")] {
+        assert!(tip.contains(word), "{word}: {tip}");
+    }
+    // Null where the browser has no WebGL 2.
+    assert!(told["layers"].is_null() || told["layers"] == plan.layers.len());
+}
+
+#[test]
+fn the_bead_under_the_pointer_is_the_one_that_lies_there() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("cross", &profile);
+    let top = plan.layers.last().unwrap();
+    let pass = &top.passes[0];
+    let middle = pass.points[0].lerp(pass.points[1], 0.5);
+    let script = format!(
+        "const flat = pickLayer({x}, {y}), beside = pickLayer(1e4, 1e4);
+         Object.assign(space.camera, {{ yaw: 0, pitch: 1.55, fitted: true }});
+         if (!space.scene) return {{ flat, beside }};
+         while (space.drawing) await rest(5);
+         drawSolid();
+         const at = projected(space.matrix, [{x}, {y}, {z}], solid.clientWidth, solid.clientHeight);
+         return {{ flat, beside, deep: pickSolid(...at), sky: pickSolid(1, 1) }};",
+        x = middle.x,
+        y = middle.y,
+        z = top.z
+    );
+    let Some(told) = ask(&page(&plan, &profile), &script) else { return };
+    assert_eq!((&told["flat"]["layer"], &told["flat"]["pass"]), (&top.index.into(), &0.into()));
+    assert!(told["beside"].is_null());
+    if !told["deep"].is_null() {
+        assert_eq!((&told["deep"]["layer"], &told["deep"]["pass"]), (&top.index.into(), &0.into()));
+        assert!(told["sky"].is_null());
+    }
+}
+
+#[test]
+fn without_webgl_a_sentence_says_so_and_the_layers_stay() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("cross", &profile);
+    let none = "<script>HTMLCanvasElement.prototype.getContext = (ask => function (kind, ...more) {
+        return kind === 'webgl2' ? null : ask.call(this, kind, ...more);
+    })(HTMLCanvasElement.prototype.getContext);</script></head>";
+    let html = page(&plan, &profile).replace("</head>", none);
+    let script = "return { view: $('stages').dataset.view, sentence: $('no-solid').textContent, passes: shown.layer.passes.length };";
+    let Some(told) = ask(&html, script) else { return };
+    assert_eq!(told["view"], "layer");
+    assert!(told["sentence"].as_str().unwrap().contains("no WebGL 2"));
+    assert_eq!(told["passes"], plan.layers.last().unwrap().passes.len());
+}

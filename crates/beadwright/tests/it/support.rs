@@ -1,0 +1,140 @@
+//! Passes lie on metal, or the plan says so: roofs over air refuse it, small islands that hang are left out.
+#![allow(clippy::unwrap_used)]
+
+use crate::common;
+
+use beadwright::model::Mesh;
+use beadwright::plan::{self, Plan};
+use beadwright::planar::DVec2;
+use beadwright::task::Task;
+use beadwright::warning::{WarningKind, WarningSummary};
+use common::{flat, profile};
+
+/// Blocks (x, y, z from and to, mm), turned about z by some degrees.
+fn blocks(blocks: &[[(f64, f64); 3]], degrees: f64) -> Mesh {
+    let way = DVec2::from_angle(f64::to_radians(degrees));
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for [x, y, z] in blocks {
+        let first = vertices.len() as u32;
+        for k in 0..8 {
+            let pick = |(low, high): (f64, f64), bit: u32| if k >> bit & 1 == 0 { low } else { high };
+            vertices.push(way.rotate(DVec2::new(pick(*x, 0), pick(*y, 1))).extend(pick(*z, 2)));
+        }
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        triangles.extend(faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|t| t.map(|v| v + first)));
+    }
+    Mesh::from_triangles(vertices, triangles).0
+}
+
+fn planned(mesh: &Mesh, strategy: &str) -> Plan {
+    let mut profile = flat(profile("cmt-al2319-kuka"));
+    profile.fill.strategy = strategy.to_owned();
+    plan::plan("part", mesh, &profile, &Task::new()).unwrap()
+}
+
+fn told(plan: &Plan, kind: WarningKind) -> Option<WarningSummary> {
+    plan.summary.warnings.summaries().find(|w| w.kind == kind).cloned()
+}
+
+const BASE: [(f64, f64); 3] = [(0.0, 60.0), (0.0, 60.0), (0.0, 12.0)];
+
+/// A long roof beside a tower lies on nothing, whatever the strategy and however the part is turned.
+#[test]
+fn a_roof_over_air_refuses_the_plan() {
+    let roof = [(70.0, 190.0), (0.0, 60.0), (12.0, 24.0)];
+    for degrees in [0.0, 17.0, 90.0] {
+        for strategy in ["loop", "zigzag", "contour", "hybrid"] {
+            let plan = planned(&blocks(&[BASE, roof], degrees), strategy);
+            let air = told(&plan, WarningKind::InTheAir).unwrap();
+            assert_eq!(air.layers, [(6, 6)], "{strategy}: what is welded in the air counts once");
+            assert_eq!(plan.summary.forbidden, [air.sentence()], "{strategy} at {degrees}°");
+        }
+    }
+}
+
+/// A roof that begins on a tower hangs by half of a long pass and more.
+#[test]
+fn a_bridge_between_two_towers_is_in_the_air() {
+    let towers = [(0.0, 20.0), (0.0, 20.0), (0.0, 20.0)];
+    let other = [(180.0, 200.0), (0.0, 20.0), (0.0, 20.0)];
+    let bridge = [(0.0, 200.0), (0.0, 20.0), (20.0, 30.0)];
+    let plan = planned(&blocks(&[towers, other, bridge], 0.0), "zigzag");
+    assert!(told(&plan, WarningKind::InTheAir).is_some());
+    assert!(!plan.summary.forbidden.is_empty());
+}
+
+/// A knob of two layers that hangs beside the part is left out; the rest is built.
+#[test]
+fn a_small_island_that_hangs_is_left_out() {
+    let knob = [(80.0, 92.0), (0.0, 12.0), (8.0, 10.0)];
+    let plan = planned(&blocks(&[BASE, knob], 17.0), "loop");
+    let hanging = told(&plan, WarningKind::HangingIsland).unwrap();
+    assert_eq!((hanging.count, hanging.layers.clone()), (1, vec![(4, 4)]));
+    assert!((hanging.total - 144.0).abs() < 1.0, "{}", hanging.total);
+    assert_eq!(plan.summary.forbidden, [] as [String; 0]);
+    let area = |layer: usize| plan.layers[layer].planned_area;
+    assert!((area(4) - area(3)).abs() < 0.02 * area(3), "{} for {}", area(4), area(3));
+    assert_eq!(plan.layers[4].passes.len(), plan.layers[3].passes.len());
+}
+
+/// What stands on an island that hangs refuses the plan.
+#[test]
+fn a_column_that_begins_in_the_air_refuses_the_plan() {
+    let column = [(80.0, 92.0), (0.0, 12.0), (4.0, 12.0)];
+    let plan = planned(&blocks(&[BASE, column], 0.0), "loop");
+    assert!(told(&plan, WarningKind::HangingIsland).is_some());
+    let air = told(&plan, WarningKind::InTheAir).unwrap();
+    assert_eq!(plan.summary.forbidden, [air.sentence()]);
+}
+
+/// A wall that leans by half a bead a layer and less lies on metal.
+#[test]
+fn steps_of_less_than_half_a_bead_are_on_metal() {
+    let step = |k: usize| {
+        let (by, z) = (3.0 * k as f64, 2.0 * k as f64);
+        [(by, by + 7.0), (0.0, 100.0), (z, z + 2.0)]
+    };
+    let steps: Vec<_> = (0..10).map(step).collect();
+    let plan = planned(&blocks(&steps, 0.0), "loop");
+    assert_eq!(plan.summary.forbidden, [] as [String; 0]);
+    assert!(told(&plan, WarningKind::InTheAir).is_none());
+}
+
+/// A long loop of which a corner hangs far out lies on metal for most of its length; the corner does not.
+#[test]
+fn a_long_pass_that_hangs_somewhere_is_in_the_air() {
+    let slab = [(0.0, 200.0), (0.0, 60.0), (0.0, 8.0)];
+    let with_tongue = |reach: f64, degrees: f64| {
+        let upper = [(0.0, 200.0), (0.0, 60.0), (8.0, 12.0)];
+        let tongue = [(80.0, 110.0), (55.0, 60.0 + reach), (8.0, 12.0)];
+        planned(&blocks(&[slab, upper, tongue], degrees), "loop")
+    };
+    for degrees in [0.0, 23.0] {
+        let plan = with_tongue(40.0, degrees);
+        let air = told(&plan, WarningKind::InTheAir).unwrap();
+        assert_eq!((air.layers.clone(), plan.summary.forbidden.clone()), (vec![(4, 4)], vec![air.sentence()]));
+        assert!(air.total > 60.0 && air.total < 300.0, "{}: the tongue is 40 mm long and 30 mm wide", air.total);
+        let place = DVec2::from_angle(-f64::to_radians(degrees)).rotate(air.largest.place);
+        let middle = DVec2::from_angle(-f64::to_radians(degrees)).rotate(plan_middle(&plan));
+        let off = place - middle;
+        assert!(off.y > 28.0 && off.x.abs() < 25.0, "{off}: on the tongue");
+        assert_eq!(with_tongue(3.0, degrees).summary.forbidden, [] as [String; 0], "half a bead beyond the edge holds");
+    }
+}
+
+/// The middle of the plate below the part.
+fn plan_middle(plan: &Plan) -> DVec2 {
+    let outline = plan.layers[0].islands[0].outer.points();
+    let (low, high) = outline.iter().fold((outline[0], outline[0]), |(low, high), p| (low.min(*p), high.max(*p)));
+    (low + high) / 2.0
+}
+
+/// The whole of a layer is no small place of it.
+#[test]
+fn a_layer_that_hangs_is_not_left_out() {
+    let foot = [(0.0, 12.0), (0.0, 12.0), (0.0, 6.0)];
+    let aside = [(40.0, 52.0), (0.0, 12.0), (6.0, 8.0)];
+    let plan = planned(&blocks(&[foot, aside], 0.0), "loop");
+    assert!(told(&plan, WarningKind::HangingIsland).is_none());
+    assert_eq!(plan.summary.forbidden.len(), 1);
+}
