@@ -85,7 +85,8 @@ def test_arrays_are_the_librarys_own_memory(strategy: str) -> None:
     assert ring.ctypes.data == plan.layers[0]._inner.islands[0][0].address
 
 
-def test_one_width_is_held_once(contours: Plan) -> None:
+def test_one_width_is_held_once() -> None:
+    contours = beadwright.plan(Part.example("cross"), beadwright.Profile().set(layers__level=False), strategy="contour")
     widths = [each.width for each in contours.passes]
     constant = [width for width in widths if width.strides == (0,)]
     assert constant

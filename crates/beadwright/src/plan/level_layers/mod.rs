@@ -86,6 +86,7 @@ fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec
 /// A layer is no higher than what this part of its metal fills. The median would do for its height, but the other beads would be
 /// narrower then and leave voids; layers that are a little too high have humps, which the next layer remelts.
 const FILLED: f64 = 0.35;
+
 /// How high a layer is whose beads hold what they need; `None` for one without beads.
 fn rise(layer: &Layer, profile: &Profile) -> Option<f64> {
     let shares = share::shares(layer, &share::region(layer, profile), profile);

@@ -256,5 +256,9 @@ fn joined(pass: &Pass, pieces: &[Segment], places: &[DVec2], tolerance: f64) -> 
         widths.push(last.width);
         paces.push(last.pace);
     }
-    Pass { points, width: Along::Each(widths), pace: Along::Each(paces), ..pass.clone() }
+    let along = |values: Vec<f64>| match values.split_first() {
+        Some((&first, others)) if others.iter().all(|value| *value == first) => Along::Same(first),
+        _ => Along::Each(values),
+    };
+    Pass { points, width: along(widths), pace: along(paces), ..pass.clone() }
 }
