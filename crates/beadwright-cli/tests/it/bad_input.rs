@@ -1,16 +1,12 @@
 //! Files and arguments that once broke the program, led to wrong plans or took all memory: each is refused with one sentence
 //! or planned with its doubts told first. The files lie in the shared folder (`BEADWRIGHT_CASES`).
-#![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::common::beadwright;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
 
 fn case(name: &str) -> String {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases");
@@ -27,7 +23,7 @@ fn check(name: &str, arguments: &[&str], status: i32, words: &[&str]) -> String 
     let case = case(name);
     let arguments: Vec<&str> = arguments.iter().map(|a| if *a == "CASE" { &case } else { *a }).collect();
     let begin = Instant::now();
-    let output = run(folder.path(), &arguments);
+    let output = beadwright(folder.path(), &arguments);
     let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {said}");
     assert!(words.iter().all(|word| said.contains(word)), "{arguments:?}: {said}");
@@ -154,16 +150,16 @@ fn case_1625_programs_that_nobody_should_start_are_not_written() {
 fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
     let folder = TempDir::new().unwrap();
     let ok = |arguments: &[&str]| {
-        let output = run(folder.path(), arguments);
+        let output = beadwright(folder.path(), arguments);
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{arguments:?}: {said}{}", String::from_utf8_lossy(&output.stderr));
         said
     };
     ok(&["example", "plate"]);
     ok(&["plan", "plate.stl", "-p", "cmt-steel-abb", "--no-deposit", "--set", "bead.width=6.1", "-o", "out"]);
-    let wrong = run(folder.path(), &["check", "out/plan.json", "-p", "fdm-abs-0.4"]);
+    let wrong = beadwright(folder.path(), &["check", "out/plan.json", "-p", "fdm-abs-0.4"]);
     assert_eq!(wrong.status.code(), Some(3), "with another profile, there are findings");
-    let own = run(folder.path(), &["check", "out/plan.json", "--json"]);
+    let own = beadwright(folder.path(), &["check", "out/plan.json", "--json"]);
     let found: serde_json::Value = serde_json::from_slice(&own.stdout).unwrap();
     let speeds = found.as_array().unwrap().iter().filter(|f| f["kind"] == "speed-window" || f["kind"] == "bead-width");
     assert_eq!(speeds.count(), 0, "{found}");
@@ -174,7 +170,7 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
     let one = r#"{"version":1,"profile":"mine","layers":[{"index":0,"z":2.0,"height":2.0,"islands":[],"passes":
         [{"kind":"infill","closed":false,"points":[[0,0,2],[50,0,2]],"width":7.5,"speed":10.5}]}]}"#;
     fs::write(folder.path().join("one.json"), one).unwrap();
-    let asked = run(folder.path(), &["check", "one.json"]);
+    let asked = beadwright(folder.path(), &["check", "one.json"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();
     assert!(asked.status.code() == Some(1) && said.contains("of version 1") && said.contains("--profile"), "{said}");
     ok(&["inspect", "one.json", "-p", "cmt-al2319-kuka"]);
@@ -197,7 +193,7 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
     let told = ok(&["inspect", "fdm/plate.gcode"]);
     assert!(told.contains("Read with the profile fdm-abs-0.4 (the program names it)"), "{told}");
     fs::write(folder.path().join("other.gcode"), "G21\nG90\nM83\nG1 X0 Y0 Z0.2 F600\nG1 X20 E1\n").unwrap();
-    let asked = run(folder.path(), &["simulate", "other.gcode"]);
+    let asked = beadwright(folder.path(), &["simulate", "other.gcode"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();
     assert!(
         asked.status.code() == Some(1) && said.contains("printer's program") && said.contains("--profile"),
@@ -222,14 +218,14 @@ fn case_1627_text_of_any_system_is_read() {
     for (name, bytes) in [("big", big), ("little", little), ("marked", marked), ("mac", mac)] {
         let file = format!("{name}.stl");
         fs::write(folder.path().join(&file), bytes).unwrap();
-        let said = run(folder.path(), &["inspect", &file]);
+        let said = beadwright(folder.path(), &["inspect", &file]);
         assert!(String::from_utf8_lossy(&said.stdout).contains("volume     121500.000"), "{name}: {said:?}");
     }
     fs::write(folder.path().join("bare.stl"), wide(u16::to_le_bytes)).unwrap();
-    let said = String::from_utf8(run(folder.path(), &["inspect", "bare.stl"]).stderr).unwrap();
+    let said = String::from_utf8(beadwright(folder.path(), &["inspect", "bare.stl"]).stderr).unwrap();
     assert!(said.contains("UTF-16 without a byte order mark"), "{said}");
-    let profile = run(folder.path(), &["profile", "show", "cmt-steel-abb"]).stdout;
+    let profile = beadwright(folder.path(), &["profile", "show", "cmt-steel-abb"]).stdout;
     let windows = String::from_utf8(profile).unwrap().replace('\n', "\r\n");
     fs::write(folder.path().join("p.toml"), [&[0xef, 0xbb, 0xbf][..], windows.as_bytes()].concat()).unwrap();
-    assert!(run(folder.path(), &["profile", "check", "p.toml"]).status.success());
+    assert!(beadwright(folder.path(), &["profile", "check", "p.toml"]).status.success());
 }

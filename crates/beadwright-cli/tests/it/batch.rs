@@ -1,23 +1,13 @@
 //! Many plans in one table: as `beadwright plan` makes them, whatever the number of threads, and failures beside the rest.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
+use crate::common::{beadwright, ok};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use tempfile::TempDir;
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn ok(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 fn folder_with(examples: &[&str]) -> TempDir {
     let folder = TempDir::new().unwrap();

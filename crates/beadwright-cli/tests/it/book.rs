@@ -5,7 +5,6 @@
 //! `…` in it stands for lines that are left out. `BEADWRIGHT_GOLDEN=write cargo test -p beadwright-cli --test it book::` writes
 //! those without such a line anew.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,28 +1,11 @@
 //! The command as people run it: files, messages, exit status, and nothing half-written.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::common::{beadwright, ok, refused};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn ok(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Runs what must be refused; gives the message.
-fn refused(folder: &Path, arguments: &[&str], status: i32) -> String {
-    let output = beadwright(folder, arguments);
-    assert_eq!(output.status.code(), Some(status), "{arguments:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
 
 fn folder_with(example: &str) -> TempDir {
     let folder = TempDir::new().unwrap();

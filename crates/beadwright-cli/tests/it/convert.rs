@@ -1,6 +1,5 @@
 //! STEP files go through a converter of others: what it makes is planned, and what it does not is told.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

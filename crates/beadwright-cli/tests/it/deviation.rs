@@ -1,5 +1,4 @@
 //! `deviation` as people run it: a scan beside its part, placed like the plan, in whatever unit.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::path::Path;

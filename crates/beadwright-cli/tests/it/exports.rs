@@ -1,20 +1,9 @@
 //! What goes to other programs and comes from them, as people run it: exports, drawings, cuts, joints, completions.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::{beadwright, ok};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn ok(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = beadwright(folder, arguments);

@@ -1,6 +1,5 @@
 //! Files are complete or absent as a set, whatever happens to the run.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use beadwright::files::{Folder, write_file};
 use std::collections::BTreeMap;

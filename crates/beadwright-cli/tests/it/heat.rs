@@ -1,13 +1,8 @@
 //! `beadwright heat`, and programs that wait for metal to cool.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
+use crate::common::beadwright;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
+use std::process::Output;
 
 fn said(output: &Output) -> String {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -1,26 +1,9 @@
 //! `adapt` and `build` as people run them: the programs that follow a scan, and builds that can be repeated.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::{ok, refused};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn ok(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
 
 /// A folder with the plan of the wall, and a scan after layer 20 that is 0.4 mm too low on the left and 0.4 mm too high on
 /// the right.
@@ -87,7 +70,7 @@ fn a_scan_becomes_the_programs_that_follow() {
 fn scans_and_plans_that_do_not_fit_are_told() {
     let folder = wall();
     let adapt = |scan: &str, layer: &str| {
-        refused(folder.path(), &["adapt", "plan/plan.json", "--scan", scan, "--after-layer", layer])
+        refused(folder.path(), &["adapt", "plan/plan.json", "--scan", scan, "--after-layer", layer], 1)
     };
     let said = adapt("scan.csv", "40");
     assert!(said.contains("The plan is that high after layer 20.") && said.contains("--align plate"), "{said}");
@@ -97,7 +80,7 @@ fn scans_and_plans_that_do_not_fit_are_told() {
     fs::write(folder.path().join("far.csv"), "500,0,29\n510,0,29\n520,0,29\n").unwrap();
     assert!(adapt("far.csv", "20").contains("--align fit lays the scan on the part."));
     assert!(!folder.path().join("beadwright-adapted").exists());
-    let said = refused(folder.path(), &["adapt", "wall.stl", "--scan", "scan.csv", "--after-layer", "2"]);
+    let said = refused(folder.path(), &["adapt", "wall.stl", "--scan", "scan.csv", "--after-layer", "2"], 1);
     assert!(said.contains("give the plan.json of the build"), "{said}");
 }
 

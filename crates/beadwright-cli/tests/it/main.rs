@@ -5,6 +5,7 @@ mod bad_input;
 mod batch;
 mod book;
 mod cli;
+mod common;
 mod convert;
 mod deviation;
 mod exports;

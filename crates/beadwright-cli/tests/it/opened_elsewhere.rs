@@ -1,14 +1,9 @@
 //! Exports opened by the programs that they are meant for: VTK and pyarrow.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::common::ok;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
-
-fn beadwright(folder: &Path, arguments: &[&str]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-}
 
 /// Python with the packages in the folder that BEADWRIGHT_PYTHON_PACKAGES names, besides its own.
 fn python(folder: &Path, arguments: &[&str]) -> std::io::Result<Output> {
@@ -42,10 +37,10 @@ fn sums_are_those_of_the_plan_and_tables_are_equal() {
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/opened_elsewhere.py");
     for (part, profile) in [("cross", "cmt-al2319-kuka"), ("vase", "cmt-steel-abb"), ("star", "cmt-steel-robots")] {
-        beadwright(at, &["example", part, "-o", "part.stl"]);
-        beadwright(at, &["plan", "part.stl", "-p", profile, "--no-deposit", "-o", "out"]);
+        ok(at, &["example", part, "-o", "part.stl"]);
+        ok(at, &["plan", "part.stl", "-p", profile, "--no-deposit", "-o", "out"]);
         for file in ["beads.vtp", "beads.parquet", "beads.csv"] {
-            beadwright(at, &["export", "out/plan.json", "-o", file]);
+            ok(at, &["export", "out/plan.json", "-o", file]);
         }
         let said = python(at, &[script, "beads.vtp", "beads.parquet", "beads.csv"]).unwrap();
         assert!(said.status.success(), "{part}: {}", String::from_utf8_lossy(&said.stderr));
@@ -53,7 +48,8 @@ fn sums_are_those_of_the_plan_and_tables_are_equal() {
         let json =
             |file: &str| -> serde_json::Value { serde_json::from_slice(&fs::read(at.join(file)).unwrap()).unwrap() };
         let (metrics, plan) = (json("out/metrics.json"), json("out/plan.json"));
-        let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
+        // Paces of some mm/s have four decimals in a plan, and most passes of a part may have the same pace.
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b;
         let number = |value: &serde_json::Value| value.as_f64().unwrap();
         // The arc also burns in craters, where the torch stands.
         let crater = number(&plan["profile"]["start_stop"]["crater_fill_time"]) * number(&metrics["passes"]);

@@ -1,30 +1,13 @@
 //! A dialect without a line of Rust: the gantry of `examples/dialects`, planned by the command and read by a small reader
 //! that knows its language only.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
+use crate::common::{beadwright, ok, refused};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 type Point = [f64; 3];
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn ok(folder: &Path, arguments: &[&str]) {
-    let output = beadwright(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// The message of what must be refused.
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = beadwright(folder, arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
 
 fn gantry() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/dialects/gantry")
@@ -229,22 +212,22 @@ fn a_broken_template_is_told_with_its_line_and_nothing_is_written() {
     let layer = folder.path().join("gantry/layer.txt");
     let whole = fs::read_to_string(&layer).unwrap();
     fs::write(&layer, whole.replace("step.speed | fixed(3)", "step.sped | fixed(3)")).unwrap();
-    let said = refused(folder.path(), &all);
+    let said = refused(folder.path(), &all, 1);
     assert!(said.contains("./gantry, layer.txt, line 12") && said.contains("\"sped\"; it has"), "{said}");
     assert!(!folder.path().join("out").exists());
     // What the rehearsal cannot foresee ends the plan, and still nothing is written.
     fs::write(&layer, whole.replace("{% for step", "{% if layer == 7 %}{{ layer / 0 }}{% endif %}{% for step"))
         .unwrap();
-    let said = refused(folder.path(), &all);
+    let said = refused(folder.path(), &all, 1);
     assert!(said.contains("./gantry, layer.txt, line 3"), "{said}");
     assert!(!folder.path().join("out").exists());
     fs::write(&layer, whole).unwrap();
-    let said = refused(folder.path(), &["plan", "cross.stl", "--post", "./gantries"]);
+    let said = refused(folder.path(), &["plan", "cross.stl", "--post", "./gantries"], 1);
     assert!(said.contains("./gantries") && said.contains("cannot be read"), "{said}");
-    let said = refused(folder.path(), &["plan", "cross.stl", "--post", "gantry"]);
+    let said = refused(folder.path(), &["plan", "cross.stl", "--post", "gantry"], 1);
     assert!(said.contains("./gantry"), "{said}");
     let twice = [&all[..], &["--post", "./gantry"]].concat();
-    assert!(refused(folder.path(), &twice).contains("would both write CROSS.GTY"));
+    assert!(refused(folder.path(), &twice, 1).contains("would both write CROSS.GTY"));
     ok(folder.path(), &all);
 }
 
@@ -258,12 +241,12 @@ fn templates_see_their_folder_only() {
     let whole = fs::read_to_string(&end).unwrap();
     let plan = ["plan", "cross.stl", "--post", "./gantry", "-o", "out"];
     std::os::unix::fs::symlink(folder.path().join("secret.txt"), &link).unwrap();
-    let said = refused(folder.path(), &plan);
+    let said = refused(folder.path(), &plan, 1);
     assert!(said.contains("secret.txt: it is a link") && said.contains("Copy the file there"), "{said}");
     fs::remove_file(link).unwrap();
     for name in ["secret.txt", "../secret.txt", "/etc/passwd"] {
         fs::write(&end, format!("{{% include \"{name}\" %}}\n{whole}")).unwrap();
-        let said = refused(folder.path(), &plan);
+        let said = refused(folder.path(), &plan, 1);
         assert!(said.contains("only files of this folder") && said.contains("end.txt, line 1"), "{said}");
     }
 }

@@ -1,5 +1,4 @@
 //! `beadwright studio --serve`, asked over a plain socket as a browser would.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};

@@ -1,5 +1,4 @@
 //! Standard input and output in place of files, and how much is said.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use std::fs;
 use std::io::Write;

@@ -1,15 +1,10 @@
 //! Several parts in one build.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
+use crate::common::beadwright;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 const PARTS: [&str; 4] = ["cross", "gear", "star", "vase"];
-
-fn beadwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
-}
 
 fn json(path: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()

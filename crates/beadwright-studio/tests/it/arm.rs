@@ -1,5 +1,4 @@
 //! The arm in the 3-D view stands where the torch is.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::model::Model;
 use beadwright::profile::Profile;

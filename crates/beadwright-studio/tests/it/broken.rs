@@ -1,5 +1,4 @@
 //! Files that are no models, opened one after another: a clear sentence each, and the program lives on.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::window;
 

@@ -1,5 +1,4 @@
 //! Colours can be told apart by everybody: with normal sight, and without the red, green or blue cones.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::sight;
 

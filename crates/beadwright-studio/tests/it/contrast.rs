@@ -1,5 +1,4 @@
 //! Text can be read in both themes: its contrast is 4.5 : 1 or more (WCAG 2.2, success criterion 1.4.3).
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright_studio::theme;
 use eframe::egui::{Color32, Theme};

@@ -1,5 +1,4 @@
 //! What `docs/studio.md` says is so: keys, options, the project file, pictures.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright_studio::actions::ENTRIES;
 use beadwright_studio::project::{FIRST_PROFILE, Project, Source};

@@ -1,5 +1,4 @@
 //! Temperatures computed afterwards are those of a plan that was made with them.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::heat::plate;
 use beadwright::layer::Layer;

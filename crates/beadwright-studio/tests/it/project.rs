@@ -1,5 +1,4 @@
 //! Projects, their files, their history, and the form of the profile.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::files::Folder;
 use beadwright::model::{Placement, Units};

@@ -1,5 +1,4 @@
 //! The section through the 3-D view: what is seen and what is picked is what lies on the plane.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::pass::PassKind;
 use beadwright::profile::Profile;

@@ -1,5 +1,4 @@
 //! A person's work, headless: open an example, change the strategy, look through the layers, read the totals, export, reopen.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::window;
 

@@ -1,5 +1,4 @@
 //! Words: both languages whole, none without use, none missing.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright_studio::text::{Language, table};
 use std::fs;

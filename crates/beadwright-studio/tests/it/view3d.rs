@@ -1,7 +1,5 @@
 //! The 3-D view: its clock, what is picked, where the camera looks, and what colour the pixels have.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use beadwright::example;
 use beadwright::metrics::Metrics;
 use beadwright::model;

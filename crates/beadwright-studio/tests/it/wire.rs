@@ -1,5 +1,4 @@
 //! What passes between a browser's page and its worker comes out as it went in, without a browser.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use beadwright::model::Part;
 use beadwright_studio::planner::wire::{Packer, Unpacker};

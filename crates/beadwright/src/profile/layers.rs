@@ -14,7 +14,7 @@ pub struct LayersSection {
     pub height: f64,
     /// How the layers fit the height of a solid: `fixed` (layers of this thickness, as many as come nearest to the
     /// height), `last` (one more layer where the part would end above the last), or `even` (the nearest number of equal
-    /// layers, each laid at the pace that fills it); default fixed. What is left over is told. Level layers end with the part.
+    /// layers, each laid at the pace that fills it); default fixed. What is left over is reported. Level layers end with the part.
     #[serde(default)]
     pub fit: LayerFit,
     /// Whether layers of solids are as high as the metal of their passes fills their slices, a wide one `height`, end with the

@@ -244,10 +244,12 @@ impl Profile {
         foretold.then(|| self.single_wall()).transpose()
     }
 
-    /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, nor where an
-    /// infill leaves room on purpose.
+    /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, where an infill
+    /// leaves room on purpose, or where a paper is followed to the letter.
     pub fn is_level(&self) -> bool {
-        self.layers.level && self.fill.infill_density >= 1.0 && !self.wall_bead().is_ok_and(|wall| wall.is_some())
+        let walls = self.wall_bead().is_ok_and(|wall| wall.is_some());
+        let literal = self.hybrid.literal && self.fill.strategy == "hybrid";
+        self.layers.level && self.fill.infill_density >= 1.0 && !walls && !literal
     }
 
     /// The wall as thick as the bead is wide, one bead a layer, of the metal that a bead holds.

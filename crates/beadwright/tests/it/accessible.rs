@@ -1,6 +1,5 @@
 //! `report.html` and `compare.html` as someone meets them who does not see them: a language, headings in order, a name for
 //! every control and a text for every picture. `docs/accessibility/check` asks axe-core the rest, in a browser.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! Scans and what follows from them: all formats tell the same, known errors come back as the metal that closed forms say,
 //! and what cannot be of the plan is refused.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may fail by panic, in its helpers too")]
 
 use crate::common;
 

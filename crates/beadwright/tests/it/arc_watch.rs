@@ -1,7 +1,6 @@
 //! What happens when the arc does not start, goes out, or the program is stopped: the lines of the programs that watch it are
 //! run here, one language at a time, and `docs/dialects.md` says in its table what they did.
 //! `BEADWRIGHT_GOLDEN=write cargo test -p beadwright --test it arc_watch::` writes the table anew.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common;
 

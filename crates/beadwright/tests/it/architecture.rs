@@ -1,5 +1,4 @@
 //! Data goes down the table of the design only: a module uses none that stands below it, and no two use each other.
-#![allow(clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,5 +1,4 @@
 //! Arcs and straight pieces fitted to planned paths: fewer moves along the same path.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

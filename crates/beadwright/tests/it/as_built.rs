@@ -1,5 +1,4 @@
 //! The shape as built: bodies that are closed and hold the metal of the plan, in files that their readers take.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! The torch and the part together: how the torch is held along every arc, and where the path runs on the part, in every
 //! dialect, as readers see it that know how the controllers carry the tool and what turns with the table.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use crate::readers;

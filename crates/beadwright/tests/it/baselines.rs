@@ -1,5 +1,4 @@
 //! The strategies of the field that ours are compared with: what each promises, checked without the fallback of `plan`.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 use crate::families;

@@ -1,5 +1,4 @@
 //! The bead library against known surfaces, the normal equations and refitting; and what it refuses.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::bead::library::{
     BeadLibrary, Columns, Layering, LibraryError, Limit, Measured, Wish, demonstration_csv,

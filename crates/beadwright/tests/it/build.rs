@@ -1,6 +1,5 @@
 //! The plan welded in the model of height: metal is conserved, errors level and grow as closed forms say, the same seed
 //! gives the same build, and feedback by place keeps the height.
-#![allow(clippy::unwrap_used, reason = "a test may fail by panic, in its helpers too")]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! Beads that depend on the heat below: walls planned as high and as wide as others measured them, the metal unchanged, and
 //! nothing else of a plan.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use crate::common;
 use crate::solids;

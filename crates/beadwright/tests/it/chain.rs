@@ -1,6 +1,5 @@
 //! Arms that are chains: the UR arms by Denavit-Hartenberg rows and by URDF, both kinds of wrist, calibrated axes, and
 //! URDF files that are refused.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Checks: every seeded fault is found by the check that is there for it, and clean plans have no finding.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! The page of all checks and warnings, `docs/book/checks.md`, is made from the code, so none is missing.
 //! `BEADWRIGHT_GOLDEN=write cargo test -p beadwright --test it check_pages::` writes it anew.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

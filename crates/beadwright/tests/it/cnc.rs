@@ -1,6 +1,5 @@
 //! Programs for CNC controls, read by what each control knows: lengths, times and wire are those of the plan. LinuxCNC's
 //! own interpreter can be asked too (`benches/linuxcnc.sh`).
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common;
 use crate::readers;

@@ -1,6 +1,5 @@
 //! Loops, branches and jumps of programs, as far as their bounds and conditions are known: run as a controller runs them.
 //! What is not known is told, and its lines are read once.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 

@@ -1,5 +1,4 @@
 //! Cost in the totals, added up by hand.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

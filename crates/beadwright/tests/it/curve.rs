@@ -1,5 +1,4 @@
 //! Curves: against closed forms, and against the Cox–de Boor recursion written out from its definition.
-#![allow(clippy::unwrap_used)]
 
 use crate::definition;
 

@@ -1,5 +1,4 @@
 //! Solids cut by a level plane: volumes in closed form, closed surfaces, the same wherever the plane meets vertices.
-#![allow(clippy::unwrap_used)]
 
 use crate::solids;
 

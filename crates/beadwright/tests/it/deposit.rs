@@ -1,5 +1,4 @@
 //! The deposit model against closed forms, and what it says of the strategies.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{self, Cause, DepositSettings, Figures, Judge, Judgement, Nominal, Stroke, corner, field};

@@ -1,5 +1,4 @@
 //! The deposit model as it is run against its reference, every point in double precision: plans by strategy and turn.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::deposit::{DepositSettings, Judge, Judgement};
 use beadwright::example;

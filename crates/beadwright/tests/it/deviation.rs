@@ -1,5 +1,4 @@
 //! Distances of a scan from its part are those of closed forms, at any angle and for whatever the scan saw.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::solids;
 

@@ -1,6 +1,5 @@
 //! The pages of docs/dialects: the program on each is what the library writes, so that no page goes stale.
 //! `BEADWRIGHT_GOLDEN=write cargo test -p beadwright --test it dialect_pages::` writes them anew.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

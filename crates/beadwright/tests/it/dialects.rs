@@ -1,5 +1,4 @@
 //! One small job in every dialect: golden files, and the same poses, arc starts and weld length read back from each.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

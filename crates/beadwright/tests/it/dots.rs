@@ -1,5 +1,4 @@
 //! Dots: the shape of one against the closed form, and posts too small for a bead, which are built of dots.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use crate::families;

@@ -1,7 +1,5 @@
 //! The example parts are closed, wound outward, and as large as they say.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail by panic, in its helpers too")]
-
 use beadwright::example::{ALL, Example, find};
 use beadwright::model::{Import, import};
 use beadwright::task::Task;

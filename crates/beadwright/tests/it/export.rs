@@ -1,5 +1,4 @@
 //! Exported beads are those of the plan: lengths, metal and time, read back by readers that know nothing of the writers.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

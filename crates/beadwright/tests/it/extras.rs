@@ -1,5 +1,4 @@
 //! What some controllers can do besides: weaving, spline motions, and heights added to layers. Each is told, or refused.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! Programs read as a welding programmer would before pressing start: what we write has nothing dangerous in it, and every
 //! fault that is put into it is found, by the reader, by the check of a profile, or because the post refuses.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

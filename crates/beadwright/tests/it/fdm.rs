@@ -1,5 +1,4 @@
 //! Printers: raster angle, merged sub-regions, sparse infill, flow, and the G-code read back.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Solids in 3MF, OBJ, PLY and AMF: the same part whatever the file, and a sentence for whatever is broken.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

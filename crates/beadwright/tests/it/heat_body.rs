@@ -1,7 +1,6 @@
 //! The heat model's voxels against closed forms: sources in an infinite body, Rosenthal's moving source, a wall cooled at
 //! its end, and the balance of energy. Sources: Carslaw & Jaeger, Conduction of Heat in Solids (1959), chapter 10;
 //! Rosenthal, Trans. ASME 68 (1946), 849.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use beadwright::glam::{DVec3, dvec3};
 use beadwright::heat::{Air, Body, Grid, Stuff};

@@ -1,6 +1,5 @@
 //! Parts built in the heat model: what goes in stays or is lost, whatever the grid and the angle, and waits end when the
 //! metal is as cool as the limit says.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use beadwright::glam::{DVec2, dvec2};
 use beadwright::heat::{Build, HeatSettings, LayerHeat};

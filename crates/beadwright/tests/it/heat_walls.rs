@@ -1,6 +1,5 @@
 //! Walls of one program welded with waits of 0 to 240 s, measured by others (PIONEER M1, Zenodo 17608626): fitted on the
 //! shortest and the longest wait, the others are foretold.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use beadwright::Profile;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallFitError, WallLaw};

@@ -1,5 +1,4 @@
 //! Closed walls as one helix: one arc start, every turn on the one below, the metal of the wall, a level top.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

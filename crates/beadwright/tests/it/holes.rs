@@ -1,5 +1,5 @@
 //! Holes that are closed: volumes are those of the whole solid, and what is left open is told.
-#![allow(clippy::unwrap_used, dead_code)]
+#![allow(dead_code)]
 
 use crate::solids;
 

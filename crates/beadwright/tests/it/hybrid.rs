@@ -1,5 +1,4 @@
 //! The contour-skeleton hybrid step by step, and what it builds beside plain contours.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::deposit::{Figures, Judge};
 use beadwright::example;

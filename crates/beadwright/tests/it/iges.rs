@@ -1,5 +1,4 @@
 //! IGES files: real ones, hand-made ones for every entity, and broken ones.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Profiles that inherit from others.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use beadwright::profile::{BUILT_IN, Profile, ProfileError};
 

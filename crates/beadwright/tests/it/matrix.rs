@@ -1,7 +1,6 @@
 //! Every dialect, five parts, and five ways of planning: what our reader finds in the programs is what the plan's totals
 //! say, in length, starts and time, travels included. `BEADWRIGHT_LAYERS=1000 cargo test -p beadwright --test it matrix:: --
 //! --nocapture` takes all layers and prints the table.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Real parts from `BEADWRIGHT_MODELS` (else `shared/models` beside the workspace): all are imported and cut.
-#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Times along paths against closed forms and against a simulation in small steps.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::motion::Motion;
 use glam::DVec3;

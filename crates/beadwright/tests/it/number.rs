@@ -1,5 +1,4 @@
 //! Numbers as programs and files want them, and the templates that carry them.
-#![allow(clippy::unwrap_used)]
 
 use crate::solids;
 

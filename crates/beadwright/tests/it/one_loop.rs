@@ -1,5 +1,4 @@
 //! One loop an island: invariants at any angle, closed forms, and what the loop is measured by.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Order of passes: nothing is lost or changed but its start, and the torch travels less.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use crate::solids;
 

@@ -1,5 +1,4 @@
 //! Drawings: areas known in closed form, however they are drawn, turned and chained, and sentences for what is not read.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! Dialects of one's own: what they are refused for, and that they never write more or less than they should.
 //! `beadwright-cli/tests/it/own_dialect.rs` runs the example.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! The colours of the pages can be told apart by everybody: with normal sight, and without the red, green or blue cones.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 use crate::sight;

@@ -1,5 +1,4 @@
 //! A model becomes a part, and a layer can be seen before the others.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use beadwright::example;
 use beadwright::layer::Layer;

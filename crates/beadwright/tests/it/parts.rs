@@ -1,5 +1,4 @@
 //! Parts that are welded one after another: their layers, the ways between them, and room for the torch.
-#![allow(clippy::unwrap_used, clippy::indexing_slicing)]
 
 use beadwright::example;
 use beadwright::model::together::{Arrangement, arrange};

@@ -1,7 +1,7 @@
 //! Plans of the example parts with every strategy: inside the outline, nothing crosses, totals add up, programs read
 //! back.
-#![allow(clippy::unwrap_used)]
 
+use crate::common::flat;
 use crate::readers;
 
 use beadwright::dialect;
@@ -27,8 +27,7 @@ fn profile(name: &str, strategy: &str, angle: f64) -> Profile {
     let mut profile = Profile::built_in(name).unwrap();
     profile.fill.strategy = strategy.to_owned();
     profile.fill.raster_angle = angle;
-    profile.layers.level = false;
-    profile
+    flat(profile)
 }
 
 fn plan_of(mesh: &Mesh, profile: &Profile) -> Plan {

@@ -1,5 +1,4 @@
 //! Other speeds for some layers: the beads stay the same, and programs tell speed, wire feed and job where they change.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Profiles: the built-in ones, and what is said of a wrong one, with its line and key.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use beadwright::bead::MassBalance;
 use beadwright::dialect;

@@ -1,5 +1,4 @@
 //! The post `rapid`: a small job as golden files, the variants of the profile, names, speeds, and the job read back.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Programs read back: known geometry in each dialect, the same program in other words, errors, our own programs.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::dialect::reading::{ArcCodes, CHORD_MM, Metal, Options, ReadError, ReadProgram, ReadTotals, read};
 use beadwright::plan::{self, Plan};

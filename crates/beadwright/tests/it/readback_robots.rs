@@ -1,5 +1,4 @@
 //! FANUC TP, INFORM and URScript read back: our own programs in every dialect, foreign words, errors, and any lines at all.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Broken meshes: what the report tells, and what is left after the mending.
-#![allow(clippy::unwrap_used)]
 
 use crate::solids;
 

@@ -1,5 +1,4 @@
 //! `report.html` gives back what was planned, loads nothing, and lets no text of the user become markup.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! `report.html` in a real browser, without a window: what a reader does, and nothing on the console. Where there is no
 //! chromium, the tests say so and pass.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 #![allow(clippy::print_stderr, reason = "says why nothing was tested")]
 
 use crate::common;

@@ -1,6 +1,5 @@
 //! Programs that begin at any pass by a variable of their own: run from their beginning they do what plain programs do;
 //! begun at a pass they weld exactly the rest.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use crate::readers;

@@ -1,5 +1,4 @@
 //! Robots: known poses, there and back, limits, speeds, singular wrists, and whole plans.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use beadwright::example;
 use beadwright::layer::Layer;

@@ -1,5 +1,4 @@
 //! Slices of solids whose sections have closed forms, and what must not matter to them.
-#![allow(clippy::unwrap_used)]
 
 use crate::solids;
 

@@ -1,5 +1,4 @@
 //! Slices of real parts that the default strategy filled badly: each must be filled by the loop itself, at any angle.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 use crate::families;

@@ -1,6 +1,5 @@
 //! Never a wrong plan in silence: whatever the part, centre-lines stay inside it and do not cross, and what is not filled is
 //! told. Cases that broke the program lie in the shared folder (`BEADWRIGHT_CASES`).
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 use crate::families;

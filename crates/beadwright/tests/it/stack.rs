@@ -1,5 +1,4 @@
 //! Beads laid on what lies below them, against closed forms, and the height that plans build.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{DepositSettings, Nominal, Stack, stack::Growth};
@@ -211,6 +210,17 @@ fn level_layers_end_where_the_plan_does() {
             assert!((metal - 1.0).abs() < 0.05, "{name} at {degrees}°: {metal} of the metal of its slices");
         }
     }
+}
+
+#[test]
+fn a_paper_followed_to_the_letter_has_layers_of_one_height() {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    profile.fill.strategy = "hybrid".to_owned();
+    assert!(profile.is_level());
+    profile.hybrid.literal = true;
+    let mesh = example::find("propeller").unwrap().mesh();
+    let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
+    assert!(plan.layers.iter().all(|layer| (layer.height - 2.0).abs() < 1e-9));
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! Start and stop of passes, wire feed that follows the bead, waits between layers, and the dry run: the same in every
 //! dialect, and counted by the totals.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 use crate::readers;

@@ -1,5 +1,4 @@
 //! STL files, good and bad: what is read, and what the message says when it is not.
-#![allow(clippy::unwrap_used)]
 
 use crate::solids;
 

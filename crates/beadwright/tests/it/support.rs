@@ -1,5 +1,4 @@
 //! Passes lie on metal, or the plan says so: roofs over air refuse it, small islands that hang are left out.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Surfaces that are not closed: what they stand for is asked, and one bead runs along those that stand for walls.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common;
 use crate::solids;

@@ -1,5 +1,4 @@
 //! Progress and cancelling of the long calls.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::solids;
 

@@ -1,5 +1,4 @@
 //! A torch that leans with the wall and along its way, and a turn table that turns with it: in every robot's language.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! 3MF toolpaths: a plan comes back from its file, the file follows the extension's schemas, and its sums are the plan's as
 //! another reader counts them.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

@@ -1,6 +1,5 @@
 //! What reach finds goes into programs: the torch's turn about its own axis, the same rotation in every robot's language; and
 //! the angle of a turn table.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

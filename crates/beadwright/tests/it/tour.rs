@@ -1,5 +1,4 @@
 //! Tours: the exact optimum against brute force, the others against the optimum and against each other.
-#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use crate::solids;
 

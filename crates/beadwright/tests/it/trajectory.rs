@@ -1,5 +1,4 @@
 //! Joint trajectories: the arm stands where the program wants the torch, at times that run on.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

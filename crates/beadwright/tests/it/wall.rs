@@ -1,5 +1,4 @@
 //! Height prediction of walls against integrals and closed forms.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::bead::wall::{WallBead, WallError};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! Walls given by curves: read from IGES, lofted, leaning, and the same as those given by a solid.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::curve::Nurbs;
 use beadwright::example;

@@ -1,5 +1,4 @@
 //! The figures of the page `d-thin-wall` (Li et al.), with the parts as they are and turned by 33°.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::check;
 use beadwright::example;

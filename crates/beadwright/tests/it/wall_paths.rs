@@ -1,5 +1,4 @@
 //! Thin walls: what the strategy lays on the parts of Li et al., and what that would build.
-#![allow(clippy::unwrap_used)]
 
 use crate::common;
 

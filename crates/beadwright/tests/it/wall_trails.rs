@@ -1,5 +1,4 @@
 //! The fewest trails that cover a plane graph and never cross, on random graphs.
-#![allow(clippy::unwrap_used)]
 
 use beadwright::fill::trails::{Dart, Network, Trail, trails};
 use glam::DVec2;

@@ -1,5 +1,4 @@
 //! Straight pieces and arcs fitted to lines.
-#![allow(clippy::unwrap_used)]
 
 use planar::DVec2;
 use planar::arcs::{Arc, Fit};

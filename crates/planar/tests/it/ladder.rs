@@ -1,5 +1,4 @@
 //! Ladders of shapes whose medial axis is known.
-#![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
 use planar::ladder::{Ladder, ladders};

@@ -1,5 +1,4 @@
 //! Lattices: the nearest of many segments against trying all of them, and lines of equal height of a cone.
-#![allow(clippy::unwrap_used)]
 
 use planar::isolines::isolines;
 use planar::nearest::{foot, nearest};

@@ -1,6 +1,5 @@
 //! The medial axis: closed forms, what makes a disc a largest one (by brute force), and the same shape described
 //! otherwise.
-#![allow(missing_docs, clippy::unwrap_used)]
 
 use crate::shapes;
 

@@ -1,5 +1,4 @@
 //! Scan lines: spans in closed form, area by summation, chains that never leave the boundary.
-#![allow(clippy::unwrap_used)]
 
 use crate::shapes;
 

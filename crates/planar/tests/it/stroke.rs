@@ -1,5 +1,4 @@
 //! Lines grown to areas, against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
 use planar::buffer;

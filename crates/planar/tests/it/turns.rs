@@ -1,5 +1,4 @@
 //! The number of ends of scan lines over the angle, against scan lines laid at that angle.
-#![allow(clippy::unwrap_used)]
 
 use planar::scan::Spacing;
 use planar::turns::{Turns, ends_at};

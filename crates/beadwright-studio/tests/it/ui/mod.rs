@@ -1,5 +1,4 @@
 //! The window, headless, by the widgets a person uses.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod background;
 mod basic;

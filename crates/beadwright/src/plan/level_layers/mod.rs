@@ -58,7 +58,7 @@ pub(super) fn slabs(
     let rises = slices.into_par_iter().enumerate().map(filled).collect::<Result<Vec<_>, _>>()?;
     let known: Vec<(f64, f64)> =
         alike.iter().enumerate().filter_map(|(k, &like)| Some(((k as f64 + 0.5) * apart, rises[like]?))).collect();
-    Ok(stacked(top, profile, |z| between(&known, z).unwrap_or(height)))
+    Ok(stacked(top, height, |z| between(&known, z).unwrap_or(height)))
 }
 
 /// Slices whose areas and outlines differ by less than this fraction are filled alike.
@@ -114,11 +114,11 @@ fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
     }
 }
 
-/// Layers that rise as `rise` says of their middle (mm), stretched or pressed to end with the part.
-fn stacked(top: f64, profile: &Profile, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
+/// Layers of about `usual` that rise as `rise` says of their middle, stretched or pressed to end at `top` (all mm).
+fn stacked(top: f64, usual: f64, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let (mut slabs, mut z) = (Vec::new(), 0.0);
     while slabs.len() < MAX_LAYERS {
-        let height = rise(z + profile.layers.height / 2.0);
+        let height = rise(z + usual / 2.0);
         // The number of layers that comes nearest, and one more where they would be stretched too far.
         if !slabs.is_empty() && z + 0.5 * height >= top && THICKNESS.end() * z >= top {
             break;

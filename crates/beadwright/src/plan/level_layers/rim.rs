@@ -2,7 +2,7 @@
 //!
 //! A bead along the outline is laid half its planned width inside. Where it gets more metal than planned it becomes wider,
 //! on both sides alike if it stayed: metal beside the part. Moved inwards by all of it, it would pile up on its neighbour.
-//! So it moves by half of what lies outside.
+//! So it moves by [`INWARDS`] of what would lie outside.
 
 use glam::DVec2;
 use planar::{Region, Ring};
@@ -28,7 +28,7 @@ impl Rim {
         Self(RTree::bulk_load(edges.collect()))
     }
 
-    /// How a place of a bead moves that is laid wider than planned, mm: inwards as far as it would lie over the outline.
+    /// How a place of a bead that is laid wider than planned moves inwards, mm; not at all where it stays inside the outline.
     pub(super) fn shift(&self, from: DVec2, planned: f64, laid: f64) -> DVec2 {
         let most = INWARDS * (laid - planned) / 2.0;
         let Some(foot) = self.foot(from).filter(|_| most > NOTHING) else { return DVec2::ZERO };

@@ -27,8 +27,8 @@ const REACH: f64 = 0.75;
 /// Grid points across a bead.
 const ACROSS: f64 = 8.0;
 
-/// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those
-/// around it needs as a multiple of what they hold.
+/// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those around it needs as a multiple of what
+/// they hold.
 pub(super) struct Share {
     pieces: Vec<Segment>,
     pub(super) held: Vec<f64>,

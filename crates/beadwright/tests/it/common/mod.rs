@@ -1,6 +1,5 @@
 //! What many tests begin with: profiles, planned examples, shared models.
 #![allow(dead_code, reason = "each test uses some of it")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
 
 use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 use beadwright::example;

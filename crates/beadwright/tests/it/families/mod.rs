@@ -1,6 +1,6 @@
 //! Random islands of eight families, as parts bring them: the same seed gives the same island. And whether layers are sound,
 //! judged at other places than the program's own check does.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test file uses some of it and may panic")]
+#![allow(dead_code, unreachable_pub)]
 
 use beadwright::fill::sound;
 use beadwright::planar::triangulate::triangulate;

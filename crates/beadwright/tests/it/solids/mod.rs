@@ -1,5 +1,5 @@
 //! Solids of known volume as loose triangles, mm, and the STL files that hold them.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test file uses some of it and may panic")]
+#![allow(dead_code, unreachable_pub)]
 
 use beadwright::model::{Import, Mesh, import};
 use beadwright::planar::{DVec2, Polygon, Ring, triangulate::triangulate};
