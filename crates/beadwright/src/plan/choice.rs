@@ -3,7 +3,7 @@
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
-use crate::profile::Profile;
+use crate::profile::{Foretell, Profile};
 use crate::slice::{Slab, Slicer, Surface};
 use crate::task::{Cancelled, Task};
 use planar::{Join, Polygon, Region};
@@ -21,9 +21,14 @@ pub struct Choice {
 const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
+/// Walls are thicker than the bead where they hold this many of its widths,
+const THICKER: f64 = 1.1;
+/// if this fraction of their area does.
+const MOSTLY: f64 = 0.8;
 
 /// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the
-/// profile says `loop` and the whole part is thin wall, unless the strategy is to be `kept`.
+/// profile says `loop` and the whole part is walls for one bead, unless the strategy is to be `kept`; their layers are as high as
+/// their metal if they are thicker than the bead.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -33,12 +38,17 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     match part {
         Part::Curves { .. } => "wall".clone_into(&mut profile.fill.strategy),
         Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => "wall".clone_into(&mut profile.fill.strategy),
-        Part::Mesh(import) if !kept && profile.fill.strategy == "loop" && all_thin(&import.mesh, &profile, task)? => {
-            "wall".clone_into(&mut profile.fill.strategy);
-            note = Some(
-                "Strategy wall instead of loop: the part is all walls for one bead; asked for by name, loop is kept."
-                    .to_owned(),
-            );
+        Part::Mesh(import) if !kept && profile.fill.strategy == "loop" => {
+            if let Some(walls) = walls(&import.mesh, &profile, task)? {
+                "wall".clone_into(&mut profile.fill.strategy);
+                if walls == Walls::Thick && profile.layers.foretell == Foretell::Auto {
+                    profile.layers.foretell = Foretell::Never;
+                }
+                note = Some(
+                    "Strategy wall instead of loop: the part is all walls for one bead; asked for by name, loop is kept."
+                        .to_owned(),
+                );
+            }
         }
         Part::Mesh(_) => {}
     }
@@ -51,23 +61,34 @@ pub(super) fn is_wall_surface(mesh: &Mesh, profile: &Profile) -> bool {
         && mesh.neighbours.iter().flatten().any(|&across| across == NO_NEIGHBOUR)
 }
 
-/// Whether a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its middle.
-fn all_thin(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<bool, Cancelled> {
+/// Walls for one bead.
+#[derive(PartialEq)]
+enum Walls {
+    /// As thick as the bead or thinner: they rise as it does.
+    Thin,
+    /// Thicker than the bead, which is laid wider: they rise as their metal does.
+    Thick,
+}
+
+/// The kind of walls if a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its middle.
+fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, Cancelled> {
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
     let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let settings = profile.fill_settings(0);
-    let radius = settings.double() / 2.0;
+    let (double, thicker) = (settings.double() / 2.0, THICKER * profile.bead.width / 2.0);
     let slices = slicer.all(task)?;
-    let (mut all, mut thick) = (0.0, 0.0);
+    let (mut all, mut twice, mut thick) = (0.0, 0.0, 0.0);
     for slice in &slices {
         let region = Region::from_normalised(slice.islands.clone());
+        let holding = |radius: f64| region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).area();
         all += region.area();
-        thick += region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).area();
+        twice += holding(double);
+        thick += holding(thicker);
     }
-    if all == 0.0 || thick > JUNCTIONS * all {
-        return Ok(false);
+    if all == 0.0 || twice > JUNCTIONS * all {
+        return Ok(None);
     }
     // Teeth and ribs that are thin in some place make no wall.
     let is_wall = |island: &Polygon| {
@@ -78,8 +99,8 @@ fn all_thin(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<bool, Cancell
     for slice in &slices {
         task.check()?;
         if !slice.islands.iter().all(is_wall) {
-            return Ok(false);
+            return Ok(None);
         }
     }
-    Ok(true)
+    Ok(Some(if thick > MOSTLY * all { Walls::Thick } else { Walls::Thin }))
 }

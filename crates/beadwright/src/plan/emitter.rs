@@ -5,7 +5,8 @@ use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
 use super::support::Support;
 use super::warm::{self, Heat};
-use super::{Sink, level_layers, relight};
+use super::{Sink, level_layers, relight, welded};
+use crate::deposit::Stack;
 use crate::fill::{Fill, Path};
 use crate::heat::{LONGEST_WAIT, NOISE, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
@@ -29,6 +30,8 @@ pub(super) struct Emitter<'a, S> {
     /// The first layer of which the helix could make no turn.
     pub(super) no_turn: Option<NoTurn>,
     pub(super) support: Support,
+    /// What the layers so far build, if metal is shared out on it.
+    pub(super) grown: Option<Stack>,
     /// Outlines of the layer below, of the islands that are welded.
     pub(super) below: Vec<Polygon>,
     /// Top of the highest layer with beads, mm.
@@ -58,7 +61,7 @@ impl<S: Sink> Emitter<'_, S> {
         let mut layer =
             Layer { index, z, height, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
         if self.profile.is_level() {
-            level_layers::share(&mut layer, self.profile);
+            level_layers::share(&mut layer, self.grown.as_ref(), self.profile);
         }
         if let Some(helix) = &mut self.helix {
             let turn = helix.turn(&mut layer, self.profile.bead.width);
@@ -71,6 +74,9 @@ impl<S: Sink> Emitter<'_, S> {
         self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
         layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
         self.metrics.add(&layer);
+        if let Some(grown) = &mut self.grown {
+            grown.add(&welded(&layer, self.profile));
+        }
         self.sink.layer(layer)
     }
 

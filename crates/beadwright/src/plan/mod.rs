@@ -45,7 +45,7 @@ pub use preview::preview;
 pub use scan_lines::{ToFill, raster_angle};
 
 use crate::bead::wall::WallError;
-use crate::deposit::{DepositSettings, Figures, Nominal};
+use crate::deposit::{DepositSettings, Figures, Nominal, Stack};
 use crate::fill::{self, Strategy};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
@@ -541,6 +541,11 @@ fn run<S: Sink + Send>(
         helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
         no_turn: None,
         support: Support::default(),
+        grown: profile.is_level().then(|| {
+            let (low, high) = (extent.low, extent.high);
+            let bounds = Bounds { min: low.truncate(), max: high.truncate() };
+            Stack::new(&bounds, deposit_settings_over(profile, (low, high)))
+        }),
         below: Vec::new(),
         built: 0.0,
         points: 0,

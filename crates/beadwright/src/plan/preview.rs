@@ -16,7 +16,8 @@ use crate::warning::Warnings;
 use std::convert::Infallible;
 
 /// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. Only
-/// start points and order may differ from those in the whole plan, and what heat changes there.
+/// start points and order may differ from those in the whole plan, what heat changes there, and the metal that level layers get
+/// for what the layers below have built.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -48,6 +49,7 @@ pub fn preview(
         helix: None,
         no_turn: None,
         support: Support::default(),
+        grown: None,
         below: Vec::new(),
         built,
         points: 0,

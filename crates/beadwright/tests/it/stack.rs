@@ -1,12 +1,13 @@
 //! Beads laid on what lies below them, against closed forms, and the height that plans build.
 
+use crate::solids::{cuboid, imported, mapped};
 use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{DepositSettings, Nominal, Stack, stack::Growth};
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
-use beadwright::plan::{self, Plan};
-use beadwright::{Judge, Model, Placement, Profile, Task, check, example};
-use glam::{DVec2, DVec3};
+use beadwright::plan::{self, Plan, choice};
+use beadwright::{Judge, Model, Part, Placement, Profile, Task, check, example};
+use glam::{DQuat, DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 
 const WIDTH: f64 = 6.0;
@@ -188,13 +189,13 @@ fn built(plan: &Plan, profile: &Profile) -> Growth {
 
 #[test]
 fn level_layers_end_where_the_plan_does() {
-    for (name, least) in
-        [("cross", 0.99), ("gear", 0.99), ("plate", 0.99), ("star", 0.99), ("vase", 0.98), ("propeller", 0.93)]
-    {
+    for name in ["cross", "gear", "plate", "star", "vase", "propeller"] {
+        // Tips of the twisted blades end low.
+        let least = if name == "propeller" { 0.97 } else { 0.99 };
         for degrees in [0.0, 23.0] {
             let (plan, profile) = planned(name, degrees, true);
             let ended = built(&plan, &profile);
-            assert!(ended.within >= least && ended.mean.abs() < 0.6, "{name} at {degrees}°: {ended:?}");
+            assert!(ended.within >= least && ended.mean.abs() < 0.4, "{name} at {degrees}°: {ended:?}");
             let high = example::find(name).unwrap().mesh().bounds().1.z;
             assert!(
                 (plan.layers.last().unwrap().z - high).abs() < 1e-6,
@@ -208,6 +209,25 @@ fn level_layers_end_where_the_plan_does() {
             let metal = metrics.deposited_volume_mm3 / metrics.part_volume_mm3;
             // Corners hold less than their beads would need.
             assert!((metal - 1.0).abs() < 0.05, "{name} at {degrees}°: {metal} of the metal of its slices");
+        }
+    }
+}
+
+/// Corners and rims stay rounded: a small part rises faster than its metal fills it. A wall of two beads rises more slowly.
+#[test]
+fn small_and_thin_parts_end_where_the_plan_does_too() {
+    let boxes = [(20.0, 20.0, 20.0), (25.0, 25.0, 60.0), (40.0, 40.0, 40.0), (30.0, 60.0, 30.0), (10.0, 80.0, 50.0)];
+    for (x, y, z) in boxes {
+        for degrees in [0.0_f64, 30.0] {
+            let turn = DQuat::from_rotation_z(degrees.to_radians());
+            let solid = mapped(&cuboid([0.0; 3], [x, y, z]), |p| turn * p);
+            let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+            let part = Part::Mesh(imported(&solid));
+            let profile = choice::choose(&part, &profile, false, &Task::new()).unwrap().profile;
+            let plan = plan::plan("box", &part, &profile, &Task::new()).unwrap();
+            let ended = built(&plan, &profile);
+            let label = format!("{x} × {y} × {z} mm at {degrees}°");
+            assert!(ended.within >= 0.95 && ended.mean.abs() < 0.6, "{label}: {ended:?}");
         }
     }
 }

@@ -2,10 +2,11 @@
 //!
 //! Beads that overlap by the rule lie side by side and fill a wide layer. At its rim nothing overlaps them, so that the
 //! beads of a narrow part hold less metal than its slices: n beads a stepover of ρ widths apart fill n ρ / ((n − 1) ρ + 1) of
-//! them, two 0.83 and ten 0.96 for ρ = 0.715. [`slabs`] looks at slices of the part and places the layers as high as their
-//! beads fill them, where a wide layer is `layers.height` high. Within a layer [`share`] then shifts metal from beads that have
-//! neighbours to those that have none, by the pace: every piece of a pass fills the strip of the slice that lies nearest to
-//! it, and beads that become wider at the outline move inwards ([`rim`]).
+//! them, two 0.83 and ten 0.96 for ρ = 0.715. And a small part rises faster than its metal fills it, since its corners and
+//! its rim stay rounded. [`slabs`] looks at slices of the part, lays each on itself in the model, and places the layers as high
+//! as their beads fill them, where a wide layer is `layers.height` high. Within a layer [`share`] then shifts metal from beads
+//! that have neighbours to those that have none, by the pace: every piece of a pass fills the strip of the slice that lies nearest
+//! to it, from the metal below as the model builds it, and beads that become wider at the outline move inwards ([`rim`]).
 
 mod rim;
 mod share;
@@ -15,15 +16,16 @@ pub(super) use share::share;
 use super::emitter::lifted;
 use super::filled::{Filled, fill_planned};
 use super::scan_lines::Planned;
-use super::{MAX_LAYERS, middle};
+use super::{MAX_LAYERS, deposit_settings, middle};
+use crate::deposit::Stack;
 use crate::fill::Strategy;
-use crate::layer::Layer;
+use crate::layer::{self, Layer};
 use crate::model::Mesh;
 use crate::profile::Profile;
 use crate::slice::{BATCH, Slab, Slice, Slicer};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
-use planar::{Polygon, Ring};
+use planar::{Polygon, Region, Ring};
 use rayon::prelude::*;
 
 /// Number of heights at which a part is looked at, at most.
@@ -53,7 +55,7 @@ pub(super) fn slabs(
         (0..count).map(|k| (0..k).find(|&other| are_alike(&slices[other], &slices[k])).unwrap_or(k)).collect();
     let filled = |(k, slice): (usize, Slice)| -> Result<Option<f64>, Cancelled> {
         task.check()?;
-        Ok((alike[k] == k).then(|| rise(&filled(slice, strategy, profile, middle(mesh)), profile)).flatten())
+        Ok((alike[k] == k).then(|| rise(filled(slice, strategy, profile, middle(mesh)), profile)).flatten())
     };
     let rises = slices.into_par_iter().enumerate().map(filled).collect::<Result<Vec<_>, _>>()?;
     let known: Vec<(f64, f64)> =
@@ -83,26 +85,65 @@ fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec
     Layer { height, islands, passes, ..Layer::default() }
 }
 
-/// A layer is no higher than what this part of its metal fills. The median would do for its height, but the other beads would be
-/// narrower then and leave voids; layers that are a little too high have humps, which the next layer remelts.
+/// Layers of a kind that are laid on each other to see how high one is.
+const ON: usize = 6;
+
+/// How high a layer is whose beads hold what they need once it lies on others like it; `None` for one without beads.
+fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
+    let (region, bounds) = (share::region(&layer, profile), layer::bounds(std::slice::from_ref(&layer))?);
+    let mut below = Stack::new(&bounds, deposit_settings(profile));
+    let passes = layer.passes.clone();
+    for _ in 0..ON {
+        let bottom = layer.z;
+        layer.passes.clone_from(&passes);
+        layer.z = bottom + layer.height;
+        layer.height = needed(&layer, &below, &region, profile)?;
+        layer.z = bottom + layer.height;
+        share::share(&mut layer, Some(&below), profile);
+        below.add(&layer);
+    }
+    Some(layer.height)
+}
+
+/// This part of the metal of a layer may be less than its beads hold as planned. With the median, the other beads would be
+/// narrower and leave voids; layers that are a little too high have humps, which the next layer remelts.
 const FILLED: f64 = 0.35;
 
-/// How high a layer is whose beads hold what they need; `None` for one without beads.
-fn rise(layer: &Layer, profile: &Profile) -> Option<f64> {
-    let shares = share::shares(layer, &share::region(layer, profile), profile);
+/// How high a layer is on what lies below so that its beads hold what they need: between the height to which most of them fill it
+/// ([`FILLED`]) and the one at which it gets all of its metal, though no bead holds more or less than it can.
+fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
+    let shares = share::shares(layer, Some(below), region, profile);
     let mut pieces: Vec<(f64, f64)> =
         shares.iter().flat_map(|share| share.needs.iter().copied().zip(share.held.iter().copied())).collect();
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
     let all: f64 = pieces.iter().map(|piece| piece.1).sum();
     let mut sum = 0.0;
-    let &(need, _) = pieces.iter().find(|piece| {
+    let &(filled, _) = pieces.iter().find(|piece| {
         sum += piece.1;
         sum >= FILLED * all
     })?;
-    // What beads cannot hold is not laid.
-    let metal = |most: f64| pieces.iter().map(|(other, held)| held * (other / need).min(most)).sum::<f64>();
-    let laid = metal(share::MOST) / metal(f64::INFINITY);
-    Some(layer.height * (laid / need).clamp(*THICKNESS.start(), *THICKNESS.end()))
+    let (least, most) = (pieces.first()?.0, pieces.last()?.0);
+    // What beads that can hold no less have too much, if those that need `need` hold what they do as planned.
+    let surplus = |need: f64| -> f64 {
+        let laid = |needed: f64| (needed / need).clamp(share::MOST.recip(), share::MOST);
+        pieces.iter().map(|(needed, held)| held * (laid(*needed) - needed / need)).sum()
+    };
+    let need = if surplus(filled) > 0.0 {
+        root(surplus, least, filled)
+    } else {
+        (filled * root(surplus, filled, most)).sqrt()
+    };
+    let usual = profile.layers.height;
+    Some((layer.height / need).clamp(THICKNESS.start() * usual, THICKNESS.end() * usual))
+}
+
+/// Where a rising function is zero between two values, halved until they hardly differ.
+fn root(rising: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        *(if rising(middle) > 0.0 { &mut high } else { &mut low }) = middle;
+    }
+    0.5 * (low + high)
 }
 
 /// The value at a height between two that are known; beyond the first and the last, theirs.
@@ -114,13 +155,18 @@ fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
     }
 }
 
+/// Layers up to this factor higher than usual count as usual.
+const USUAL: f64 = 1.03;
+
 /// Layers of about `usual` that rise as `rise` says of their middle, stretched or pressed to end at `top` (all mm).
 fn stacked(top: f64, usual: f64, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let (mut slabs, mut z) = (Vec::new(), 0.0);
     while slabs.len() < MAX_LAYERS {
         let height = rise(z + usual / 2.0);
-        // The number of layers that comes nearest, and one more where they would be stretched too far.
-        if !slabs.is_empty() && z + 0.5 * height >= top && THICKNESS.end() * z >= top {
+        // The number of layers that comes nearest, but layers about as high as usual sooner than others: lower ones leave voids
+        // between their beads, higher ones are overfilled. One more where they would be stretched too far.
+        let rest = if top <= USUAL * usual * slabs.len() as f64 { 0.8 } else { 0.3 };
+        if !slabs.is_empty() && z + rest * height >= top && THICKNESS.end() * z >= top {
             break;
         }
         z += height;

@@ -1,8 +1,8 @@
 //! Metal where the slice needs it.
 
 use super::rim::Rim;
-use crate::deposit::Nominal;
 use crate::deposit::field::Grid;
+use crate::deposit::{Nominal, RIM, Stack};
 use crate::fill::sound;
 use crate::layer::{self, Layer};
 use crate::pass::{Along, Pass, PassKind, Segment};
@@ -26,6 +26,10 @@ const STRAIGHT: f64 = 0.006;
 const REACH: f64 = 0.75;
 /// Grid points across a bead.
 const ACROSS: f64 = 8.0;
+/// Of what the metal below lacks, or has too much, a layer makes good this part.
+const GAIN: f64 = 0.5;
+/// A place is filled by no less and no more than this, in heights of the layer.
+const WANTED: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
 /// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those around it needs as a multiple of what
 /// they hold.
@@ -43,8 +47,8 @@ fn nominal(profile: &Profile) -> Nominal {
     crate::plan::deposit_settings(profile).nominal
 }
 
-/// What the passes of a layer hold and need.
-pub(super) fn shares(layer: &Layer, region: &Region, profile: &Profile) -> Vec<Share> {
+/// What the passes of a layer hold and need, on what lies below; without it on a layer as planned.
+pub(super) fn shares(layer: &Layer, below: Option<&Stack>, region: &Region, profile: &Profile) -> Vec<Share> {
     let nominal = nominal(profile);
     let width = nominal.bead.width;
     // A dot holds what its place needs already.
@@ -52,10 +56,11 @@ pub(super) fn shares(layer: &Layer, region: &Region, profile: &Profile) -> Vec<S
     let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(pieces).collect();
     // Where beads lie side by side, their metal makes layers.height, whatever the profile says of the bead.
     let wide = nominal.bead.rise(profile.stepover()) / profile.layers.height;
-    let areas = strips(layer, region, pieces.iter().flatten(), width);
-    let mut areas = areas.iter();
+    let ground = |place| below?.height_at(place).map(|ground| ground / wide);
+    let strips = strips(layer, ground, region, pieces.iter().flatten(), width);
+    let mut strips = strips.into_iter();
     let share = |(pass, pieces): (&Pass, Vec<Segment>)| {
-        let wanted: Vec<f64> = areas.by_ref().take(pieces.len()).map(|area| area * layer.height).collect();
+        let wanted: Vec<f64> = strips.by_ref().take(pieces.len()).collect();
         let held: Vec<f64> = pieces.iter().map(|piece| metal_of(piece, &nominal)).collect();
         let lengths: Vec<f64> = pieces.iter().map(Segment::length).collect();
         let near = |piece| around(piece, &lengths, pass.closed, AROUND * width);
@@ -79,10 +84,10 @@ pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
 }
 
 /// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
-/// it, is as wide as the law of the bead says, and stays inside the outline.
-pub(in crate::plan) fn share(layer: &mut Layer, profile: &Profile) {
+/// it, from what lies below, is as wide as the law of the bead says, and stays inside the outline.
+pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, profile: &Profile) {
     let (nominal, region) = (nominal(profile), region(layer, profile));
-    let (shares, rim) = (shares(layer, &region, profile), Rim::of(&region));
+    let (shares, rim) = (shares(layer, below, &region, profile), Rim::of(&region));
     let (narrowest, widest) = profile.fill_settings(layer.index).wall.width_limits;
     let laid = |(pass, share): (&Pass, &Share)| {
         let Share { pieces, held, needs } = share;
@@ -158,12 +163,19 @@ fn cut(pass: &Pass, longest: f64) -> Vec<Segment> {
     pass.segments().flat_map(parts).collect()
 }
 
-/// Area of the slice nearest to each piece, mm².
-fn strips<'a>(layer: &Layer, region: &Region, pieces: impl Iterator<Item = &'a Segment>, width: f64) -> Vec<f64> {
+/// What fills the strip of the slice nearest to each piece, mm³: the height of the layer, more where the `ground` below (mm) lies
+/// too low and less where it lies too high. Where no bead reaches, and at the rim, which no bead fills, it counts as planned.
+fn strips<'a>(
+    layer: &Layer,
+    ground: impl Fn(DVec2) -> Option<f64>,
+    region: &Region,
+    pieces: impl Iterator<Item = &'a Segment>,
+    width: f64,
+) -> Vec<f64> {
     let Some(bounds) = layer::bounds(std::slice::from_ref(layer)) else { return Vec::new() };
     let (grid, reach) = (Grid::covering(&bounds, 0.0, width / ACROSS), REACH * width);
     let mut nearest = vec![(f64::INFINITY, 0_usize); grid.points()];
-    let mut count = 0;
+    let mut halves = Vec::new();
     for (index, piece) in pieces.enumerate() {
         let (a, b) = (piece.from.truncate(), piece.to.truncate());
         let (low, high) = (a.min(b) - reach, a.max(b) + reach);
@@ -176,24 +188,36 @@ fn strips<'a>(layer: &Layer, region: &Region, pieces: impl Iterator<Item = &'a S
                 }
             }
         }
-        count = index + 1;
+        halves.push(piece.width / 2.0);
     }
-    let (mut areas, mut inside) = (vec![0.0; count], 0.0);
-    for (row, crossings) in region.rows(grid.place(0, 0).y, grid.step, grid.rows).iter().enumerate() {
-        for ends in crossings.chunks_exact(2) {
-            for column in grid.columns_between(ends[0], ends[1]) {
-                let (distance, index) = nearest[row * grid.columns + column];
-                inside += 1.0;
-                if distance <= reach * reach {
-                    areas[index] += 1.0;
-                }
+    let rows = |region: &Region| region.rows(grid.place(0, 0).y, grid.step, grid.rows);
+    let columns = |ends: &[f64]| grid.columns_between(ends[0], ends[1]);
+    let (mut strips, mut inside) = (vec![0.0; halves.len()], 0.0);
+    for (row, crossings) in rows(region).iter().enumerate() {
+        for at in crossings.chunks_exact(2).flat_map(columns).map(|column| row * grid.columns + column) {
+            let (distance, index) = nearest[at];
+            inside += 1.0;
+            if distance <= reach * reach {
+                strips[index] += layer.height;
+            }
+        }
+    }
+    let core = region.offset(-RIM * width, Join::ROUND);
+    for (row, crossings) in rows(&core).iter().enumerate() {
+        for column in crossings.chunks_exact(2).flat_map(columns) {
+            let (distance, index) = nearest[row * grid.columns + column];
+            let is_laid = halves.get(index).is_some_and(|half| distance <= half * half);
+            if let Some(ground) = ground(grid.place(column, row)).filter(|_| is_laid) {
+                let wanted = layer.height + GAIN * (layer.z - layer.height - ground);
+                strips[index] +=
+                    wanted.clamp(WANTED.start() * layer.height, WANTED.end() * layer.height) - layer.height;
             }
         }
     }
     // Few points lie across a wall: each stands for as much as makes them the area of the slice.
     let each = if inside > 0.0 { region.area() / inside } else { 0.0 };
-    areas.iter_mut().for_each(|area| *area *= each);
-    areas
+    strips.iter_mut().for_each(|strip| *strip *= each);
+    strips
 }
 
 /// The pieces of a pass that end within a distance (mm) before and behind a piece, and the piece itself.
