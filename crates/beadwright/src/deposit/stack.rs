@@ -12,6 +12,7 @@ use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke, strokes};
 use super::{DepositSettings, Mask, RIM};
 use crate::bead::{Bead, Section};
 use crate::layer::Layer;
+use crate::pass::Pass;
 use glam::DVec2;
 use planar::Bounds;
 use serde::{Deserialize, Serialize};
@@ -103,16 +104,21 @@ impl Stack {
     }
 
     /// Lays the passes of a layer as they are welded.
-    pub fn add(&mut self, layer: &Layer) {
-        self.layer_height = Some(layer.height);
-        let plate = *self.plate.get_or_insert(layer.z - layer.height);
-        for pass in &layer.passes {
+    pub fn weld(&mut self, passes: &[Pass]) {
+        for pass in passes {
             // No sweep goes on from pass to pass.
             self.pieces += 2;
             for piece in pieces(strokes(pass, &self.settings.nominal)) {
                 self.lay(&piece);
             }
         }
+    }
+
+    /// Lays the passes of a layer and compares what stands with what is wanted there.
+    pub fn add(&mut self, layer: &Layer) {
+        self.layer_height = Some(layer.height);
+        let plate = *self.plate.get_or_insert(layer.z - layer.height);
+        self.weld(&layer.passes);
         let rim = RIM * self.settings.nominal.bead.width;
         let beside = DepositSettings { machining_allowance: rim, ..self.settings };
         let mask = Mask::new(&layer.islands, &beside, &self.grid);

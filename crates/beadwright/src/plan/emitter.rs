@@ -75,7 +75,7 @@ impl<S: Sink> Emitter<'_, S> {
         layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
         self.metrics.add(&layer);
         if let Some(grown) = &mut self.grown {
-            grown.add(&welded(&layer, self.profile));
+            grown.weld(&welded(&layer, self.profile).passes);
         }
         self.sink.layer(layer)
     }

@@ -100,7 +100,7 @@ fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
         layer.height = needed(&layer, &below, &region, profile)?;
         layer.z = bottom + layer.height;
         share::share(&mut layer, Some(&below), profile);
-        below.add(&layer);
+        below.weld(&layer.passes);
     }
     Some(layer.height)
 }
