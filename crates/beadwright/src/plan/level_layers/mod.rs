@@ -91,7 +91,7 @@ const ON: usize = 6;
 /// How high a layer is whose beads hold what they need once it lies on others like it; `None` for one without beads.
 fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
     let (region, bounds) = (share::region(&layer, profile), layer::bounds(std::slice::from_ref(&layer))?);
-    let mut below = Stack::new(&bounds, deposit_settings(profile));
+    let mut below = Stack::new(&bounds, deposit_settings(profile).fitted_to(&bounds, ON));
     let passes = layer.passes.clone();
     for _ in 0..ON {
         let bottom = layer.z;

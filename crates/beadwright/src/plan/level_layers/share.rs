@@ -2,7 +2,7 @@
 
 use super::rim::Rim;
 use crate::deposit::field::Grid;
-use crate::deposit::{Nominal, RIM, Stack};
+use crate::deposit::{MOST_POINTS, Nominal, RIM, Stack};
 use crate::fill::sound;
 use crate::layer::{self, Layer};
 use crate::pass::{Along, Pass, PassKind, Segment};
@@ -24,7 +24,7 @@ const EVEN: f64 = 0.5;
 const STRAIGHT: f64 = 0.006;
 /// A place belongs to a pass at most this far away, in widths.
 const REACH: f64 = 0.75;
-/// Grid points across a bead.
+/// Grid points across a bead, if they are not more than [`MOST_POINTS`].
 const ACROSS: f64 = 8.0;
 /// Of what the metal below lacks, or has too much, a layer makes good this part.
 const GAIN: f64 = 0.5;
@@ -173,7 +173,9 @@ fn strips<'a>(
     width: f64,
 ) -> Vec<f64> {
     let Some(bounds) = layer::bounds(std::slice::from_ref(layer)) else { return Vec::new() };
-    let (grid, reach) = (Grid::covering(&bounds, 0.0, width / ACROSS), REACH * width);
+    let area = bounds.size().x * bounds.size().y;
+    let step = (width / ACROSS).max((area / MOST_POINTS).sqrt());
+    let (grid, reach) = (Grid::covering(&bounds, 0.0, step), REACH * width);
     let mut nearest = vec![(f64::INFINITY, 0_usize); grid.points()];
     let mut halves = Vec::new();
     for (index, piece) in pieces.enumerate() {
