@@ -1,5 +1,5 @@
-//! A layer as an SVG drawing to scale, for laser cutters, drawing programs and documents: outlines as hairlines, beads as
-//! strokes as wide as they are. (The pictures of the report have legends and marks; these have none.)
+//! A layer as an SVG drawing to scale, for laser cutters, drawing programs and documents: outlines and the middles of beads as
+//! hairlines, beads as strokes as wide as they are. (The pictures of the report have legends and marks; these have none.)
 
 use super::{ExportError, LayerFormat};
 use crate::layer::Layer;
@@ -11,7 +11,7 @@ use planar::{Bounds, Polygon, Ring};
 pub(super) const FORMAT: LayerFormat =
     LayerFormat { extension: "svg", purpose: "a layer's outlines and passes to scale, for drawing programs", write };
 
-/// Width of outlines, mm.
+/// Width of outlines and middles, mm.
 const HAIRLINE: f64 = 0.1;
 
 fn colour(kind: PassKind) -> &'static str {
@@ -37,14 +37,15 @@ pub(super) fn drawing(layer: &Layer) -> String {
     let [width, height] = [size.x, size.y].map(|v| fixed(v, 4));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{} {} {width} {height}\">\n\
-         <title>Layer {}, z {} mm</title>\n<g id=\"passes\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" \
-         stroke-opacity=\"0.6\">\n",
+         <title>Layer {}, z {} mm</title>\n<g id=\"passes\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
         fixed(left, 4),
         fixed(top, 4),
         layer.index + 1,
         fixed(layer.z, 4)
     );
-    layer.passes.iter().for_each(|pass| beads(&mut svg, pass));
+    layer.passes.iter().for_each(|pass| bead(&mut svg, pass));
+    svg.push_str(&format!("</g>\n<g id=\"middles\" fill=\"none\" stroke-width=\"{HAIRLINE}\">\n"));
+    layer.passes.iter().for_each(|pass| middle(&mut svg, pass));
     svg.push_str(&format!("</g>\n<g id=\"outlines\" fill=\"none\" stroke=\"#000000\" stroke-width=\"{HAIRLINE}\">\n"));
     for island in &layer.islands {
         svg.push_str("<path d=\"");
@@ -58,19 +59,25 @@ pub(super) fn drawing(layer: &Layer) -> String {
     svg
 }
 
-/// A pass: one stroke for each stretch of one width.
-fn beads(svg: &mut String, pass: &Pass) {
+/// A pass as wide as its bead: one stroke for each stretch of one width, in a group, so that they do not darken each other.
+fn bead(svg: &mut String, pass: &Pass) {
+    let (name, colour) = (pass.kind.name(), colour(pass.kind));
+    svg.push_str(&format!("<g class=\"{name}\" stroke=\"{colour}\" opacity=\"0.6\">\n"));
     let segments: Vec<Segment> = pass.segments().collect();
     for stretch in segments.chunk_by(|a, b| a.width == b.width) {
-        let (colour, width) = (colour(pass.kind), fixed(stretch[0].width, 4));
-        svg.push_str(&format!(
-            "<path class=\"{}\" stroke=\"{colour}\" stroke-width=\"{width}\" d=\"",
-            pass.kind.name()
-        ));
+        svg.push_str(&format!("<path stroke-width=\"{}\" d=\"", fixed(stretch[0].width, 4)));
         let points = std::iter::once(stretch[0].from).chain(stretch.iter().map(|segment| segment.to));
         line(svg, points.map(|p| p.truncate()));
         svg.push_str("\"/>\n");
     }
+    svg.push_str("</g>\n");
+}
+
+/// The way of the torch along a pass.
+fn middle(svg: &mut String, pass: &Pass) {
+    svg.push_str(&format!("<path stroke=\"{}\" d=\"", colour(pass.kind)));
+    line(svg, pass.line().into_iter());
+    svg.push_str("\"/>\n");
 }
 
 /// The data of a path through points; y runs downwards.

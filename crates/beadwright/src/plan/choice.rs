@@ -4,7 +4,7 @@ use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
 use crate::profile::{Foretell, Profile};
-use crate::slice::{Slab, Slicer, Surface};
+use crate::slice::{Slab, Slice, Slicer, Surface};
 use crate::task::{Cancelled, Task};
 use planar::{Join, Polygon, Region};
 
@@ -21,9 +21,9 @@ pub struct Choice {
 const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
-/// Walls are thicker than the bead where they hold this many of its widths,
+/// A wall is thicker than the bead from this many of its widths on.
 const THICKER: f64 = 1.1;
-/// if this fraction of their area does.
+/// Walls count as thicker than the bead if this fraction of their area is.
 const MOSTLY: f64 = 0.8;
 
 /// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the
@@ -77,17 +77,17 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
     let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let settings = profile.fill_settings(0);
-    let (double, thicker) = (settings.double() / 2.0, THICKER * profile.bead.width / 2.0);
     let slices = slicer.all(task)?;
-    let (mut all, mut twice, mut thick) = (0.0, 0.0, 0.0);
-    for slice in &slices {
-        let region = Region::from_normalised(slice.islands.clone());
-        let holding = |radius: f64| region.offset(-radius, Join::ROUND).offset(radius, Join::ROUND).area();
-        all += region.area();
-        twice += holding(double);
-        thick += holding(thicker);
-    }
-    if all == 0.0 || twice > JUNCTIONS * all {
+    let all: f64 = slices.iter().map(Slice::area).sum();
+    // Area with room for a bead that wide.
+    let holding = |width: f64| -> f64 {
+        let room = |slice: &Slice| {
+            let region = Region::from_normalised(slice.islands.clone());
+            region.offset(-width / 2.0, Join::ROUND).offset(width / 2.0, Join::ROUND).area()
+        };
+        slices.iter().map(room).sum()
+    };
+    if all == 0.0 || holding(settings.double()) > JUNCTIONS * all {
         return Ok(None);
     }
     // Teeth and ribs that are thin in some place make no wall.
@@ -102,5 +102,6 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
             return Ok(None);
         }
     }
-    Ok(Some(if thick > MOSTLY * all { Walls::Thick } else { Walls::Thin }))
+    let thick = holding(THICKER * profile.bead.width) > MOSTLY * all;
+    Ok(Some(if thick { Walls::Thick } else { Walls::Thin }))
 }

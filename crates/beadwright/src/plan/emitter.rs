@@ -1,5 +1,5 @@
-//! Hands filled layers over: puts their passes in order and at their heights, keeps the limits of heat, and warns of what a layer
-//! cannot be welded on.
+//! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers on what stands
+//! below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};

@@ -18,13 +18,14 @@ pub struct LayersSection {
     #[serde(default)]
     pub fit: LayerFit,
     /// Whether layers of solids are as high as the metal of their passes fills their slices, a wide one `height`, end with the
-    /// part, and have the metal where the slice needs it: more in beads at the rim, less in beads between others; default
-    /// true. Without it, all layers are of one height and all beads alike, and a part with few beads side by side ends lower
+    /// part, and have the metal where the slice needs it: more in beads at the rim and where the model finds the layers below too
+    /// low, less in beads between others and where it finds them too high; default true. Without it, all layers are of one height and all beads alike, and a part with few beads side by side ends lower
     /// than planned.
     #[serde(default = "yes")]
     pub level: bool,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
-    /// thickness apart: `auto` (for the strategy `wall` only), `always` or `never`; default auto.
+    /// thickness apart: `auto` (for the strategy `wall` only, unless it was chosen for a solid whose walls are thicker than the
+    /// bead), `always` or `never`; default auto.
     #[serde(default)]
     pub foretell: Foretell,
 }

@@ -117,3 +117,27 @@ fn parquet_holds_the_table() {
         }
     }
 }
+
+#[test]
+fn a_drawing_shows_each_pass_as_one_bead_and_its_middle() {
+    let profile = profile_by("cmt-al2319-kuka", "loop");
+    let plan = planned("propeller", &profile);
+    let layer = &plan.layers[4];
+    let drawing = String::from_utf8((export::layer_format("svg").unwrap().write)(layer).unwrap()).unwrap();
+    let drawing = roxmltree::Document::parse(&drawing).unwrap();
+    let group = |id| drawing.descendants().find(|node| node.attribute("id") == Some(id)).unwrap();
+    let beads: Vec<_> = group("passes").children().filter(roxmltree::Node::is_element).collect();
+    assert_eq!(beads.len(), layer.passes.len());
+    // Pieces that were translucent by themselves would darken each other where they meet.
+    for bead in beads {
+        assert!(bead.attribute("opacity").is_some());
+        let pieces: Vec<_> = bead.children().filter(roxmltree::Node::is_element).collect();
+        assert!(pieces.len() > 10, "level layers have beads of many widths");
+        assert!(pieces.iter().all(|piece| !piece.attributes().any(|a| a.name().contains("opacity"))));
+    }
+    let middles = group("middles").children().filter(roxmltree::Node::is_element);
+    let points = |node: roxmltree::Node<'_, '_>| node.attribute("d").unwrap().matches(['M', 'L']).count();
+    let drawn: Vec<usize> = middles.map(points).collect();
+    let expected: Vec<usize> = layer.passes.iter().map(|pass| pass.line().len()).collect();
+    assert_eq!(drawn, expected);
+}

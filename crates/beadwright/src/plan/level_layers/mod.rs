@@ -85,15 +85,15 @@ fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec
     Layer { height, islands, passes, ..Layer::default() }
 }
 
-/// Layers of a kind that are laid on each other to see how high one is.
-const ON: usize = 6;
+/// A layer is laid so many times on itself to see how high it is.
+const REPEATED: usize = 6;
 
 /// How high a layer is whose beads hold what they need once it lies on others like it; `None` for one without beads.
 fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
     let (region, bounds) = (share::region(&layer, profile), layer::bounds(std::slice::from_ref(&layer))?);
-    let mut below = Stack::new(&bounds, deposit_settings(profile).fitted_to(&bounds, ON));
+    let mut below = Stack::new(&bounds, deposit_settings(profile).fitted_to(&bounds, REPEATED));
     let passes = layer.passes.clone();
-    for _ in 0..ON {
+    for _ in 0..REPEATED {
         let bottom = layer.z;
         layer.passes.clone_from(&passes);
         layer.z = bottom + layer.height;
@@ -109,8 +109,9 @@ fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
 /// narrower and leave voids; layers that are a little too high have humps, which the next layer remelts.
 const FILLED: f64 = 0.35;
 
-/// How high a layer is on what lies below so that its beads hold what they need: between the height to which most of them fill it
-/// ([`FILLED`]) and the one at which it gets all of its metal, though no bead holds more or less than it can.
+/// How high a layer is on what lies below: half way from the height to which most of its beads fill it ([`FILLED`]) to the lowest
+/// at which no more metal is laid than is needed, since a bead can hold no less than 1 / [`share::MOST`] of its own. If more is laid
+/// at the former, it is as much higher as takes it up.
 fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
     let shares = share::shares(layer, Some(below), region, profile);
     let mut pieces: Vec<(f64, f64)> =
@@ -123,7 +124,7 @@ fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> O
         sum >= FILLED * all
     })?;
     let (least, most) = (pieces.first()?.0, pieces.last()?.0);
-    // What beads that can hold no less have too much, if those that need `need` hold what they do as planned.
+    // Metal laid beyond what is needed, in a layer so high that beads which need `need` hold what they do as planned.
     let surplus = |need: f64| -> f64 {
         let laid = |needed: f64| (needed / need).clamp(share::MOST.recip(), share::MOST);
         pieces.iter().map(|(needed, held)| held * (laid(*needed) - needed / need)).sum()
@@ -157,15 +158,20 @@ fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
 
 /// Layers up to this factor higher than usual count as usual.
 const USUAL: f64 = 1.03;
+/// Rather than one more layer, usual ones are stretched by a rest of up to this part of a layer,
+const STRETCHED: f64 = 0.8;
+/// and others by one of up to this part.
+const STRETCHED_LESS: f64 = 0.3;
 
 /// Layers of about `usual` that rise as `rise` says of their middle, stretched or pressed to end at `top` (all mm).
 fn stacked(top: f64, usual: f64, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let (mut slabs, mut z) = (Vec::new(), 0.0);
     while slabs.len() < MAX_LAYERS {
         let height = rise(z + usual / 2.0);
-        // The number of layers that comes nearest, but layers about as high as usual sooner than others: lower ones leave voids
-        // between their beads, higher ones are overfilled. One more where they would be stretched too far.
-        let rest = if top <= USUAL * usual * slabs.len() as f64 { 0.8 } else { 0.3 };
+        // Layers about as high as usual sooner than others: lower ones leave voids between their beads, higher ones are
+        // overfilled.
+        let is_usual = top <= USUAL * usual * slabs.len() as f64;
+        let rest = if is_usual { STRETCHED } else { STRETCHED_LESS };
         if !slabs.is_empty() && z + rest * height >= top && THICKNESS.end() * z >= top {
             break;
         }
