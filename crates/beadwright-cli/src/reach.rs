@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let source = program::Source::open(path)?;
     let Some(plan) = source.plan() else { bail!("{}: give the plan.json of the program", path.display()) };
     let profile = source.profile(&arguments.wanted)?;
-    let track = Track::of(&plan.layers, &profile);
+    let track = profile.track(&plan.layers);
     if track.stops.is_empty() {
         bail!("{}: the plan has no passes.", path.display());
     }
@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let suggestion = arguments.suggest.then(|| robot::suggest(&cell, place, &track));
     let better = suggestion.flatten();
     if let Some(page) = &arguments.output {
-        let page_text = robot::page::page(&plan.header.part, &cell, &reach, better.as_ref()).html();
+        let page_text = beadwright::report::reach::page(&plan.header.part, &cell, &reach, better.as_ref()).html();
         write_file(page, page_text.as_bytes())?;
     }
     let trajectory = arguments.trajectory.as_ref().zip(Trajectory::of(&cell, &reach));

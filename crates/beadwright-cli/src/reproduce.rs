@@ -3,7 +3,7 @@
 use crate::progress;
 use anyhow::Context;
 use beadwright::files::Folder;
-use beadwright::reproduce::PAPERS;
+use beadwright_papers::PAPERS;
 use std::io::Write;
 use std::path::PathBuf;
 

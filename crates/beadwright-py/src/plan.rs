@@ -137,7 +137,7 @@ impl Plan {
 
     /// The bytes of a file in a format for other programs, by its ending.
     fn export(&self, py: Python<'_>, extension: &str) -> PyResult<Cow<'static, [u8]>> {
-        let known = || export::FORMATS.map(|format| format.extension).join(", ");
+        let known = || export::FORMATS.iter().map(|format| format.extension).collect::<Vec<_>>().join(", ");
         let format = export::format(extension)
             .ok_or_else(|| PyValueError::new_err(format!("\"{extension}\" is no format: {} are.", known())))?;
         let plan = &self.0;

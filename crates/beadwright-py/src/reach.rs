@@ -44,7 +44,7 @@ pub(crate) fn reach(
     let no_file = |name: &str| urdf.ok_or_else(|| format!("{name} is not there"));
     let cell = Cell::parse_with(cell, no_file).refuse(Some(place))?;
     let planned = &plan.0;
-    let track = Track::of(&planned.layers, &planned.profile);
+    let track = planned.profile.track(&planned.layers);
     if track.stops.is_empty() {
         return Err(raise("the plan has no passes.", Some(&planned.header.part), None));
     }
@@ -67,7 +67,7 @@ fn walked(name: &str, cell: &Cell, place: PartPlace, track: &Track, suggest: boo
         "torch_angle": reach.turning.program_angle(), "linear_axis": station, "table": table, "points": reach.poses.len(), "findings": findings,
         "suggestion": better,
     });
-    let html = library::page::page(name, &cell, &reach, better.as_ref()).html();
+    let html = beadwright::report::reach::page(name, &cell, &reach, better.as_ref()).html();
     Reach { values, trajectory: Trajectory::of(&cell, &reach), html }
 }
 

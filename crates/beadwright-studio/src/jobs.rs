@@ -14,7 +14,7 @@ pub use place::receive;
 
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, Reach, Track};
+use beadwright::robot::{self, Cell, Reach};
 use eframe::egui::Context;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -100,7 +100,7 @@ pub fn reach(
 ) -> Job<Result<Reach, String>> {
     Job::start(ctx, move || {
         let cell = Cell::built_in(&cell).map_err(|error| error.to_string())?;
-        let track = Track::of(&layers, &profile);
+        let track = profile.track(&layers);
         Ok(robot::reach(&cell, cell.part, &track))
     })
 }

@@ -231,5 +231,5 @@ fn there_and_back(bencher: Bencher, cell: &str) {
 fn propeller_track() -> Track {
     let (mesh, profile) = propeller();
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
-    Track::of(&plan.layers, &profile)
+    profile.track(&plan.layers)
 }

@@ -21,60 +21,33 @@
 //! this one are in `examples/`.
 
 pub mod adapt;
-pub mod bead;
 pub mod build;
 pub mod check;
 pub mod compare;
-pub mod deposit;
-pub mod deviation;
-pub mod dialect;
-pub mod example;
 pub mod export;
 pub mod files;
-pub mod fill;
-pub mod finding;
-pub mod heat;
-pub mod model;
 pub mod plan;
-pub mod process;
 pub mod profile;
-pub mod program;
 pub mod report;
-pub mod robot;
 pub mod simulate;
-pub mod slice;
 
 // Used by the modules above, and open to who needs them.
 #[doc(hidden)]
-pub mod curve;
-#[doc(hidden)]
-pub mod layer;
-#[doc(hidden)]
-pub mod limit;
-#[doc(hidden)]
 pub mod metrics;
 #[doc(hidden)]
-pub mod motion;
-#[doc(hidden)]
-pub mod number;
-#[doc(hidden)]
-pub mod order;
-#[doc(hidden)]
-pub mod pass;
-#[doc(hidden)]
 pub mod plan_file;
-mod random;
+
 #[doc(hidden)]
-pub mod reproduce;
+pub use bead_part::{curve, task, warning};
+pub use bead_part::{deviation, example, finding, model, slice, text};
+use bead_plan::random;
+pub use bead_plan::{bead, deposit, fill, heat, process};
 #[doc(hidden)]
-pub mod task;
+pub use bead_plan::{layer, limit, motion, order, pass, weld};
+pub use bead_program::{dialect, program};
 #[doc(hidden)]
-pub mod template;
-pub mod text;
-#[doc(hidden)]
-pub mod warning;
-#[doc(hidden)]
-pub mod weld;
+pub use bead_program::{number, template};
+pub use bead_robot as robot;
 
 pub use crate::bead::Bead;
 pub use crate::check::check;

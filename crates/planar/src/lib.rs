@@ -64,3 +64,7 @@ pub use offset::Join;
 pub use ring::{Bounds, FillRule, Polygon, Region, Ring};
 pub use rows::PerRow;
 pub use stroke::buffer;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -3,7 +3,7 @@
 use beadwright::model::Model;
 use beadwright::profile::Profile;
 use beadwright::robot::body::Solid;
-use beadwright::robot::{self, Cell, Track};
+use beadwright::robot::{self, Cell};
 use beadwright::task::Task;
 use beadwright_studio::arm::{Place, stand};
 use glam::DVec3;
@@ -14,7 +14,7 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
     let model = Model::read(&beadwright::example::find("star").unwrap().stl(), &Task::new()).unwrap();
     let part = model.place(&Default::default(), None, profile.bead.width).unwrap();
     let plan = beadwright::plan::plan("star", part.mesh().unwrap(), &profile, &Task::new()).unwrap();
-    let track = Track::of(&plan.layers, &profile);
+    let track = profile.track(&plan.layers);
     for (name, _) in robot::cell::BUILT_IN {
         let cell = Cell::built_in(name).unwrap();
         let reach = robot::reach(&cell, cell.part, &track);
@@ -48,6 +48,6 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
 fn nothing_stands_where_there_is_no_pass() {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let cell = Cell::built_in("kuka-kr20-r1810").unwrap();
-    let reach = robot::reach(&cell, cell.part, &Track::of::<beadwright::layer::Layer>(&[], &profile));
+    let reach = robot::reach(&cell, cell.part, &profile.track::<beadwright::layer::Layer>(&[]));
     assert_eq!(stand(&cell, &reach, &Place { layer: 0, pass: 0, at: DVec3::ZERO }), None);
 }

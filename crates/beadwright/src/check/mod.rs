@@ -182,7 +182,7 @@ pub fn grown<L: Borrow<Layer>>(
 }
 
 /// Where passes lie, seen from above.
-pub(crate) fn extent<L: Borrow<Layer>>(layers: &[L]) -> Option<Bounds> {
+fn extent<L: Borrow<Layer>>(layers: &[L]) -> Option<Bounds> {
     let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
     Bounds::of(points.filter(|p| p.is_finite()).map(|p| p.truncate()))
 }

@@ -2,17 +2,19 @@
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `csv`, `parquet` | spreadsheets, pandas; `table` has their columns |
+//! | `csv`, `parquet` (feature `parquet`) | spreadsheets, pandas; `table` has their columns |
 //! | `vtp` | ParaView, VTK, pyvista |
 //! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
 //! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
-//! | `dxf`, `svg`, `png` | CAD and drawing programs, documents, layer by layer |
+//! | `dxf`, `svg`, `png` (feature `png`) | CAD and drawing programs, documents, layer by layer |
 //! | `walk` | what all of them write: the passes as they are welded, with times and waits |
 
 mod csv;
 mod dxf;
 mod glb;
+#[cfg(feature = "parquet")]
 mod parquet;
+#[cfg(feature = "png")]
 mod png;
 mod stl;
 mod svg;
@@ -62,6 +64,7 @@ pub enum ExportError {
     #[error("the archive cannot be written: {0}")]
     Archive(#[from] zip::result::ZipError),
     /// A Parquet table cannot be made.
+    #[cfg(feature = "parquet")]
     #[error("the table cannot be written: {0}")]
     Table(#[from] ::parquet::errors::ParquetError),
     /// More than the format can hold.
@@ -71,6 +74,7 @@ pub enum ExportError {
         gigabytes: f64,
     },
     /// A picture cannot be drawn.
+    #[cfg(feature = "png")]
     #[error("the picture cannot be drawn: {0}")]
     Picture(String),
     /// The content of an archive cannot be packed.
@@ -79,8 +83,15 @@ pub enum ExportError {
 }
 
 /// All of them.
-pub const FORMATS: [Format; 6] =
-    [csv::FORMAT, parquet::FORMAT, vtp::FORMAT, toolpath::FORMAT, stl::FORMAT, glb::FORMAT];
+pub const FORMATS: &[Format] = &[
+    csv::FORMAT,
+    #[cfg(feature = "parquet")]
+    parquet::FORMAT,
+    vtp::FORMAT,
+    toolpath::FORMAT,
+    stl::FORMAT,
+    glb::FORMAT,
+];
 
 /// The format of files with this ending.
 pub fn format(extension: &str) -> Option<&'static Format> {
@@ -98,7 +109,12 @@ pub struct LayerFormat {
 }
 
 /// All of them.
-pub const LAYER_FORMATS: [LayerFormat; 3] = [dxf::FORMAT, svg::FORMAT, png::FORMAT];
+pub const LAYER_FORMATS: &[LayerFormat] = &[
+    dxf::FORMAT,
+    svg::FORMAT,
+    #[cfg(feature = "png")]
+    png::FORMAT,
+];
 
 /// The format of layers in files with this ending.
 pub fn layer_format(extension: &str) -> Option<&'static LayerFormat> {

@@ -27,7 +27,6 @@ pub use layers::{Foretell, LayersSection};
 pub use one_loop::LoopSection;
 pub use order::OrderSection;
 pub use read::ProfileError;
-pub(crate) use read::{explain, line_of, line_of_key, nearest};
 pub use slice::SliceSection;
 pub use wall::WallSection;
 
@@ -38,16 +37,19 @@ use crate::dialect::reading::Options;
 use crate::dialect::{Job, Sections};
 use crate::fill::FillSettings;
 use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
+use crate::layer::Layer;
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
 use crate::pass::PassKind;
 use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
+use crate::robot::Track;
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
 
 /// The text of a profile for plasma on a CNC: one process, and the flavour of G-code of a control.
 macro_rules! plasma_304 {
@@ -411,6 +413,11 @@ impl Profile {
     /// The programmer that makes the instructions of layers.
     pub fn programmer(&self) -> Programmer {
         Programmer::of(&self.weld_settings(), &self.program, self.dry_run)
+    }
+
+    /// The path of the torch through layers, as programs made with the profile follow it.
+    pub fn track<L: Borrow<Layer>>(&self, layers: &[L]) -> Track {
+        Track::of(layers, self.programmer(), self.travel.speed)
     }
 
     /// What a program of a part needs besides its layers. In a dry run the part's name says so at its beginning, since

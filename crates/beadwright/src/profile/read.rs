@@ -5,6 +5,7 @@ use super::missing::missing;
 use super::{BUILT_IN, Profile, limits};
 use crate::dialect::{self, Sections};
 use crate::limit::Broken;
+use crate::text::toml::{explain, line_of, line_of_key, nearest};
 use serde::Deserialize as _;
 use std::path::PathBuf;
 use toml::Spanned;
@@ -220,45 +221,4 @@ pub(super) fn unknown_name(name: &str) -> ProfileError {
         None => format!("Known: {}. A path to a TOML file is taken too.", known.join(", ")),
     };
     ProfileError::UnknownName { name: name.to_owned(), hint }
-}
-
-/// The line, counted from 1, that contains a byte of a text.
-pub(crate) fn line_of(text: &str, byte: usize) -> usize {
-    text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
-}
-
-/// The line that contains a key such as `bead.width`.
-pub(crate) fn line_of_key(text: &str, key: &str) -> usize {
-    let Ok(root) = toml::de::DeTable::parse(text) else { return 1 };
-    let (mut table, mut at) = (Some(root.get_ref()), 0);
-    for part in key.split('.') {
-        let Some((key, value)) = table.and_then(|t| t.iter().find(|(k, _)| k.get_ref() == part)) else { break };
-        at = key.span().start;
-        table = value.get_ref().as_table();
-    }
-    line_of(text, at)
-}
-
-/// Turns the parser's message into a sentence and finds the nearest of the words it expected.
-pub(crate) fn explain(message: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
-        let (kind, got) =
-            (if message.starts_with("unknown field") { "key" } else { "value" }, quoted.next().unwrap_or(""));
-        let known: Vec<&str> = quoted.collect();
-        return match nearest(got, known.iter().copied()) {
-            Some(near) => format!("unknown {kind} \"{got}\". Did you mean \"{near}\"?"),
-            None => format!("unknown {kind} \"{got}\". Possible here: {}.", known.join(", ")),
-        };
-    }
-    if message.starts_with("missing field") {
-        return format!("the key \"{}\" is missing here.", quoted.next().unwrap_or(""));
-    }
-    format!("{message}.")
-}
-
-/// The most similar of the known words, if any is similar enough.
-pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let scored = known.into_iter().map(|k| (strsim::jaro_winkler(word, k), k));
-    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
 }

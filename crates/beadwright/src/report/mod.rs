@@ -11,6 +11,7 @@
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
 //! | [`overhang`] | faces that hang over, seen from below |
+//! | [`reach`] | joint angles and margins over a program |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
 //! | `layers.js`, `layout.js`, `heat.js`, `colour.js` | reading layers, those of the page, height fields, what beads are coloured by |
@@ -23,6 +24,7 @@ pub mod bead_window;
 pub mod encode;
 pub mod overhang;
 pub mod plot;
+pub mod reach;
 pub mod rows;
 pub mod sheet;
 pub mod sketch;

@@ -4,7 +4,7 @@
 use crate::common;
 
 use beadwright::robot::cell::BUILT_IN;
-use beadwright::robot::{self, Arm, Cell, Frame, PartPlace, Shape, Track};
+use beadwright::robot::{self, Arm, Cell, Frame, PartPlace, Shape};
 use common::{planned, profile};
 use glam::{DMat4, DQuat, DVec3};
 
@@ -215,7 +215,7 @@ fn beyond_its_reach_an_arm_is_told_how_far() {
 #[test]
 fn the_propeller_is_welded_by_the_ur10e() {
     let plan = planned("propeller", &profile("cmt-al2319-kuka"));
-    let track = Track::of(&plan.layers, &profile("cmt-al2319-kuka"));
+    let track = profile("cmt-al2319-kuka").track(&plan.layers);
     let cell = ur10e();
     let reach = robot::reach(&cell, cell.part, &track);
     assert!(reach.is_reachable() && reach.findings.is_empty(), "{:?}", reach.findings);

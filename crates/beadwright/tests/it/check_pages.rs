@@ -57,7 +57,7 @@ fn the_page_names_every_check_and_warning() {
 /// The kinds of the list are those of the source, with the names that `metrics.json` has.
 #[test]
 fn no_kind_of_warning_is_missing() {
-    let source = include_str!("../../src/warning.rs");
+    let source = include_str!("../../../part/src/warning.rs");
     let variants = source.split_once("pub enum WarningKind {\n").unwrap().1.split_once("\n}").unwrap().0;
     let variants: BTreeSet<String> = variants
         .lines()

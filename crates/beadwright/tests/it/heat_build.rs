@@ -280,3 +280,26 @@ fn a_plan_is_as_warm_afterwards() {
     println!("{} passes, at most {worst:.1} K apart, {ahead:.0} °C ahead", passes.count());
     assert!(worst < 8.0 && ahead < 155.0, "{worst} {ahead}");
 }
+
+#[test]
+fn longer_steps_far_from_the_torch_change_next_to_nothing() {
+    let profile = Profile::built_in("cmt-steel-robots").unwrap();
+    let plan = beadwright::plan("vase", &example::find("vase").unwrap().mesh(), &profile, &Task::new()).unwrap();
+    let points = plan.layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let bounds = Bounds::of(points).unwrap();
+    let tops: Vec<(f64, f64)> = plan.layers.iter().map(|l| (l.z, l.height)).collect();
+    let starts = |every_step_short: bool| {
+        let settings = profile.heat_settings().unwrap();
+        let mut build = Build::new(&settings, &profile.weld_settings(), &bounds, &tops);
+        if every_step_short {
+            build.be_patient(0.0);
+        }
+        let passes = plan.layers.iter().take(60).flat_map(|layer| build.layer(layer).passes);
+        passes.map(|pass| pass.start).collect::<Vec<f64>>()
+    };
+    let (eager, patient) = (starts(true), starts(false));
+    assert!(eager.len() > 50);
+    let worst = eager.iter().zip(&patient).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+    println!("longer steps far away change starts by {:.2} % at most", 100.0 * worst);
+    assert!(worst < 0.03, "{worst}");
+}

@@ -86,6 +86,5 @@ mod tour;
 mod trajectory;
 mod wall;
 mod wall_curves;
-mod wall_paper;
 mod wall_paths;
 mod wall_trails;

@@ -47,7 +47,7 @@ fn track(points: &[[f64; 3]]) -> Track {
     };
     let layer = Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
     // Travels 20 mm above at 100 mm/s.
-    Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap())
+    Profile::built_in("cmt-al2319-kuka").unwrap().track(&[layer])
 }
 
 fn square() -> Track {
@@ -299,7 +299,7 @@ fn the_part_as_far_as_it_is_welded_is_hit() {
         let (post, foot) = (line(0.0, 150.0), line(beside, 2.0));
         let passes = if post_first { vec![post, foot] } else { vec![foot, post] };
         let layer = Layer { index: 0, z: 150.0, height: 2.0, passes, ..Layer::default() };
-        let track = Track::of(&[layer], &Profile::built_in("cmt-al2319-kuka").unwrap());
+        let track = Profile::built_in("cmt-al2319-kuka").unwrap().track(&[layer]);
         hits(&robot::reach(&full, full.part, &track))
     };
     let found = welded(20.0, true);
@@ -333,7 +333,7 @@ fn propeller() -> Track {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let mesh = example::find("propeller").unwrap().mesh();
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
-    Track::of(&plan.layers, &profile)
+    profile.track(&plan.layers)
 }
 
 #[test]
@@ -592,10 +592,10 @@ fn long_moves_are_divided_and_keep_their_time() {
 #[test]
 fn the_page_holds_findings_and_plots() {
     let reach = robot::reach(&kuka(), kuka().part, &square());
-    let page = robot::page::page("square", &kuka(), &reach, None).html();
+    let page = beadwright::report::reach::page("square", &kuka(), &reach, None).html();
     assert!(page.contains("can be welded by kuka-kr20-r1810") && page.matches("<svg").count() == 3);
     let far = robot::reach(&kuka(), place(3000.0, 0.0, 0.0, 0.0), &square());
-    let page = robot::page::page("square", &kuka(), &far, None).html();
+    let page = beadwright::report::reach::page("square", &kuka(), &far, None).html();
     assert!(page.contains("cannot be welded") && page.contains("out of reach"));
 }
 

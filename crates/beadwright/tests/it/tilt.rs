@@ -6,7 +6,7 @@ use beadwright::dialect;
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, Track};
+use beadwright::robot::{self, Cell};
 use common::with_all_dialects;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use planar::{Polygon, Ring};
@@ -180,7 +180,7 @@ fn reach_leans_and_turns_too() {
     let mut profile = leaning(1.0, 0.0);
     for side in [None, Some(180.0)] {
         profile.program.table_side = side;
-        let reach = robot::reach(&cell, cell.part, &Track::of(&layers, &profile));
+        let reach = robot::reach(&cell, cell.part, &profile.track(&layers));
         let part_from_base = cell.part.base_from_part().inverse();
         let (mut leans, mut far) = (0.0_f64, 0.0_f64);
         for (stop, pose) in reach.reached().filter(|(stop, _)| stop.arc) {

@@ -9,7 +9,7 @@ use beadwright::layer::Layer;
 use beadwright::pass::PassKind;
 use beadwright::pass::{Along, Pass};
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, Track, part_from_tool};
+use beadwright::robot::{self, Cell, part_from_tool};
 use common::with_all_dialects;
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::collections::BTreeMap;
@@ -112,7 +112,7 @@ fn a_leaning_torch_keeps_its_wire() {
 fn the_angle_of_reach_is_what_the_program_has() {
     for name in ["kuka-kr20-r1810", "abb-irb1410"] {
         let cell = Cell::built_in(name).unwrap();
-        let reach = robot::reach(&cell, cell.part, &Track::of(&job(), &Profile::built_in("cmt-al2319-kuka").unwrap()));
+        let reach = robot::reach(&cell, cell.part, &Profile::built_in("cmt-al2319-kuka").unwrap().track(&job()));
         let angle = reach.turning.program_angle().unwrap();
         assert!((-180.0..=180.0).contains(&angle) && reach.turning.range.0 == reach.turning.range.1);
         let mut profile = with_all_dialects("cmt-steel-robots");

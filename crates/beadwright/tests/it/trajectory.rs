@@ -2,7 +2,7 @@
 
 use crate::common;
 
-use beadwright::robot::{self, Cell, Track, Trajectory};
+use beadwright::robot::{self, Cell, Trajectory};
 use common::{planned, profile};
 
 #[test]
@@ -10,7 +10,7 @@ fn the_arm_stands_where_the_torch_is() {
     for (cell, part) in [("kuka-kr20-r1810", "cross"), ("abb-irb1410", "star")] {
         let (cell, profile) = (Cell::built_in(cell).unwrap(), profile("cmt-al2319-kuka"));
         let plan = planned(part, &profile);
-        let track = Track::of(&plan.layers[..2], &profile);
+        let track = profile.track(&plan.layers[..2]);
         let reach = robot::reach(&cell, cell.part, &track);
         let trajectory = Trajectory::of(&cell, &reach).unwrap();
         assert!(trajectory.points.len() > track.stops.len() / 2);

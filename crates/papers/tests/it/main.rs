@@ -1,0 +1,5 @@
+//! All tests of the papers as one program: `cargo test -p beadwright-papers --test it FILE::` runs one file.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
+
+mod b_fdm_order;
+mod d_thin_wall;

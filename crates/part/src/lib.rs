@@ -1,0 +1,22 @@
+//! Parts for weld deposition: what a file describes, repaired, and its level slices. Nothing here knows of beads or machines.
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`curve`] | NURBS curves, fits and lengths |
+//! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
+//! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
+//! | [`deviation`] | signed distances of measured points to a mesh |
+//! | [`example`] | parametric example parts |
+//! | [`finding`], [`warning`] | what is wrong or doubtful, and what was lost or repaired |
+//! | [`task`] | progress and cancelling |
+//! | [`text`] | encodings and line ends |
+
+pub mod curve;
+pub mod deviation;
+pub mod example;
+pub mod finding;
+pub mod model;
+pub mod slice;
+pub mod task;
+pub mod text;
+pub mod warning;

@@ -1,0 +1,132 @@
+//! A layer: the outlines of a slice, and the passes that fill it.
+
+use crate::pass::Pass;
+use bead_part::warning::Warning;
+use glam::{DVec2, DVec3};
+use planar::{Bounds, Join, Polygon, Region};
+use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
+
+/// How warm the metal is on which a pass is laid, °C.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Temperature {
+    /// Where the pass begins, just before.
+    pub start: f64,
+    /// Just ahead of the torch, mean along the pass.
+    pub mean: f64,
+}
+
+/// Where the arc stays lit from layer to layer: the turns of a helix, each the only pass of its layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Lit {
+    /// The pass goes on from that of the layer below.
+    pub before: bool,
+    /// It goes on in the layer above.
+    pub after: bool,
+}
+
+impl Lit {
+    /// The least metal of a piece of a turn, as a part of a whole bead's: with less the torch would be too fast.
+    pub const LEAST: f64 = 0.5;
+
+    /// Whether a layer is a turn of a helix: it rises from the layer below.
+    pub fn is_turn(self) -> bool {
+        self.before || self.after
+    }
+
+    /// Lets every layer know whether the arc of the one below goes on in it, as only that one says in files.
+    ///
+    /// # Errors
+    /// The index of a layer that then has not just one pass.
+    pub fn join(layers: &mut [Layer]) -> Result<(), usize> {
+        let goes_on: Vec<bool> = layers.iter().map(|layer| layer.lit.after).collect();
+        for (layer, before) in layers.iter_mut().zip(std::iter::once(false).chain(goes_on)) {
+            layer.lit.before = before;
+            if layer.lit.is_turn() && layer.passes.len() != 1 {
+                return Err(layer.index);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One layer, ready to be deposited.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Layer {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// Thickness, mm.
+    pub height: f64,
+    /// Outlines of the slice.
+    pub islands: Vec<Polygon>,
+    /// Passes in deposition order; the arc is off between them.
+    pub passes: Vec<Pass>,
+    /// Whether the arc burns before and after them.
+    pub lit: Lit,
+    /// Temperatures of the metal below each pass; empty where they were not computed.
+    pub temperatures: Vec<Temperature>,
+    /// Area of the slice, mm².
+    pub slice_area: f64,
+    /// Area that beads cover, mm².
+    pub planned_area: f64,
+    /// What was lost or mended here.
+    pub warnings: Vec<Warning>,
+}
+
+/// How many layers a part has, and where it lies.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Extent {
+    /// Number of layers.
+    pub layers: usize,
+    /// Lowest coordinates, mm.
+    pub low: DVec3,
+    /// Highest coordinates, mm.
+    pub high: DVec3,
+}
+
+impl Extent {
+    /// The box around the part, seen from above.
+    pub fn seen_from_above(&self) -> Bounds {
+        Bounds { min: self.low.truncate(), max: self.high.truncate() }
+    }
+
+    /// That of passes alone, without what their beads take beside and below them.
+    pub fn of<L: Borrow<Layer>>(layers: &[L]) -> Self {
+        let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
+        let bounds = points.fold(None, |bounds: Option<(DVec3, DVec3)>, &p| {
+            Some(bounds.map_or((p, p), |(low, high)| (low.min(p), high.max(p))))
+        });
+        let (low, high) = bounds.unwrap_or_default();
+        Self { layers: layers.len(), low, high }
+    }
+
+    /// Length, width and height, mm.
+    pub fn size(&self) -> DVec3 {
+        self.high - self.low
+    }
+}
+
+/// What layers cover, seen from above: their passes and outlines.
+pub fn bounds(layers: &[Layer]) -> Option<Bounds> {
+    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
+    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
+    Bounds::of(points.chain(outlines))
+}
+
+/// Where islands hang farther than `reach` (mm) beyond those below: area (mm²) and a place; smaller areas than half a bead's
+/// `width` squared do not count.
+pub fn overhang(below: &[Polygon], above: &[Polygon], reach: f64, width: f64) -> Option<(f64, DVec2)> {
+    /// Smaller areas do not count, in squared bead widths.
+    const SMALLEST: f64 = 0.5;
+    if below == above {
+        return None;
+    }
+    let [below, above] = [below, above].map(|islands| Region::from_normalised(islands.to_vec()));
+    let free = above.difference(&below.offset(reach, Join::ROUND));
+    let large = free.polygons().iter().filter(|p| p.area() > SMALLEST * width * width);
+    let area: f64 = large.clone().map(Polygon::area).sum();
+    let place = *large.clone().next()?.outer.points().first()?;
+    Some((area, place))
+}

@@ -1,0 +1,29 @@
+//! What is welded, and what comes of it: beads, passes and layers, fills and their order, the metal they lay and how hot it gets.
+//! Nothing here knows of profiles, robots or their languages; every stage has its settings in millimetres and seconds.
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`bead`] | width, height and stepover of beads, mass balance, measured beads |
+//! | [`process`] | wire, arc, speeds, gas, starts and stops |
+//! | [`motion`] | how long a path takes, with acceleration |
+//! | [`pass`], [`layer`] | a path in space with width and pace along it; a layer's slice and passes |
+//! | [`fill`] | an island becomes paths: one file a strategy |
+//! | [`order`] | the paths of a layer in sequence, with their start points |
+//! | [`deposit`] | layers become a height field, with its voids and humps |
+//! | [`weld`] | passes with start and stop, and the moves between them |
+//! | [`heat`] | temperatures before and along passes, and waits within a limit |
+//! | [`limit`] | the range of every number of a profile, with its reason |
+//! | [`random`] | seeded random numbers |
+
+pub mod bead;
+pub mod deposit;
+pub mod fill;
+pub mod heat;
+pub mod layer;
+pub mod limit;
+pub mod motion;
+pub mod order;
+pub mod pass;
+pub mod process;
+pub mod random;
+pub mod weld;

@@ -1,0 +1,56 @@
+//! Other speeds for some layers: `[[process.layers]]`.
+
+use super::Process;
+use crate::limit::Broken;
+use serde::{Deserialize, Serialize};
+
+/// Another speed for some layers, such as the first ones on a cold plate. The wire feed changes by the same factor, so the
+/// bead stays the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LayerProcess {
+    /// First layer, from 1.
+    pub from: usize,
+    /// Last layer.
+    pub to: usize,
+    /// Speed of the torch while the arc burns, mm/s.
+    pub deposition_speed: f64,
+    /// Arc current, A, for the heat input; default that of the process.
+    pub current: Option<f64>,
+    /// Job of the power source, `{{job}}` in templates; default that of the process.
+    pub job: Option<u32>,
+}
+
+impl Process {
+    /// The process as it is in the layer with an index: the first row that names it holds.
+    pub fn at_layer(&self, index: usize) -> Self {
+        let mut process = self.clone();
+        if let Some(row) = self.layers.iter().find(|row| (row.from..=row.to).contains(&(index + 1))) {
+            process.rate = row.deposition_speed / self.deposition_speed;
+            process.current = row.current.or(self.current);
+            process.job = row.job.unwrap_or(self.job);
+        }
+        process
+    }
+
+    /// The first row of layers that makes no sense.
+    pub fn broken(&self) -> Option<Broken> {
+        let (least, most) = (0.2 * self.deposition_speed, 5.0 * self.deposition_speed);
+        self.layers.iter().find_map(|row| {
+            let LayerProcess { from, to, deposition_speed: speed, current, .. } = *row;
+            let reason = if from == 0 || to < from {
+                "layers count from 1, and the last one comes after the first."
+            } else if !(least..=most).contains(&speed) {
+                "its deposition_speed must lie between a fifth and five times that of the process: the wire feed changes by \
+                 the same factor."
+            } else if !current.is_none_or(|current| (1e-3..=2000.0).contains(&current)) {
+                "its current must lie between 0.001 and 2000 A."
+            } else {
+                return None;
+            };
+            let value = format!("{{ from = {from}, to = {to}, deposition_speed = {speed} }}");
+            Some(Broken { key: "process.layers".to_owned(), value, reason: reason.to_owned() })
+        })
+    }
+}

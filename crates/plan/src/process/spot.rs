@@ -1,0 +1,72 @@
+//! The section `[spot]`: a dot, welded with the torch standing, for islands in which a bead has no room.
+//!
+//! The metal of a dot is that of the bead in the time for which the arc burns. It is a dome, half an ellipsoid of height h
+//! and radius a: V = 2/3 π a² h. A dot that is welded longer holds more metal at the same height, so its diameter goes
+//! with the root of the time.
+
+use crate::limit::{Limit, limits};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+/// A dot as it was welded in a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Spot {
+    /// For how long the arc burned, s, without the time that it takes to start.
+    pub time: f64,
+    /// How high the dot stands, mm.
+    pub height: f64,
+}
+
+impl Spot {
+    /// The limits of the numbers.
+    pub fn limits(&self) -> Vec<Limit> {
+        limits! {
+            "spot.time": self.time, 0.05, 10.0, "s", "a dot takes about as long as a bead takes for its width";
+            "spot.height": self.height, 0.2, 30.0, "mm", "a dot is about as high as a bead";
+        }
+    }
+
+    /// The dot of a process that lays `rate` mm³ of metal a second.
+    pub fn dot(&self, rate: f64) -> Dot {
+        let metal = rate * self.time;
+        Dot { time: self.time, metal, diameter: 2.0 * (1.5 * metal / (PI * self.height)).sqrt() }
+    }
+}
+
+/// A dot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dot {
+    /// For how long the arc burns, s.
+    time: f64,
+    /// What it holds, mm³.
+    metal: f64,
+    /// mm
+    diameter: f64,
+}
+
+impl Dot {
+    /// The torch moves this far while it welds a dot, mm: few languages have a word for a pass without length, and most round speeds
+    /// to 0.1 mm/s.
+    pub const LENGTH: f64 = 1.0;
+    /// A dot is welded for at least and at most this many times as long as in the trial.
+    const TIMES: RangeInclusive<f64> = 0.5..=2.0;
+
+    /// Diameter, mm, of a dot with so much metal, mm³; `None` where that is too far from what was tried.
+    pub fn diameter_of(&self, metal: f64) -> Option<f64> {
+        let times = metal / self.metal;
+        Self::TIMES.contains(&times).then(|| self.diameter * times.sqrt())
+    }
+
+    /// For how long the arc burns for a dot of a diameter, mm, in s.
+    pub fn seconds(&self, diameter: f64) -> f64 {
+        self.time * (diameter / self.diameter).powi(2)
+    }
+
+    /// Pace, mm/s, at which the torch takes that long for [`Self::LENGTH`].
+    pub fn pace(&self, diameter: f64) -> f64 {
+        Self::LENGTH / self.seconds(diameter)
+    }
+}

@@ -1,0 +1,87 @@
+//! The section `[start_stop]`: how passes begin and end, and how long layers wait for each other.
+
+use crate::limit::section;
+
+section! {
+    /// How passes begin and end, and how long layers wait; every key has a default, and with the defaults nothing
+    /// changes.
+    ///
+    /// Power is given as a multiple of the nominal energy per length of bead. In the arcs used here (synergic lines,
+    /// CMT) the current follows the wire feed, so there is no heat without metal: per length, both grow in proportion
+    /// to the power. With `process.follow = "speed"` the torch moves at speed / power; with `"wire-feed"` the wire is
+    /// fed at feed · power.
+    StartStop "start_stop" {
+        /// How far closed passes continue along their path beyond their start, mm, so that the seam is fused; at most
+        /// once around; default 0.
+        end_overlap: f64 = 0.0, 0.0, 200.0, "mm", "a longer overlap is a second bead";
+        /// Length of the hot start of a pass (lead-in), where the part is still cold, mm; default 0. Where a pass is
+        /// too short for both, lead-in and lead-out are shortened in proportion.
+        lead_in_length: f64 = 0.0, 0.0, 200.0, "mm", "a longer one would be a pass of its own";
+        /// Power along the lead-in, as a multiple of the nominal power, 1 or more; default 1.
+        lead_in_power: f64 = 1.0, 1.0, 4.0, "times the nominal power",
+            "a hot start has more power than the rest of the pass, but must not burn through";
+        /// Length of the end of a pass (lead-out) that is laid with less power, mm, so that heat and metal do not pile
+        /// up; default 0.
+        lead_out_length: f64 = 0.0, 0.0, 200.0, "mm", "a longer one would be a pass of its own";
+        /// Power along the lead-out, as a fraction of the nominal power, 1 or less; default 1.
+        lead_out_power: f64 = 1.0, 0.1, 1.0, "times the nominal power",
+            "the end of a pass has less power than the rest of it";
+        /// How much higher than the rest of the bead a pass is where it starts, mm: the cold bead stands up before it
+        /// flows; default 0. Only the deposit model uses this and `hump_length`, `crater_depth` and `crater_length`;
+        /// leave it at 0 if it was never measured.
+        hump_height: f64 = 0.0, 0.0, 50.0, "mm", "beyond this it is no longer the start or end of a pass";
+        /// Length over which the hump at the start of a pass falls to nothing, mm; default 0.
+        hump_length: f64 = 0.0, 0.0, 200.0, "mm", "beyond this it is no longer the start or end of a pass";
+        /// How much lower than the rest of the bead a pass is where it ends, mm; default 0.
+        crater_depth: f64 = 0.0, 0.0, 50.0, "mm", "beyond this it is no longer the start or end of a pass";
+        /// Length over which the bead falls to `crater_depth` at the end of a pass, mm; default 0.
+        crater_length: f64 = 0.0, 0.0, 200.0, "mm", "beyond this it is no longer the start or end of a pass";
+        /// Time for which the arc burns on the spot at the end of a pass to fill the crater, s; default 0.
+        crater_fill_time: f64 = 0.0, 0.0, 60.0, "s", "a longer crater fill builds a tower";
+        /// Wire feed while the crater is filled, as a fraction of the nominal wire feed, 1 or less; default 1. Below 1
+        /// it is set by the dialect's `wire_feed` lines (RAPID's arc instructions have it in their seamdata).
+        crater_power: f64 = 1.0, 0.05, 1.0, "(fraction of the wire feed)",
+            "the end of a pass has less power than the rest of it";
+        /// How far the wire is drawn back after the arc is off, mm; default 0. RAPID's arc instructions do this
+        /// themselves; in other dialects `arc_off` must contain `{{wire_retract}}` or `{{wire_retract_time}}`.
+        wire_retract: f64 = 0.0, 0.0, 50.0, "mm of wire", "drawn back farther, the wire leaves the contact tip";
+        /// Wait between two layers, s; default 0.
+        interpass_time: f64 = 0.0, 0.0, 36_000.0, "s", "ten hours cool any part";
+        /// Minimum time of a layer, s: after a faster layer the torch waits for the rest of this time; default 0.
+        min_layer_time: f64 = 0.0, 0.0, 36_000.0, "s", "ten hours cool any part";
+        /// Height above the travels at which the torch waits between layers, mm; default 0.
+        dwell_height: f64 = 0.0, 0.0, 2000.0, "mm", "the torch must stay within reach of the robot";
+    }
+}
+
+impl StartStop {
+    /// Whether metal is laid differently from what a plan's passes say.
+    pub fn changes_passes(&self) -> bool {
+        let leads = [(self.lead_in_length, self.lead_in_power), (self.lead_out_length, self.lead_out_power)];
+        self.end_overlap > 0.0
+            || leads.iter().any(|(length, power)| *length > 0.0 && *power != 1.0)
+            || self.hump_height * self.hump_length > 0.0
+            || self.crater_depth * self.crater_length > 0.0
+    }
+
+    /// Whether the wire feed changes at the end of a pass.
+    pub fn crater_is_weaker(&self) -> bool {
+        self.crater_fill_time > 0.0 && self.crater_power < 1.0
+    }
+
+    /// Settings that do not fit the shortest pass (mm), as sentences.
+    pub fn notes(&self, shortest: f64) -> Vec<String> {
+        let lead = self.lead_in_length + self.lead_out_length;
+        let fits = format!("fill.min_pass_length is {shortest} mm");
+        let lead_note = (lead > shortest).then(|| {
+            format!("Lead-in and lead-out take {lead} mm, but {fits}: on passes shorter than that both are cut down.")
+        });
+        let overlap = self.end_overlap;
+        let overlap_note = (overlap > shortest).then(|| {
+            format!(
+                "start_stop.end_overlap is {overlap} mm, but {fits}: the shortest closed passes would be laid twice."
+            )
+        });
+        lead_note.into_iter().chain(overlap_note).collect()
+    }
+}

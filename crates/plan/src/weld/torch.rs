@@ -1,0 +1,274 @@
+//! Follows the torch: the travels between passes, how long everything takes, and how long it must wait.
+
+use super::WeldSettings;
+use super::path::lit_ends;
+use crate::layer::Lit;
+use crate::motion::Motion;
+use crate::pass::PassKind;
+use crate::process::{Process, StartStop};
+use glam::DVec3;
+
+/// Waits are multiples of this, s; they are rounded up, never down.
+const WAIT_STEP: f64 = 0.01;
+
+/// Where the torch stands, and how long the layer has taken.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Torch {
+    /// As it is in the present layer, and as the profile has it.
+    process: Option<Process>,
+    nominal: Option<Process>,
+    /// How passes begin and end, and how those of the present layer do, whose arc may stay lit.
+    usual: StartStop,
+    ends: StartStop,
+    lit: Lit,
+    motion: Option<Motion>,
+    arc_end_time: Option<f64>,
+    travel_speed: f64,
+    clearance: f64,
+    at: Option<DVec3>,
+    /// Height of the last pass's end, mm: travels keep clear of it.
+    low: f64,
+    /// Height of all that stands, mm: the way to another part leads over it.
+    highest: f64,
+    /// Whether a layer begins.
+    fresh: bool,
+    /// Time since the layer began, s.
+    seconds: f64,
+}
+
+/// A wait with the arc off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pause {
+    /// Where the torch waits, mm.
+    pub at: DVec3,
+    /// How long, s.
+    pub seconds: f64,
+    /// Length of the move there, mm.
+    pub length: f64,
+    /// Time of the move there, s.
+    pub moving: f64,
+}
+
+/// A travel with the arc off.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Way {
+    /// Ends of its legs, mm.
+    pub legs: Vec<DVec3>,
+    /// Its length, mm; 0 for the travel to the first pass, which may come from anywhere.
+    pub length: f64,
+    /// Its time, s.
+    pub moving: f64,
+}
+
+/// The length of a pass and the times it takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Welded {
+    /// Its length, mm.
+    pub length: f64,
+    /// Time with the torch moving, s.
+    pub moving: f64,
+    /// The part of it lost to speeding up and slowing down, s.
+    pub slowed: f64,
+    /// Time in which the nominal wire feed lays its metal, including the crater's, s.
+    pub metal: f64,
+    /// Time for which the arc burns on the spot in the crater, s.
+    pub crater: f64,
+    /// Time for gas preflow and arc start before the torch moves, s.
+    pub before: f64,
+    /// Time for arc end, gas postflow and drawing the wire back after the crater, s.
+    pub after: f64,
+}
+
+impl Torch {
+    /// A torch whose travels count, but not its times; it never waits.
+    pub fn new(clearance: f64) -> Self {
+        Self {
+            process: None,
+            nominal: None,
+            usual: StartStop::default(),
+            ends: StartStop::default(),
+            lit: Lit::default(),
+            motion: None,
+            arc_end_time: None,
+            travel_speed: f64::INFINITY,
+            clearance,
+            at: None,
+            low: 0.0,
+            highest: 0.0,
+            fresh: false,
+            seconds: 0.0,
+        }
+    }
+
+    /// A torch whose travels and times count.
+    pub fn of(settings: &WeldSettings) -> Self {
+        let WeldSettings { process, ends, travel, motion, arc_end_time, standing } = settings.clone();
+        Self {
+            process: Some(process.at_layer(0)),
+            nominal: Some(process),
+            usual: ends.clone(),
+            ends,
+            motion,
+            arc_end_time,
+            travel_speed: travel.speed,
+            highest: standing,
+            ..Self::new(travel.clearance)
+        }
+    }
+
+    /// How passes of the present layer begin and end.
+    pub fn ends(&self) -> &StartStop {
+        &self.ends
+    }
+
+    /// Whether the arc burns before and after the pass of the present layer.
+    pub fn lit(&self) -> Lit {
+        self.lit
+    }
+
+    /// Where it stands; `None` before the first pass.
+    pub fn at(&self) -> Option<DVec3> {
+        self.at
+    }
+
+    /// Speed at a pace, mm/s.
+    pub fn speed_at(&self, pace: f64) -> f64 {
+        self.process.as_ref().map_or(pace, |process| process.speed_at(pace))
+    }
+
+    /// Wire feed at a pace (mm/s), as a multiple of the nominal one.
+    pub fn feed_at(&self, pace: f64) -> f64 {
+        self.process.as_ref().map_or(1.0, |process| process.feed_at(pace))
+    }
+
+    /// Wire feed in a crater, as a multiple of the nominal one.
+    pub fn crater_feed(&self) -> f64 {
+        self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
+    }
+
+    /// Begins the layer with an index, with the wait that the previous layer needs, unless the arc stays lit.
+    pub fn begin_layer(&mut self, index: usize, lit: Lit) -> Option<Pause> {
+        self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
+        (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
+        if lit.before {
+            self.seconds = 0.0;
+            return None;
+        }
+        let missing = self.usual.min_layer_time - self.seconds;
+        let pause = self.pause(missing.max(self.usual.interpass_time));
+        // The wait counts for neither layer.
+        self.seconds = 0.0;
+        pause
+    }
+
+    /// Waits for `seconds` before a pass, above the part; `None` where there is nothing to wait for.
+    pub fn wait(&mut self, seconds: f64) -> Option<Pause> {
+        if self.lit.before {
+            return None;
+        }
+        let pause = self.pause(seconds)?;
+        self.seconds += pause.moving + pause.seconds;
+        Some(pause)
+    }
+
+    fn pause(&mut self, seconds: f64) -> Option<Pause> {
+        let seconds = (seconds.max(0.0) / WAIT_STEP - 1e-6).ceil() * WAIT_STEP;
+        let from = self.at.filter(|_| seconds > 0.0)?;
+        let at = from.with_z(from.z.max(self.low + self.clearance + self.usual.dwell_height));
+        let (length, moving) = self.travel(&[at]);
+        self.at = Some(at);
+        Some(Pause { at, seconds, length, moving })
+    }
+
+    /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
+    /// place to rise from. Where a layer does not rise above the last one, another part begins, and the way leads over all
+    /// that stands.
+    pub fn approach(&mut self, start: DVec3) -> Way {
+        if self.lit.before && self.at.is_some() {
+            return Way::default();
+        }
+        let another = std::mem::take(&mut self.fresh) && start.z <= self.low;
+        let below = if another || self.at.is_none() { self.highest } else { self.low };
+        let high = below.max(start.z) + self.clearance;
+        // After a wait the torch is already at this height or higher.
+        let top = self.at.map_or(high, |at| at.z.max(high));
+        let rise = self.at.map(|at| at.with_z(top));
+        self.go(rise.into_iter().chain([start.with_z(top), start]))
+    }
+
+    /// The way up from the end of a pass: whatever comes between passes happens above the fresh bead.
+    pub fn retract(&mut self) -> Way {
+        if self.lit.after {
+            return Way::default();
+        }
+        let up = self.at.map(|at| at.with_z(at.z.max(self.low + self.clearance)));
+        self.go(up.into_iter())
+    }
+
+    /// Travels; legs without length are left out.
+    fn go(&mut self, legs: impl Iterator<Item = DVec3>) -> Way {
+        let mut ends: Vec<DVec3> = self.at.into_iter().chain(legs).collect();
+        ends.dedup();
+        let legs = ends.split_off(usize::from(self.at.is_some()));
+        let (length, moving) = self.travel(&legs);
+        self.seconds += moving;
+        self.at = legs.last().copied().or(self.at);
+        Way { legs, length, moving }
+    }
+
+    /// Length and time of a travel from where the torch stands, mm and s; its legs begin and end at rest. The travel to
+    /// the very first point counts as 0.
+    fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
+        let Some(mut at) = self.at else { return (0.0, 0.0) };
+        let (mut length, mut time) = (0.0, 0.0);
+        for &to in legs {
+            let leg = at.distance(to);
+            length += leg;
+            time += self.motion.map_or(leg / self.travel_speed, |m| m.seconds(at, [(to, self.travel_speed)]));
+            at = to;
+        }
+        (length, time)
+    }
+
+    /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them. A dot has no crater
+    /// that would be filled.
+    pub fn weld(&mut self, kind: PassKind, moves: &[(DVec3, f64)]) -> Welded {
+        let (mut length, mut steady, mut metal) = (0.0, 0.0, 0.0);
+        for ends in moves.windows(2) {
+            let (piece, pace) = (ends[0].0.distance(ends[1].0), ends[1].1);
+            length += piece;
+            steady += piece / self.speed_at(pace);
+            metal += piece / pace;
+        }
+        let speeds = moves.iter().skip(1).map(|&(to, pace)| (to, self.speed_at(pace)));
+        let moving = match (&self.motion, moves.first()) {
+            (Some(motion), Some(first)) => motion.seconds(first.0, speeds),
+            _ => steady,
+        };
+        let crater = if kind == PassKind::Spot { 0.0 } else { self.ends.crater_fill_time };
+        let filling = crater * self.crater_feed();
+        let metal = metal + filling;
+        let [before, after] = self.delays();
+        let (before, after) = (if self.lit.before { 0.0 } else { before }, if self.lit.after { 0.0 } else { after });
+        let welded = Welded { length, moving, slowed: moving - steady, metal, crater, before, after };
+        self.seconds += before + moving + crater + after;
+        if let Some(&(end, _)) = moves.last() {
+            (self.at, self.low) = (Some(end), end.z);
+            self.highest = moves.iter().fold(self.highest, |high, (place, _)| high.max(place.z));
+        }
+        welded
+    }
+
+    /// Time for gas preflow and arc start, and for arc end, gas postflow and drawing the wire back at its nominal
+    /// speed, s per pass.
+    fn delays(&self) -> [f64; 2] {
+        let Some(process) = &self.process else { return [0.0; 2] };
+        let end = || process.arc_end_delay + process.gas_postflow + retract_time(&self.usual, process);
+        [process.gas_preflow + process.arc_start_delay, self.arc_end_time.unwrap_or_else(end)]
+    }
+}
+
+/// Time in which the wire is drawn back at its nominal speed, s.
+pub fn retract_time(ends: &StartStop, process: &Process) -> f64 {
+    ends.wire_retract / (process.wire_feed_speed * 1000.0 / 60.0)
+}

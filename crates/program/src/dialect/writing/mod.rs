@@ -1,0 +1,293 @@
+//! Writing a program: what all dialects share.
+//!
+//! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
+
+mod extra;
+mod hooks;
+mod names;
+pub(super) mod needs;
+pub(super) mod orientation;
+mod placeholders;
+pub(super) mod restart;
+pub(super) mod split;
+pub(super) mod volumes;
+
+pub use extra::Extra;
+pub use hooks::Hooks;
+pub(super) use names::upper_name;
+pub use placeholders::PLACEHOLDERS;
+pub(super) use placeholders::Values;
+
+use super::own::OwnError;
+use super::{ALL, Sections, find, names};
+use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Turns, Weave};
+use bead_plan::bead::Bead;
+use bead_plan::layer::{Extent, Layer};
+use bead_plan::weld::WeldSettings;
+use glam::DVec3;
+use std::borrow::Borrow;
+use std::collections::BTreeMap;
+
+/// Text to be appended to a file of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Chunk {
+    /// File name without a folder.
+    pub file: String,
+    /// ASCII text with the line ends of the controller.
+    pub text: String,
+}
+
+impl Chunk {
+    /// Text for a file.
+    pub fn new(file: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { file: file.into(), text: text.into() }
+    }
+}
+
+/// Writes a program in one dialect.
+pub trait Writer: Send {
+    /// What comes before the first layer; `layers` is their number.
+    fn begin(&mut self, extent: &Extent) -> Vec<Chunk>;
+
+    /// One layer.
+    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
+
+    /// What comes after the last layer; the torch stands clear of the part.
+    fn end(&mut self) -> Vec<Chunk>;
+
+    /// Whether the controller swings the torch by itself where the job weaves; otherwise it is written as moves.
+    fn weaves(&self) -> bool {
+        false
+    }
+
+    /// What people must know about the finished program: sentences.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used.
+    /// [Dialects of one's own](crate::dialect::own) can fail once they have begun, and controls that jump no further.
+    fn failure(&self) -> Option<DialectError> {
+        None
+    }
+}
+
+/// What is to be written: all that a dialect needs to know besides the layers.
+#[derive(Debug, Clone)]
+pub struct Job<'a> {
+    /// Name of the part; files and modules are called after it.
+    pub part: String,
+    /// Name of the profile, for comments.
+    pub profile: String,
+    /// The sections of the profile for the dialects.
+    pub sections: &'a Sections,
+    /// The nominal bead.
+    pub bead: Bead,
+    /// Thickness of a layer, mm.
+    pub layer_height: f64,
+    /// Diameter of the wire, mm.
+    pub wire_diameter: f64,
+    /// Arc, wire, speeds, and how passes begin and end.
+    pub weld: WeldSettings,
+    /// How paths become moves.
+    pub program: &'a ProgramSettings,
+    /// What the cell must supply.
+    pub safety: &'a Safety,
+    /// How the torch swings along a pass, if it does.
+    pub weave: Option<&'a Weave>,
+    /// Whether the program only moves: arc, gas and wire never on.
+    pub dry_run: bool,
+}
+
+impl Job<'_> {
+    /// Makes the instructions of the layers, as controllers need them that weave by themselves or not.
+    pub fn programmer(&self, weaves: bool) -> Programmer {
+        Programmer::of(&self.weld, self.program, self.dry_run).woven(self.weave.filter(|_| !weaves))
+    }
+
+    /// How the torch swings where a controller does it along with the arc: a dry run has none.
+    pub(super) fn weave(&self) -> Option<Weave> {
+        self.weave.filter(|_| !self.dry_run).cloned()
+    }
+
+    /// A comment for the head of files.
+    pub(super) fn comment(&self) -> String {
+        format!("{}, {}", ascii(&self.part), ascii(&self.profile))
+    }
+
+    /// Comments of at most so many characters that say what the cell must supply.
+    pub(super) fn supplies(&self, width: usize) -> Vec<String> {
+        let sentences = self.safety.supplies.iter().flat_map(|text| wrapped(text, width));
+        let head = (!self.safety.supplies.is_empty()).then(|| "The cell must supply:".to_owned());
+        head.into_iter().chain(sentences).collect()
+    }
+}
+
+/// Why a program cannot be written in a dialect.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DialectError {
+    /// No such dialect.
+    #[error("there is no post \"{0}\". The posts are {known}. A folder with a dialect of your own is given with its path, such as ./{0}.", known = names().join(", "))]
+    Unknown(String),
+    /// The profile lacks the section of the dialect.
+    #[error("profile \"{profile}\" has no [{dialect}] section, which the post \"{dialect}\" needs.")]
+    NoSection {
+        /// Name of the profile.
+        profile: String,
+        /// Name of the dialect, and of its section.
+        dialect: &'static str,
+    },
+    /// The profile lacks a key of the dialect that its other keys need.
+    #[error("profile \"{profile}\" has no {key} that {why} needs. {remedy}")]
+    NoKey {
+        /// Name of the profile.
+        profile: String,
+        /// Full key, such as `krl.wire_feed`.
+        key: String,
+        /// What needs it.
+        why: String,
+        /// What to write, or what to do without.
+        remedy: String,
+    },
+    /// The dialect cannot do what the profile asks for.
+    #[error("the post \"{dialect}\" cannot write {what}. {remedy}")]
+    Cannot {
+        /// Name of the dialect.
+        dialect: &'static str,
+        /// What it cannot write.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Two programs would lie in one file.
+    #[error(
+        "the posts \"{first}\" and \"{second}\" would both write {file}. Ask for one of them, or give them different extensions."
+    )]
+    SameFile {
+        /// The file.
+        file: String,
+        /// The dialect that comes first.
+        first: String,
+        /// The other one, or the same again.
+        second: String,
+    },
+    /// The part does not fit on the printer's bed.
+    #[error(
+        "the part is {:.1} × {:.1} × {:.1} mm, and the bed has {:.0} × {:.0} × {:.0} mm (marlin.bed). Turn the part or make it \
+         smaller (--turn, --scale), or give the size of your printer.",
+        part.x, part.y, part.z, bed[0], bed[1], bed[2]
+    )]
+    OffBed {
+        /// Length, width and height of the part, mm.
+        part: DVec3,
+        /// Length, width and height that the printer reaches, mm.
+        bed: [f64; 3],
+    },
+    /// The profile has external axes that the dialect does not write.
+    #[error(
+        "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. Take the key out, and move the axis by hand.",
+        others = with_axes().join(" and ")
+    )]
+    NoExternalAxes(&'static str),
+    /// Templates of one's own are broken, or write less than the job asks for.
+    #[error(transparent)]
+    Own(#[from] OwnError),
+}
+
+fn with_axes() -> Vec<&'static str> {
+    ALL.iter().filter(|dialect| dialect.external_axes).map(|dialect| dialect.name).collect()
+}
+
+/// Begins a program in the dialect of that name.
+///
+/// # Errors
+/// [`DialectError`] when there is no such dialect, the profile lacks its section, or the job asks for more than it can
+/// write.
+pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
+    let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
+    let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
+    let section = job.sections.get(name).ok_or_else(missing)?;
+    if job.program.external_axes() && !dialect.external_axes {
+        return Err(DialectError::NoExternalAxes(dialect.name));
+    }
+    if let Some(table) = section.table().filter(|table| job.program.has_table() && !table.known) {
+        let why = if job.program.table_side.is_some() { "program.table_side" } else { "program.table_angle" };
+        let (profile, key, remedy) = (job.profile.clone(), table.key.to_owned(), table.what.to_owned());
+        return Err(DialectError::NoKey { profile, key, why: why.to_owned(), remedy });
+    }
+    extra::check(dialect.name, section, job)?;
+    section.writer(job)
+}
+
+/// The whole program of some layers in one dialect: the text of each file by its name. Long programs are better written
+/// layer by layer.
+///
+/// # Errors
+/// [`DialectError`].
+pub fn write<L: Borrow<Layer>>(
+    name: &str,
+    layers: &[L],
+    job: &Job<'_>,
+) -> Result<BTreeMap<String, String>, DialectError> {
+    write_with(writer(name, job)?, &Extent::of(layers), layers, job)
+}
+
+/// The same with a writer, and with what is known of the part: [`write()`] knows its passes only.
+///
+/// # Errors
+/// [`DialectError`] of the writer.
+pub fn write_with<L: Borrow<Layer>>(
+    mut writer: Box<dyn Writer>,
+    extent: &Extent,
+    layers: &[L],
+    job: &Job<'_>,
+) -> Result<BTreeMap<String, String>, DialectError> {
+    let mut programmer = job.programmer(writer.weaves());
+    let (mut chunks, mut turns) = (writer.begin(extent), Turns::default());
+    for layer in layers {
+        turns.take(layer.borrow()).iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
+    }
+    turns.end().iter().for_each(|layer| chunks.extend(writer.layer(&programmer.layer(layer))));
+    chunks.extend(writer.end());
+    let mut files = BTreeMap::<String, String>::new();
+    for chunk in chunks {
+        files.entry(chunk.file).or_default().push_str(&chunk.text);
+    }
+    writer.failure().map_or(Ok(files), Err)
+}
+
+/// Lines that set the wire feed in a crater: the profile's own for craters or, without these, its general ones.
+pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
+    if crater.is_empty() { wire_feed } else { crater }
+}
+
+/// A wait split into pieces of at most `most`, the longest that a controller takes at once, s.
+pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
+    let count = (seconds / most).ceil().max(1.0);
+    (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
+}
+
+/// The words of a text in lines of at most so many characters; only a longer word makes a longer line.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut().filter(|line| line.len() + 1 + word.len() <= width) {
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Printable ASCII for comments; other characters become `_`.
+pub(super) fn ascii(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '_' }).collect()
+}
+
+/// Whether a text can be the extension of a file's name.
+pub(super) fn is_extension(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric())
+}

@@ -1,0 +1,447 @@
+//! The neutral program: moves, arc on, arc off, wire feed, waits. Posts turn it into a controller's language.
+//!
+//! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one are
+//! dropped: a weld move of zero length burns through. Then, if requested, straight pieces and circular arcs are fitted
+//! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and no
+//! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
+
+mod attitude;
+mod safety;
+mod settings;
+mod spread;
+mod table;
+mod tilt;
+mod turns;
+mod weave;
+
+pub use attitude::Attitude;
+pub use safety::Safety;
+pub use settings::ProgramSettings;
+pub use turns::Turns;
+use weave::Swing;
+pub use weave::Weave;
+
+use crate::number;
+use bead_plan::layer::Layer;
+use bead_plan::pass::{Pass, PassKind};
+use bead_plan::process::Follow;
+use bead_plan::weld::{Pause, Torch, WeldSettings, path};
+use glam::{DVec2, DVec3};
+use planar::arcs::{Fit, Piece};
+use spread::Spread;
+use table::Follower;
+pub use tilt::Tilt;
+
+/// Coordinates of a program are multiples of this, mm.
+pub const RESOLUTION_MM: f64 = 1e-3;
+
+/// No two points of a pass lie closer together than this, mm.
+pub const MIN_MOVE_MM: f64 = 0.01;
+
+/// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next move with the arc off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Instruction {
+    /// The first move, from wherever the machine stands to a point above the part: of the joints, not along a line.
+    Approach {
+        /// Tool point, mm.
+        to: DVec3,
+    },
+    /// A straight move with the arc off, at travel speed; ends with an exact stop.
+    Travel {
+        /// Tool point, mm.
+        to: DVec3,
+    },
+    /// A straight move up from the end of a pass, at travel speed; ends with an exact stop. A program may be cut behind
+    /// it.
+    Retract {
+        /// Tool point, mm.
+        to: DVec3,
+    },
+    /// A pass begins; the torch is above the part, or anywhere where a program begins at this pass.
+    PassStart {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+        /// A point above its start to which the torch can come from anywhere, mm.
+        above: DVec3,
+        /// How torch and table stand on the way to the start and there.
+        attitude: Attitude,
+    },
+    /// The torch is above the start of the pass. What came since `PassStart` led there from the pass before; a program
+    /// that begins at this pass does without it.
+    Above,
+    /// The pass is done; the torch is above the part.
+    PassEnd,
+    /// Strikes the arc at the start of a pass.
+    ArcOn {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+        /// What the pass is for.
+        kind: PassKind,
+    },
+    /// The wire feed from here on; nominal at first. It appears where the wire feed changes, and only in programs whose
+    /// profile lets it change.
+    WireFeed {
+        /// Multiple of the nominal wire feed.
+        ratio: f64,
+    },
+    /// A move with the arc on.
+    Weld {
+        /// Tool point, mm.
+        to: DVec3,
+        /// The circle along which it moves there; `None` for a straight move.
+        circle: Option<Circle>,
+        /// Deposition speed, mm/s.
+        speed: f64,
+        /// Whether the pass ends here, with an exact stop.
+        last: bool,
+        /// How torch and table stand at its end; they stay so until the next `Weld` or `PassStart`.
+        attitude: Attitude,
+    },
+    /// The arc burns on the spot, at the end of a pass, to fill its crater.
+    Crater {
+        /// How long, s.
+        seconds: f64,
+        /// The wire feed meanwhile, as a fraction of the nominal wire feed; `None` where it stays as it is.
+        ratio: Option<f64>,
+    },
+    /// Ends the arc.
+    ArcOff {
+        /// Number of the pass in its layer, from 1.
+        pass: usize,
+    },
+    /// The torch waits with the arc off until the next layer or pass may begin.
+    Dwell {
+        /// How long, s.
+        seconds: f64,
+    },
+}
+
+impl Instruction {
+    /// Where it moves the torch, mm; `None` where it does not.
+    pub fn target(&self) -> Option<DVec3> {
+        match *self {
+            Self::Approach { to } | Self::Travel { to } | Self::Retract { to } | Self::Weld { to, .. } => Some(to),
+            _ => None,
+        }
+    }
+
+    /// How torch and table stand from here on; `None` where they stay as they are.
+    pub fn attitude(&self) -> Option<Attitude> {
+        match *self {
+            Self::PassStart { attitude, .. } | Self::Weld { attitude, .. } => Some(attitude),
+            _ => None,
+        }
+    }
+}
+
+/// A circular arc in a plane of constant height, from where the torch stands; less than half a turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// A point near the middle of the arc, mm. The circle is the one through its start, this point and its end, as
+    /// rounded.
+    pub via: DVec3,
+    /// Its centre, mm.
+    pub centre: DVec3,
+    /// Its radius, mm.
+    pub radius: f64,
+    /// Angle of the arc, radians; above 0 it is counter-clockwise as seen from above.
+    pub sweep: f64,
+}
+
+impl Circle {
+    /// Length of the arc, mm.
+    pub fn length(&self) -> f64 {
+        self.radius * self.sweep.abs()
+    }
+
+    /// The G-code word that runs it: G2 clockwise, G3 counter-clockwise.
+    pub fn word(&self) -> &'static str {
+        if self.sweep < 0.0 { "G2" } else { "G3" }
+    }
+}
+
+/// The instructions of one layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerProgram {
+    /// Index from 0.
+    pub index: usize,
+    /// Top of the layer, mm.
+    pub z: f64,
+    /// What to do.
+    pub instructions: Vec<Instruction>,
+}
+
+/// Turns layers into instructions, remembering where the torch stands.
+#[derive(Debug, Clone)]
+pub struct Programmer {
+    torch: Torch,
+    fit: Option<Fit>,
+    speed_tolerance: f64,
+    /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
+    feed: Option<f64>,
+    sets_feed: bool,
+    /// Whether programs may begin at any pass.
+    restarts: bool,
+    dry: bool,
+    spread: Option<Spread>,
+    tilt: Option<Tilt>,
+    table: Option<Follower>,
+    /// How the torch swings, where that is written as moves.
+    weave: Option<Weave>,
+}
+
+impl Programmer {
+    /// Programs passes as they are planned; travels run `clearance` (mm) above the higher of their ends.
+    pub fn new(clearance: f64) -> Self {
+        let torch = Torch::new(clearance);
+        Self {
+            torch,
+            fit: None,
+            speed_tolerance: 0.0,
+            feed: None,
+            sets_feed: false,
+            restarts: false,
+            dry: false,
+            spread: None,
+            tilt: None,
+            table: None,
+            weave: None,
+        }
+    }
+
+    /// Programs passes as they are welded; a dry run has the same moves and no arc.
+    pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
+        let other_layers = !weld.process.layers.is_empty();
+        let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
+        let (torch, restarts) = (Torch::of(weld), program.restart);
+        let (tilt, table) = (Tilt::new(program), Follower::new(program));
+        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
+        programmer.with_fit(program)
+    }
+
+    /// The same programmer, but the torch swings by moves of its own.
+    pub fn woven(self, weave: Option<&Weave>) -> Self {
+        Self { weave: weave.cloned(), ..self }
+    }
+
+    /// The same programmer, but it keeps every point of the passes.
+    pub fn unfitted(self) -> Self {
+        Self { fit: None, spread: None, ..self }
+    }
+
+    /// Fits straight pieces and arcs; without a tolerance every point is kept.
+    pub fn with_fit(mut self, program: &ProgramSettings) -> Self {
+        // Dropping close points may already have moved the path by this much.
+        let tolerance = program.chord_tolerance - MIN_MOVE_MM;
+        // Merging points and fitting pieces each take half of it.
+        let time = program.min_point_time;
+        self.spread = (time > 0.0 && tolerance > 0.0).then_some(Spread { time, tolerance: tolerance / 2.0 });
+        let tolerance = if self.spread.is_some() { tolerance / 2.0 } else { tolerance };
+        self.speed_tolerance = program.speed_tolerance;
+        self.fit = (tolerance > 0.0).then_some(Fit { tolerance, arcs: program.arcs, grid: RESOLUTION_MM });
+        self
+    }
+
+    /// The instructions of the next layer; the torch ends above its last pass, clear of it.
+    pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
+        self.layer_from(layer, 0)
+    }
+
+    /// The same from the pass with the index `first` on, for a build that was stopped there.
+    pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
+        let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
+        self.pass_over(layer);
+        // A build may be resumed at any layer, so each sets the wire feed that it needs.
+        self.feed = None;
+        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten();
+        for (i, pass) in layer.passes.iter().enumerate().skip(first) {
+            self.pass(i + 1, pass, &mut pause, &mut instructions);
+        }
+        if self.dry {
+            let kept = |i: &Instruction| {
+                let places = matches!(i, Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd);
+                places || i.target().is_some()
+            };
+            instructions.retain(kept);
+        }
+        LayerProgram { index: layer.index, z: layer.z, instructions }
+    }
+
+    /// Takes note of a layer that another program lays; the torch leans with the walls that stand on it.
+    pub fn pass_over(&mut self, layer: &Layer) {
+        self.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
+    }
+
+    fn pause(&self, pause: Pause, out: &mut Vec<Instruction>) {
+        out.extend((pause.length > 0.0).then_some(Instruction::Travel { to: pause.at }));
+        match out.last_mut() {
+            // The wait of the layer and that of its first pass are one.
+            Some(Instruction::Dwell { seconds }) => *seconds += pause.seconds,
+            _ => out.push(Instruction::Dwell { seconds: pause.seconds }),
+        }
+    }
+
+    /// A pass, after the wait of its layer if there is still one.
+    fn pass(&mut self, number: usize, pass: &Pass, pause: &mut Option<Pause>, out: &mut Vec<Instruction>) {
+        let mut moves = distinct(path(pass, self.torch.ends()));
+        level_paces(&mut moves, self.speed_tolerance);
+        self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
+        let width = pass.width.max();
+        if self.tilt.is_some() {
+            moves = Tilt::divided(moves, width);
+        }
+        let [(start, _), (_, first), ..] = moves[..] else { return };
+        let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, width)).unwrap_or_default();
+        let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
+        let places = || moves.iter().map(|(at, _)| *at).collect::<Vec<_>>();
+        let turned = self.table.as_mut().map(|table| table.begin(&places()));
+        let table = turned.map(|turned| turned.angle);
+        let begins = self.torch.at().is_none();
+        let lit = self.torch.lit();
+        let pauses = [pause.take(), self.torch.wait(pass.wait)];
+        let mut legs = self.torch.approach(start).legs;
+        let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
+        let down = legs.pop();
+        let mut legs = legs.into_iter();
+        if !lit.before {
+            out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
+        }
+        pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
+        let joints = begins || turned.is_some_and(|turned| turned.far);
+        out.extend(legs.by_ref().take(usize::from(joints)).map(|to| Instruction::Approach { to }));
+        out.extend(legs.map(|to| Instruction::Travel { to }));
+        out.extend((!lit.before).then_some(Instruction::Above));
+        if self.restarts {
+            self.feed = None;
+        }
+        self.set_feed(self.torch.feed_at(first), out);
+        out.extend(down.map(|to| Instruction::Travel { to }));
+        out.extend((!lit.before).then_some(Instruction::ArcOn { pass: number, kind: pass.kind }));
+        let mut from = start;
+        let pieces = self.pieces(&moves, &leans);
+        for (i, &Stretch { end, to, circle, speed }) in pieces.iter().enumerate() {
+            self.set_feed(self.torch.feed_at(moves[end].1), out);
+            let length = circle.map_or(from.distance(to), |circle| circle.length());
+            let table = self.table.as_mut().map(|table| table.follow(to, length));
+            let attitude = Attitude { lean: lean(end), table };
+            out.push(Instruction::Weld { to, circle, speed, last: i + 1 == pieces.len(), attitude });
+            from = to;
+        }
+        let seconds = self.torch.weld(pass.kind, &moves).crater;
+        if seconds > 0.0 {
+            let ratio = Some(self.torch.crater_feed()).filter(|_| self.sets_feed);
+            self.feed = ratio;
+            out.push(Instruction::Crater { seconds, ratio });
+        }
+        if lit.after {
+            return;
+        }
+        out.push(Instruction::ArcOff { pass: number });
+        out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
+        out.push(Instruction::PassEnd);
+    }
+
+    /// What is run of a path: swings, pieces that fit it, or all its moves.
+    fn pieces(&self, moves: &[(DVec3, f64)], leans: &[DVec2]) -> Vec<Stretch> {
+        let speed = |end: usize| self.torch.speed_at(moves[end].1);
+        if let Some(weave) = &self.weave {
+            let path: Vec<DVec3> = moves.iter().map(|(to, _)| *to).collect();
+            let speeds: Vec<f64> = (0..moves.len()).map(speed).collect();
+            let swings = weave::swings(&path, &speeds, weave).into_iter();
+            return swings.map(|Swing { to, of, speed }| Stretch { end: of, to, circle: None, speed }).collect();
+        }
+        let whole = |end, circle| Stretch { end, to: moves[end].0, circle, speed: speed(end) };
+        match &self.fit {
+            Some(fit) => fitted(moves, leans, fit).into_iter().map(|(end, circle)| whole(end, circle)).collect(),
+            None => (1..moves.len()).map(|end| whole(end, None)).collect(),
+        }
+    }
+
+    /// Sets the wire feed, as a multiple of the nominal one, where it changes.
+    fn set_feed(&mut self, ratio: f64, out: &mut Vec<Instruction>) {
+        if self.sets_feed && self.feed != Some(ratio) {
+            self.feed = Some(ratio);
+            out.push(Instruction::WireFeed { ratio });
+        }
+    }
+}
+
+/// Gives neighbouring moves whose paces differ by no more than the fraction `tolerance` a common pace: the one that
+/// takes the same time over all of them, and so lays the same metal.
+fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
+    let mut start = 1;
+    while tolerance > 0.0 && start < moves.len() {
+        let (mut low, mut high, mut end) = (f64::INFINITY, 0.0_f64, start);
+        while let Some(&(_, speed)) = moves.get(end) {
+            (low, high) = (low.min(speed), high.max(speed));
+            if high > low * (1.0 + tolerance) {
+                break;
+            }
+            end += 1;
+        }
+        let end = end.max(start + 1);
+        let pieces = || moves[start - 1..end].windows(2).map(|w| (w[0].0.distance(w[1].0), w[1].1));
+        let (length, time) = pieces().fold((0.0, 0.0), |(l, t), (length, speed)| (l + length, t + length / speed));
+        let (first, alike) = (moves[start].1, pieces().all(|(_, speed)| speed == moves[start].1));
+        let speed = if alike || time <= 0.0 { first } else { length / time };
+        moves[start..end].iter_mut().for_each(|(_, s)| *s = speed);
+        start = end;
+    }
+}
+
+/// A piece that is run.
+struct Stretch {
+    /// Index of the move of the path in which it ends.
+    end: usize,
+    to: DVec3,
+    circle: Option<Circle>,
+    /// mm/s
+    speed: f64,
+}
+
+/// The moves from the first point on, fitted: the index of the move that ends each piece, and its circle if it has one.
+/// Pieces end where the pace, the height or the torch's lean changes.
+fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<(usize, Option<Circle>)> {
+    let (mut out, mut start) = (Vec::new(), 0);
+    let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
+    while let Some(&(first, pace)) = moves.get(start + 1) {
+        let leans_alike = |i: usize| lean(i).distance(lean(start)) <= tilt::ALIKE;
+        let alike = |i: &usize| moves[*i].1 == pace && moves[*i].0.z == first.z && leans_alike(*i);
+        let level = moves[start].0.z == first.z && leans_alike(start + 1);
+        let end = start + if level { (start + 1..moves.len()).take_while(alike).count() } else { 1 };
+        let points: Vec<_> = moves[start..=end].iter().map(|(p, _)| p.truncate()).collect();
+        let piece = |p: Piece| {
+            let lift = |arc: planar::arcs::Arc| Circle {
+                via: arc.via.extend(first.z),
+                centre: arc.centre.extend(first.z),
+                radius: arc.radius,
+                sweep: arc.sweep,
+            };
+            (start + p.end, p.arc.map(lift))
+        };
+        out.extend(fit.pieces(&points).into_iter().map(piece));
+        start = end;
+    }
+    out
+}
+
+/// A point as programs have it.
+fn rounded(p: DVec3) -> DVec3 {
+    DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM))
+}
+
+/// The points of a path, rounded, without those too close to the last one; the end point is always kept.
+fn distinct(path: Vec<(DVec3, f64)>) -> Vec<(DVec3, f64)> {
+    let end = path.last().map(|(to, _)| rounded(*to));
+    let mut moves: Vec<(DVec3, f64)> = Vec::with_capacity(path.len());
+    for (to, pace) in path {
+        let to = rounded(to);
+        if moves.last().is_none_or(|(last, _)| last.distance(to) >= MIN_MOVE_MM) {
+            moves.push((to, pace));
+        }
+    }
+    if let (Some(end), [_, .., last]) = (end, &mut moves[..]) {
+        last.0 = end;
+    }
+    moves
+}

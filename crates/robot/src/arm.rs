@@ -1,0 +1,179 @@
+//! An arm that can be moved, whatever its geometry: angles in ° as its maker shows them, lengths in mm.
+
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+/// Angles of the six joints, °, as the robot's maker shows them.
+pub type Joints = [f64; 6];
+
+/// A place and a direction: transforms are named `base_from_tool`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Origin, mm.
+    pub position: DVec3,
+    /// Rotation.
+    pub rotation: DQuat,
+}
+
+impl Frame {
+    /// `inner` is given in this frame; returns it in the frame in which this one is given.
+    pub fn then(&self, inner: &Self) -> Self {
+        Self { position: self.apply(inner.position), rotation: (self.rotation * inner.rotation).normalize() }
+    }
+
+    /// The inverse: `a_from_b` becomes `b_from_a`.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self { position: rotation * -self.position, rotation }
+    }
+
+    /// A point given in this frame, mm; returns it in the frame in which this one is given.
+    pub fn apply(&self, point: DVec3) -> DVec3 {
+        self.position + self.rotation * point
+    }
+}
+
+/// One of the eight ways in which an arm reaches a pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Branch(u8);
+
+impl Branch {
+    /// How many there are.
+    pub const COUNT: usize = 8;
+
+    /// The branch of that number.
+    pub fn new(index: usize) -> Self {
+        Self((index % Self::COUNT) as u8)
+    }
+
+    /// The branch with these bits: reaching backwards, elbow down, wrist flipped.
+    pub(crate) fn of(bits: [bool; 3]) -> Self {
+        Self(bits.iter().enumerate().map(|(i, &bit)| u8::from(bit) << i).sum())
+    }
+
+    /// Number, from 0.
+    pub fn index(self) -> usize {
+        self.0.into()
+    }
+
+    /// Words for people.
+    pub fn name(self) -> String {
+        let word = |bit: u8, no: &'static str, yes: &'static str| if self.0 & bit == 0 { no } else { yes };
+        format!(
+            "{}, {}, {}",
+            word(1, "facing", "reaching backwards"),
+            word(2, "elbow up", "elbow down"),
+            word(4, "wrist plain", "wrist flipped")
+        )
+    }
+}
+
+/// How far a pose is from limits and singularities, °; negative where a limit is exceeded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Margins {
+    /// To the nearer limit of each joint.
+    pub limits: [f64; 6],
+    /// Of joint 5 to the angle at which axes 4 and 6 coincide.
+    pub wrist: f64,
+    /// Of the elbow to a straight or folded arm.
+    pub elbow: f64,
+}
+
+impl Margins {
+    /// The least of all.
+    pub fn least(&self) -> f64 {
+        self.limits.iter().copied().fold(self.wrist.min(self.elbow), f64::min)
+    }
+
+    /// The joint that is nearest to a limit or beyond, from 0, and its margin.
+    pub fn nearest_limit(&self) -> (usize, f64) {
+        let pairs = self.limits.iter().copied().enumerate();
+        pairs.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
+    }
+}
+
+/// The geometry of an arm: forward and inverse kinematics without limits.
+pub(crate) trait Model: std::fmt::Debug + Send + Sync {
+    /// The flange for finite angles of the joints, °.
+    fn forward(&self, joints: &Joints) -> Frame;
+    /// All ways to put the flange there, each joint in any of its turns.
+    fn inverse(&self, base_from_flange: &Frame) -> Vec<Joints>;
+    /// Foot, axis 2, axis 3 and wrist, mm from the foot.
+    fn links(&self, joints: &Joints) -> [DVec3; 4];
+    /// The branch in which the arm stands.
+    fn branch(&self, joints: &Joints) -> Branch;
+    /// How far the wrist and the elbow are from their singular angles, °.
+    fn singular_margins(&self, joints: &Joints) -> [f64; 2];
+    /// How far the wrist lies beyond what the arm can reach, or short of it, mm; 0 where it can get there.
+    fn beyond(&self, base_from_flange: &Frame) -> f64;
+    /// Greatest distance of the wrist from axis 2, mm.
+    fn reach(&self) -> f64;
+}
+
+/// An arm that can be moved.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    /// Least and greatest angle of each joint, °.
+    pub limits: [[f64; 2]; 6],
+    /// Greatest speed of each joint, °/s.
+    pub speeds: [f64; 6],
+    model: Arc<dyn Model>,
+}
+
+impl Arm {
+    pub(crate) fn new(model: Arc<dyn Model>, limits: [[f64; 2]; 6], speeds: [f64; 6]) -> Self {
+        Self { limits, speeds, model }
+    }
+
+    /// The flange for finite angles of the joints, °.
+    pub fn forward(&self, joints: &Joints) -> Frame {
+        self.model.forward(joints)
+    }
+
+    /// Foot, axis 2, axis 3 and wrist for angles of the joints, °; mm from the foot.
+    pub fn links(&self, joints: &Joints) -> [DVec3; 4] {
+        self.model.links(joints)
+    }
+
+    /// All ways to put the flange there, including those beyond a limit. Of a joint's angles that differ by whole
+    /// turns, the one nearest to the middle of its range is returned.
+    pub fn inverse(&self, base_from_flange: &Frame) -> Vec<(Branch, Joints)> {
+        let solution = |mut joints: Joints| {
+            for (joint, [low, high]) in joints.iter_mut().zip(self.limits) {
+                *joint = turned_near(*joint, (low + high) / 2.0);
+            }
+            (self.model.branch(&joints), joints)
+        };
+        self.model.inverse(base_from_flange).into_iter().map(solution).collect()
+    }
+
+    /// Distance to limits, wrist singularity and straight arm.
+    pub fn margins(&self, joints: &Joints) -> Margins {
+        let mut limits = [0.0; 6];
+        for ((margin, joint), [low, high]) in limits.iter_mut().zip(joints).zip(self.limits) {
+            *margin = (joint - low).min(high - joint);
+        }
+        let [wrist, elbow] = self.model.singular_margins(joints);
+        Margins { limits, wrist, elbow }
+    }
+
+    /// How far the wrist lies beyond what the arm can reach, or short of it, mm; 0 where it can get there.
+    pub fn beyond(&self, base_from_flange: &Frame) -> f64 {
+        self.model.beyond(base_from_flange)
+    }
+
+    /// Greatest distance of the wrist from axis 2, mm.
+    pub fn reach(&self) -> f64 {
+        self.model.reach()
+    }
+}
+
+/// How far an angle with this sine is from 0° or 180°, °.
+pub(crate) fn from_zero(sine: f64) -> f64 {
+    sine.abs().min(1.0).asin().to_degrees()
+}
+
+/// `angle` plus the whole turns that bring it nearest to `near`, °.
+pub(crate) fn turned_near(angle: f64, near: f64) -> f64 {
+    angle - ((angle - near) / 360.0).round() * 360.0
+}

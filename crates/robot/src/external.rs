@@ -1,0 +1,30 @@
+//! External axes that stand still during the program: for each the one value that gives the robot the most margin.
+
+use crate::cell::{Cell, PartPlace};
+use crate::linear_axis::{Station, station};
+use crate::table::{TableAngle, turn_table};
+use crate::track::Track;
+
+/// A cell with its external axes where they stand for a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct External {
+    /// The cell as the robot sees it from there.
+    pub cell: Cell,
+    /// Where the part lies, seen from the robot's foot.
+    pub place: PartPlace,
+    /// The linear axis under the robot, if there is one from which it reaches the part.
+    pub station: Option<Station>,
+    /// The table under the part, likewise.
+    pub table: Option<TableAngle>,
+}
+
+/// Where the external axes of a cell stand best for a part that lies at `place` while they show 0: first the linear axis
+/// under the robot, then the table.
+pub fn external_axes(cell: &Cell, place: PartPlace, track: &Track) -> External {
+    let station = station(cell, place, track);
+    let (cell, place) =
+        station.as_ref().map_or_else(|| (cell.clone(), place), |station| (station.seen(cell), station.place));
+    let table = turn_table(&cell, place, track);
+    let place = table.map_or(place, |table| table.place);
+    External { cell, place, station, table }
+}

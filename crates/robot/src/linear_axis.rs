@@ -1,0 +1,67 @@
+//! A linear axis under the robot (track, carriage): the one place on it, for the whole program, that gives the robot the most
+//! margin.
+//!
+//! The controller counts the axis into its kinematics, so the positions in the program stay as they are.
+
+use crate::cell::{Cell, LinearAxis, PartPlace};
+use crate::suggest::best;
+use crate::track::Track;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Most places that are tried …
+const MOST: f64 = 200.0;
+
+/// … at least so far apart, mm.
+const STEP: f64 = 50.0;
+
+/// A robot at one place of its linear axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Station {
+    /// What the axis shows, mm: `program.linear_axis`.
+    pub position: f64,
+    /// Where the part lies, seen from the robot's foot there.
+    pub place: PartPlace,
+    /// Least margin of the points examined, °.
+    pub margin: f64,
+    /// Least margin of these points with the axis at 0; none where some are out of reach.
+    pub at_zero: Option<f64>,
+}
+
+impl Station {
+    /// The cell as the robot sees it from there: part and table lie elsewhere.
+    pub(crate) fn seen(&self, cell: &Cell) -> Cell {
+        let mut cell = cell.clone();
+        let Some(axis) = &cell.linear_axis else { return cell };
+        cell.part = axis.seen(cell.part, self.position);
+        if let Some(table) = &mut cell.table {
+            let [x, y, _] = axis.way(self.position).to_array();
+            table.axis = [table.axis[0] - x, table.axis[1] - y];
+        }
+        cell
+    }
+}
+
+impl LinearAxis {
+    /// How far the robot's foot has moved where the axis shows a position, mm.
+    fn way(&self, position: f64) -> DVec3 {
+        position * DVec3::from(self.direction).normalize_or_zero()
+    }
+
+    /// A place as the robot sees it from a position of the axis.
+    fn seen(&self, place: PartPlace, position: f64) -> PartPlace {
+        PartPlace { position: (DVec3::from(place.position) - self.way(position)).to_array(), ..place }
+    }
+}
+
+/// The best place of the robot on its linear axis for a part that lies at `place` while the axis shows 0; `None` without such
+/// an axis, or where all points are within reach from no place.
+pub(crate) fn station(cell: &Cell, place: PartPlace, track: &Track) -> Option<Station> {
+    let axis = cell.linear_axis.as_ref()?;
+    let [low, high] = axis.limits;
+    let step = ((high - low) / MOST).max(STEP);
+    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+    let positions = (first..=last).map(|k| k as f64 * step);
+    let (position, margin, at_zero) = best(cell, track, positions, |position| axis.seen(place, position))?;
+    Some(Station { position, place: axis.seen(place, position), margin, at_zero })
+}

@@ -1,0 +1,155 @@
+//! Arm and torch among the table and the metal that stands on it: who comes too near to whom.
+//!
+//! Capsules are coarse, and their radii are the cell's: a finding tells where to look, a silent walk proves nothing about
+//! cables, wire feeders and fixtures.
+
+use crate::arm::{Arm, Frame, Joints};
+use crate::body::{Body, Capsule, Solid, capsules};
+use crate::cell::Cell;
+use glam::{DVec2, DVec3};
+use std::collections::HashMap;
+
+/// Two solids that come too near.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Contact {
+    pub(crate) solids: [Solid; 2],
+    /// How deep they would be in each other, mm.
+    pub(crate) depth: f64,
+}
+
+/// Cells in which the standing metal is kept, mm.
+const CELL_MM: f64 = 10.0;
+/// Capsules are compared with table and part at places this far apart, mm.
+const STEP_MM: f64 = 10.0;
+
+/// Arm, torch, table and part while a program runs.
+pub(crate) struct Room<'a> {
+    arm: &'a Arm,
+    body: &'a Body,
+    flange_from_tool: Frame,
+    part_from_base: Frame,
+    /// Top of the metal by cell, in the part's frame, mm.
+    tops: HashMap<[i64; 2], f64>,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<'a> Room<'a> {
+    /// A room without metal; none where the cell tells no body.
+    pub(crate) fn new(cell: &'a Cell, arm: &'a Arm, base_from_part: &Frame) -> Option<Self> {
+        let body = cell.body.as_ref()?;
+        Some(Self {
+            arm,
+            body,
+            flange_from_tool: cell.flange_from_tool(),
+            part_from_base: base_from_part.inverse(),
+            tops: HashMap::new(),
+            low: DVec3::INFINITY,
+            high: DVec3::NEG_INFINITY,
+        })
+    }
+
+    /// A bead was laid from one place of the part to another.
+    pub(crate) fn lay(&mut self, from: DVec3, to: DVec3) {
+        for place in places(from, to) {
+            let top = self.tops.entry(cell_of(place)).or_insert(f64::NEG_INFINITY);
+            *top = top.max(place.z);
+        }
+        (self.low, self.high) = (self.low.min(from.min(to)), self.high.max(from.max(to)));
+    }
+
+    /// The deepest contact of each pair of solids, with a table turned like this.
+    pub(crate) fn contacts(&self, joints: &Joints, turned_table: &Frame) -> Vec<Contact> {
+        let part_from_base = turned_table.inverse().then(&self.part_from_base);
+        let capsules = capsules(self.arm, self.body, &self.flange_from_tool, joints, &part_from_base);
+        let mut found: Vec<Contact> = Vec::new();
+        let mut note = |solids: [Solid; 2], gap: f64| {
+            let contact = Contact { solids, depth: -gap };
+            match found.iter_mut().find(|c| c.solids == solids) {
+                _ if gap >= 0.0 => {}
+                Some(known) => known.depth = known.depth.max(contact.depth),
+                None => found.push(contact),
+            }
+        };
+        for (i, a) in capsules.iter().enumerate() {
+            for b in &capsules[i + 1..] {
+                if !joined(a.solid, b.solid) {
+                    note([a.solid, b.solid], between(a.ends, b.ends) - a.radius - b.radius);
+                }
+            }
+            // The base stands on the floor beside the table, and does not move.
+            if a.solid != Solid::Base {
+                note([a.solid, Solid::Table], self.above_table(a));
+                note([a.solid, Solid::Part], self.above_part(a));
+            }
+        }
+        found
+    }
+
+    /// How far a capsule stays from the table, mm; below 0 where it is in it.
+    fn above_table(&self, capsule: &Capsule) -> f64 {
+        let [x, y] = self.body.table;
+        let half = DVec2::new(x, y) / 2.0;
+        let gap = |place: DVec3| {
+            let beside = (place.truncate().abs() - half).max(DVec2::ZERO);
+            beside.extend(place.z.max(0.0)).length() - capsule.radius
+        };
+        places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far a capsule stays from the metal that stands, mm.
+    fn above_part(&self, capsule: &Capsule) -> f64 {
+        let reach = (capsule.radius / CELL_MM).ceil() as i64 + 1;
+        let gap = |place: DVec3| {
+            let beside = (self.low - place).max(place - self.high).max(DVec3::ZERO);
+            // Below the part is the table.
+            if beside.with_z((place.z - self.high.z).max(0.0)).length() >= capsule.radius {
+                return f64::INFINITY;
+            }
+            let [x, y] = cell_of(place);
+            let around = (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| [x + i, y + j]));
+            let distance = |cell: [i64; 2]| {
+                let top = self.tops.get(&cell)?;
+                let centre = (DVec2::new(cell[0] as f64, cell[1] as f64) + 0.5) * CELL_MM;
+                let beside = ((place.truncate() - centre).abs() - CELL_MM / 2.0).max(DVec2::ZERO);
+                Some(beside.extend((place.z - top).max(0.0)).length() - capsule.radius)
+            };
+            around.filter_map(distance).fold(f64::INFINITY, f64::min)
+        };
+        if self.tops.is_empty() {
+            f64::INFINITY
+        } else {
+            places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// Whether two links move against each other in a joint that keeps them apart.
+fn joined(a: Solid, b: Solid) -> bool {
+    use Solid::{Base, Forearm, Hand, Torch, UpperArm};
+    matches!((a, b), (Torch, Torch | Hand) | (Hand, Forearm) | (Forearm, UpperArm) | (UpperArm, Base))
+}
+
+fn cell_of(place: DVec3) -> [i64; 2] {
+    (place.truncate() / CELL_MM).floor().as_i64vec2().to_array()
+}
+
+/// Places on a straight way, ends included.
+fn places(from: DVec3, to: DVec3) -> Vec<DVec3> {
+    // No arm or part needs more.
+    let steps = (from.distance(to) / STEP_MM).ceil().clamp(1.0, 1e4) as usize;
+    (0..=steps).map(|k| from.lerp(to, k as f64 / steps as f64)).collect()
+}
+
+/// Distance of two segments.
+fn between([p, q]: [DVec3; 2], [r, s]: [DVec3; 2]) -> f64 {
+    let (u, v, w) = (q - p, s - r, p - r);
+    let (a, b, c, d, e) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
+    let on = |along: f64, length: f64| if length > 1e-12 { (along / length).clamp(0.0, 1.0) } else { 0.0 };
+    let across = a * c - b * b;
+    let first = if across > 1e-9 * a * c { ((b * e - c * d) / across).clamp(0.0, 1.0) } else { 0.0 };
+    let second = on(b * first + e, c);
+    // The place on the first segment that is nearest to that on the second.
+    let first = on(b * second - d, a);
+    (p + u * first).distance(r + v * second)
+}
