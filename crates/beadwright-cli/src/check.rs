@@ -8,7 +8,7 @@ use beadwright::dialect::reading::{FAULTS, Fault};
 use beadwright::files::write_file;
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, Track};
+use beadwright::robot::{self, Cell};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn read_program(
     arguments: &Arguments,
     path: &Path,
-    loaded: &program::Loaded,
+    loaded: &beadwright::read_back::ReadBack,
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
     let value = |fault: &Fault| {
@@ -126,7 +126,7 @@ fn read_program(
 
 /// What the robot cannot do.
 fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
-    let track = Track::of(layers, profile);
+    let track = profile.track(layers);
     let place = robot::turn_table(cell, cell.part, &track).map_or(cell.part, |table| table.place);
     robot::reach(cell, place, &track).findings.iter().map(Finding::from).collect()
 }

@@ -1,7 +1,7 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::several::{Build, Order, Several};
-use crate::{model, profile, program, progress, say};
+use crate::{model, profile, progress, say};
 use anyhow::Context;
 use beadwright::Finding;
 use beadwright::check;
@@ -16,6 +16,7 @@ use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Expected, Header, MAX_LAYERS, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
 use beadwright::profile::Profile;
+use beadwright::read_back;
 use beadwright::report::{self, rows};
 use beadwright::task::Task;
 use beadwright::{dialect, fill};
@@ -419,7 +420,8 @@ pub(crate) fn deposit_settings(
     part: (DVec3, DVec3),
 ) -> anyhow::Result<DepositSettings> {
     let (bounds, layers) = plan::grid_over(profile, part);
-    program::fitted(grid, plan::deposit_settings(profile), &bounds, layers)
+    let settings = read_back::with_grid(grid, plan::deposit_settings(profile), &bounds, layers);
+    settings.with_context(|| format!("--grid {}", grid.unwrap_or_default()))
 }
 
 /// Name and size, and where each of several parts stands.

@@ -4,6 +4,7 @@ use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
 use beadwright::dialect::reading::ReadError;
 use beadwright::model::{ImportError, PartError};
+use beadwright::read_back::ReadBackError;
 
 /// A sentence, where there are flags.
 pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
@@ -14,18 +15,21 @@ pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
 
 fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
     Some(match cause.downcast_ref()? {
-        PartError::Units(_) => "--units in, cm, m or mm tells it; --scale enlarges the part.",
-        PartError::NoHeight => "--height tells it, in mm.",
+        PartError::Units(_) => "--units in, cm, m or mm sets it; --scale enlarges the part.",
+        PartError::NoHeight => "--height sets it, in mm.",
         PartError::HeightOfSolid => "Leave --height out.",
-        PartError::Import(ImportError::TooFar { .. }) => "--units tells the unit.",
+        PartError::Import(ImportError::TooFar { .. }) => "--units sets the unit.",
         PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged takes what there is of it.",
         _ => return None,
     })
 }
 
 fn program(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
-    let no_arc = matches!(cause.downcast_ref()?, ReadError::NoDeposition { .. });
-    no_arc.then_some("--arc-on and --arc-off tell them.")
+    match cause.downcast_ref()? {
+        ReadBackError::Read(ReadError::NoDeposition { .. }) => Some("--arc-on and --arc-off name them."),
+        ReadBackError::Printer => Some("--profile names it."),
+        _ => None,
+    }
 }
 
 fn library(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {

@@ -2,6 +2,7 @@
 
 use crate::plan::parse_grid;
 use crate::{model, profile, program, progress};
+use anyhow::Context;
 use beadwright::compare::{self, Entry};
 use beadwright::files::write_file;
 use beadwright::model::Units;
@@ -43,7 +44,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let part = program::part(arguments.model.as_deref(), arguments.units, &profile, &task)?;
     let loaded = source.load(&arguments.reading, &arguments.wanted, &profile, part.as_ref(), &task)?;
-    let settings = loaded.deposit_settings(arguments.grid)?;
+    let settings = loaded
+        .deposit_settings(arguments.grid)
+        .with_context(|| format!("--grid {}", arguments.grid.unwrap_or_default()))?;
     let entry = compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &None, &task)?;
     bar.finish_and_clear();
     let lead = format!(
@@ -66,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn print(out: &mut impl Write, loaded: &program::Loaded, entry: &Entry) -> std::io::Result<()> {
+fn print(out: &mut impl Write, loaded: &beadwright::read_back::ReadBack, entry: &Entry) -> std::io::Result<()> {
     let (t, f) = (&entry.totals, &entry.figures);
     writeln!(out, "{}  {}, {} layers\n", loaded.name, loaded.language, entry.layers.len())?;
     let mut rows = vec![

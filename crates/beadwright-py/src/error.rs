@@ -4,6 +4,7 @@ use beadwright::bead::library::LibraryError;
 use beadwright::dialect::own::OwnError;
 use beadwright::model::{ImportError, PartError};
 use beadwright::profile::ProfileError;
+use beadwright::read_back::ReadBackError;
 use pyo3::prelude::*;
 use std::error::Error;
 
@@ -60,11 +61,14 @@ fn remedy(error: &(dyn Error + 'static)) -> Option<&'static str> {
     if let Some(LibraryError::Inputs { .. } | LibraryError::TooFew { .. }) = error.downcast_ref() {
         return Some("inputs=[…] names those that are fitted.");
     }
+    if let Some(ReadBackError::Printer) = error.downcast_ref() {
+        return Some("profile=… names it.");
+    }
     Some(match error.downcast_ref()? {
-        PartError::Units(_) => "units=\"in\", \"cm\", \"m\" or \"mm\" tells it; scale=… enlarges the part.",
-        PartError::NoHeight => "height=… tells it, in mm.",
+        PartError::Units(_) => "units=\"in\", \"cm\", \"m\" or \"mm\" sets it; scale=… enlarges the part.",
+        PartError::NoHeight => "height=… sets it, in mm.",
         PartError::HeightOfSolid => "Leave height out.",
-        PartError::Import(ImportError::TooFar { .. }) => "units=… tells the unit.",
+        PartError::Import(ImportError::TooFar { .. }) => "units=… sets the unit.",
         PartError::Import(ImportError::Damaged { .. }) => "accept_damaged=True takes what there is of it.",
         _ => return None,
     })

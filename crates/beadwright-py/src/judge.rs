@@ -7,11 +7,12 @@ use crate::plan::Plan;
 use crate::profile::Profile;
 use crate::running::Running;
 use beadwright::compare::{self as library, Chosen, Entry, Totals};
+use beadwright::deposit::DepositSettings;
 use beadwright::deposit::field::{Grid, bands};
 use beadwright::deposit::stroke::strokes;
-use beadwright::deposit::{self, DepositSettings};
 use beadwright::metrics::Metrics;
 use beadwright::planar::Bounds;
+use beadwright::read_back;
 use beadwright::{Layer, plan};
 use glam::{DVec2, DVec3};
 use pyo3::prelude::*;
@@ -78,14 +79,7 @@ pub(crate) fn fitted(
     bounds: &Bounds,
     layers: usize,
 ) -> PyResult<DepositSettings> {
-    let Some(step) = grid else { return Ok(settings.fitted_to(bounds, layers)) };
-    let points = bounds.size().x * bounds.size().y / (step * step);
-    if (1e-3..=100.0).contains(&step) && points <= deposit::MANY_POINTS {
-        return Ok(DepositSettings { step, ..settings });
-    }
-    let least = (bounds.size().x * bounds.size().y / deposit::MANY_POINTS).sqrt().max(1e-3);
-    let message = format!("grid = {step} is impossible here: {least:.3} to 100 mm are.");
-    Err(raise(&message, Some("grid"), None))
+    read_back::with_grid(grid, settings, bounds, layers).map_err(|error| raise(&error.to_string(), Some("grid"), None))
 }
 
 /// The extent of a part as seen from above, mm.

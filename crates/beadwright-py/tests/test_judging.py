@@ -85,6 +85,14 @@ def test_a_program_without_arc_says_so() -> None:
         beadwright.simulate("G21 G90\nG0 X0 Y0\nG0 X10\n", profile="plasma-304-cnc")
 
 
+def test_a_printers_program_needs_the_profile_of_its_bead() -> None:
+    printed = "G21\nG90\nM83\nG1 Z0.2 F600\nG1 X0 Y0\nG1 X50 E2 F1800\nG1 Y50 E2\n"
+    with pytest.raises(BeadwrightError, match="printer's program"):
+        beadwright.simulate(printed)
+    judged = beadwright.simulate(printed, profile="fdm-abs-0.4")
+    assert judged.totals["deposited_length_mm"] == pytest.approx(100)
+
+
 def test_a_comparison_has_a_row_for_each_plan() -> None:
     part = box(60, 40, 6)
     compared = beadwright.compare(part, strategies=["contour", "zigzag"], grid=0.5)

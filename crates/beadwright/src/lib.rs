@@ -28,6 +28,7 @@ pub mod export;
 pub mod files;
 pub mod plan;
 pub mod profile;
+pub mod read_back;
 pub mod report;
 pub mod simulate;
 

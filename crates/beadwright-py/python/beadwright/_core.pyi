@@ -37,7 +37,7 @@ __all__ = [
     "reach",
     "simulate",
     "strategy_names",
-    "told_profile",
+    "named_profile",
 ]
 VERSION: Final[str]
 
@@ -185,13 +185,13 @@ def judge(plan: Plan, grid: float | None, threads: int | None, progress: _Step) 
 def height_field(plan: Plan, layer: int, grid: float | None) -> tuple[Array, tuple[float, float], float]: ...
 def page(title: str, lead: str, judged: list[Judged]) -> str: ...
 def language(text: str) -> str | None: ...
-def told_profile(text: str) -> str | None: ...
+def named_profile(text: str) -> str | None: ...
 def simulate(
     name: str,
     text: str,
     module: Callable[[str], str | None],
     profile: Profile,
-    reading: tuple[list[str], list[str], float | None],
+    reading: tuple[list[str], list[str], float | None, bool],
     part: Part | None,
     grid: float | None,
     threads: int | None,

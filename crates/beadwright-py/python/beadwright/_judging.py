@@ -153,7 +153,8 @@ def simulate(
 
     A program is a path or its text (then ``modules`` has the texts of what it calls, by file name, as :meth:`Plan.post`
     gives them), in G-code, KRL, RAPID, FANUC TP, INFORM or URScript. With the ``part`` it was made for, voids and overfill
-    are reported, too. Left out, the ``profile`` is the one that the program names, or ``cmt-al2319-kuka``. ``arc_on`` and
+    are reported, too. Left out, the ``profile`` is the one that the program names, or ``cmt-al2319-kuka``; a printer's
+    program that names none needs one. ``arc_on`` and
     ``arc_off`` are codes that light and end the arc, ``bead_width`` (mm) takes the place of the profile's, ``grid`` is the
     distance of the deposit model's points, mm.
 
@@ -163,9 +164,9 @@ def simulate(
         with steps(progress) as step:
             return Judged(_core.judge(program._inner, grid, threads, step))
     name, text, module = _source(program, modules)
-    wanted = profile_of(profile if profile is not None else _core.told_profile(text) or "cmt-al2319-kuka")
+    wanted = profile_of(profile if profile is not None else _core.named_profile(text) or "cmt-al2319-kuka")
     solid = None if part is None else part_of(part)._inner
-    reading = (list(arc_on), list(arc_off), bead_width)
+    reading = (list(arc_on), list(arc_off), bead_width, profile is not None)
     with steps(progress) as step:
         core = _core.simulate(name, text, module, wanted._inner, reading, solid, grid, threads, step)
     return Judged(core)

@@ -61,6 +61,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["adapt", "export", "files", "simulate"],
             &["build"],
             &["compare"],
+            &["read_back"],
         ],
     ),
     ("papers", &[&["goal"], &["a_skeleton_hybrid", "b_fdm_order", "c_compound", "d_thin_wall"]]),
