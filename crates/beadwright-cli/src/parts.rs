@@ -2,7 +2,7 @@
 
 use crate::plan::{self, Arguments, Files, Refused, print_findings, print_head, print_summary, refused};
 use crate::several::Programs;
-use crate::{progress, say};
+use crate::{progress, remedy, say};
 use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
@@ -110,7 +110,8 @@ impl Planned<'_> {
     /// Writes the files and tells of them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
-        let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&Task::new())?);
+        let found =
+            check::all_findings(&summary, &model.repair().sentences(), files.check(&Task::new())?, remedy::words);
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {

@@ -1,13 +1,14 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::several::{Build, Order, Several};
-use crate::{model, profile, progress, say};
+use crate::{model, profile, progress, remedy, say};
 use anyhow::Context;
 use beadwright::Finding;
 use beadwright::check;
 use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
+use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
@@ -229,14 +230,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
-        return Err(Refused { reasons: summary.forbidden, report }.into());
+        let found = check::all_findings(&summary, &[], &[], remedy::words).into_iter();
+        let reasons = found.filter(|finding| finding.severity == Severity::Serious);
+        return Err(Refused { reasons: reasons.map(|finding| finding.sentence()).collect(), report }.into());
     }
     let faults = check::rehearse(&profile).into_iter();
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     let own = model.notes().iter().cloned();
     summary.notes.splice(0..0, own.chain(faults).chain(note).chain(files.notes()));
-    let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&task)?);
+    let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&task)?, remedy::words);
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 
@@ -293,7 +296,10 @@ pub(crate) fn refused(error: PlanError<anyhow::Error>, model: &Path) -> anyhow::
     match error {
         PlanError::Sink(error) => error,
         PlanError::Cancelled(_) => anyhow::anyhow!("cancelled; nothing was written"),
-        other => anyhow::anyhow!("{}: {other}", model.display()),
+        other => {
+            let remedy = remedy::of_plan(&other).map_or(String::new(), |remedy| format!(" {remedy}"));
+            anyhow::anyhow!("{}: {other}{remedy}", model.display())
+        }
     }
 }
 
@@ -387,6 +393,7 @@ impl Sink for Files<'_> {
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
         let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.selection.clone())?;
+        let files = files.in_words(remedy::words);
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }

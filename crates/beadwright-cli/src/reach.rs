@@ -102,6 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 out,
                 "\nThe arm does not reach all of the part from any place that was tried: the part is too large."
             )?,
+            None if !reach.is_reachable() => writeln!(out, "\n--suggest looks for a better place for the part.")?,
             None => {}
         }
         if let Some(page) = &arguments.output {

@@ -4,7 +4,23 @@ use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
 use beadwright::dialect::reading::ReadError;
 use beadwright::model::{ImportError, PartError};
+use beadwright::plan::PlanError;
 use beadwright::read_back::ReadBackError;
+
+/// What the command has against a kind of finding.
+pub(crate) fn words(kind: &str) -> Option<&'static str> {
+    Some(match kind {
+        "gap-closed" => "inspect --repair shows and mends it",
+        "open-contour-dropped" => "inspect --repair --fill-holes MM, --surface solid or wall",
+        "high-start" | "nothing-below" => "--from-z MM, --lay-flat",
+        "in-the-air" => "--orient, --lay-flat, --from-z MM",
+        "hanging-island" | "overhang" => "--orient",
+        "bare" | "void" => "compare",
+        "built-height" => "adapt",
+        "reach" => "reach --suggest",
+        _ => return None,
+    })
+}
 
 /// A sentence, where there are flags.
 pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
@@ -13,11 +29,23 @@ pub(crate) fn of(error: &anyhow::Error) -> Option<&'static str> {
         .find_map(|cause| part(cause).or_else(|| program(cause)).or_else(|| library(cause)).or_else(|| scan(cause)))
 }
 
+/// The same for an error of planning.
+pub(crate) fn of_plan<E>(error: &PlanError<E>) -> Option<&'static str> {
+    match error {
+        PlanError::Open { .. } => {
+            Some("--surface solid and --surface wall set it; inspect --repair --fill-holes MM mends the model.")
+        }
+        PlanError::NoHelix { .. } => Some("--surface wall sets it."),
+        _ => None,
+    }
+}
+
 fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
     Some(match cause.downcast_ref()? {
         PartError::Units(_) => "--units in, cm, m or mm sets it; --scale enlarges the part.",
         PartError::NoHeight => "--height sets it, in mm.",
         PartError::HeightOfSolid => "Leave --height out.",
+        PartError::Import(ImportError::Outline { .. }) => "--height gives it one.",
         PartError::Import(ImportError::TooFar { .. }) => "--units sets the unit.",
         PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged takes what there is of it.",
         _ => return None,

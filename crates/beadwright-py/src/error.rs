@@ -56,6 +56,18 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
     }
 }
 
+/// What the package has against a kind of finding.
+pub(crate) fn words(kind: &str) -> Option<&'static str> {
+    Some(match kind {
+        "high-start" | "nothing-below" => "Part.above(z), stand=\"flat\"",
+        "in-the-air" => "stand=\"orient\" or \"flat\", Part.above(z)",
+        "hanging-island" | "overhang" => "stand=\"orient\"",
+        "bare" | "void" => "compare",
+        "reach" => "reach(…, suggest=True)",
+        _ => return None,
+    })
+}
+
 /// Which argument helps; the library knows of none.
 fn remedy(error: &(dyn Error + 'static)) -> Option<&'static str> {
     if let Some(LibraryError::Inputs { .. } | LibraryError::TooFew { .. }) = error.downcast_ref() {

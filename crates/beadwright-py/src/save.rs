@@ -1,5 +1,6 @@
 //! The files of a plan: the same bytes as the command writes.
 
+use crate::error::words;
 use crate::planned::Planned;
 use beadwright::Finding;
 use beadwright::check;
@@ -70,7 +71,7 @@ pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, C
     let found = check::grouped(&check::check_figures(layers, profile, judged));
     let mut summary = planned.summary.clone();
     summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());
-    Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found))
+    Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found, words))
 }
 
 /// The programs alone: the text of each file by its name.

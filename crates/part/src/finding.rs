@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// How much a finding matters, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -57,7 +56,21 @@ pub struct Finding {
     /// A sentence that says what, and where.
     pub text: String,
     /// A sentence that says what to do.
-    pub remedy: Option<Cow<'static, str>>,
+    pub remedy: Option<String>,
+}
+
+/// By the kind of a finding, what the program that people use has against it, in its own words: flags, arguments, buttons.
+pub type Words = fn(kind: &str) -> Option<&'static str>;
+
+/// The words of the library, which has none.
+pub fn no_words(_kind: &str) -> Option<&'static str> {
+    None
+}
+
+/// Part of a sentence as a sentence.
+pub fn as_sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).chain(['.']).collect()).unwrap_or_default()
 }
 
 impl Finding {
@@ -70,6 +83,18 @@ impl Finding {
     #[must_use]
     pub fn sized(self, size: f64) -> Self {
         Self { size: Some(size), ..self }
+    }
+
+    /// Adds the words of the program that people use to the remedy.
+    #[must_use]
+    pub fn in_words(mut self, words: Words) -> Self {
+        if let Some(more) = words(self.kind) {
+            self.remedy = Some(match self.remedy {
+                Some(remedy) => format!("{} ({more}).", remedy.trim_end_matches('.')),
+                None => format!("What helps: {more}."),
+            });
+        }
+        self
     }
 
     /// What is wrong and what to do, in sentences for people.

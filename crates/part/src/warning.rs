@@ -5,10 +5,9 @@ mod about;
 
 pub use about::About;
 
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, as_sentence};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// What happened.
@@ -95,7 +94,7 @@ impl From<&WarningSummary> for Finding {
             layer: Some(largest.layer),
             place: Some(largest.place.extend(warning.z)),
             size: Some(largest.size),
-            remedy: warning.remedy().map(Cow::Borrowed),
+            remedy: Some(as_sentence(warning.kind.about().remedy)),
             ..Self::new(warning.kind.about().name, warning.kind.severity(), warning.text())
         }
     }
@@ -275,34 +274,6 @@ impl WarningSummary {
                 format!("{layers}: nothing to deposit: the part has a gap there, or all of its contours were dropped.")
             }
         }
-    }
-
-    /// What to do, as a sentence; `None` where that depends on the part.
-    fn remedy(&self) -> Option<&'static str> {
-        Some(match self.kind {
-            WarningKind::OpenContourDropped => {
-                "The surface has a hole or a slit there: mend the model, or bridge wider gaps (slice.close_gap, mm)."
-            }
-            WarningKind::ContoursUnited => "Check the picture of the layer.",
-            WarningKind::IslandTooSmall => {
-                "A narrower bead or a larger part would be needed; small round islands can be built of dots ([spot])."
-            }
-            WarningKind::HighStart => {
-                "Begin there (--from-z, with this number of mm), or take a narrower bead (bead.width)."
-            }
-            WarningKind::NothingBelow => {
-                "Begin there (--from-z), or take a narrower bead (bead.width), which has room in the layers below."
-            }
-            WarningKind::InTheAir => {
-                "Turn the part (--orient), begin above the place (--from-z), or add metal below that is machined off."
-            }
-            WarningKind::Relit => {
-                "Let straight moves and arcs be fitted (program.chord_tolerance, program.arcs), and fewer are cut."
-            }
-            WarningKind::ManyPoints => "Raise slice.simplify or let arcs be fitted.",
-            WarningKind::TooCold => "Heat the plate (substrate.preheat).",
-            _ => return None,
-        })
     }
 
     fn layer_text(&self) -> String {

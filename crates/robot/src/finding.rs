@@ -136,15 +136,15 @@ impl ReachFinding {
         match self.trouble {
             Trouble::OutOfReach { beyond, reach } if beyond > 0.0 => format!(
                 "{place}: out of reach; the wrist misses the place by {beyond:.0} mm (the arm is {reach:.0} mm long from \
-                 axis 2 to the wrist){more}. Move the part nearer to the robot, or try --suggest."
+                 axis 2 to the wrist){more}. Move the part nearer to the robot."
             ),
             Trouble::OutOfReach { .. } => format!(
                 "{place}: out of reach; the arm cannot get there without changing over to another posture{more}. Move the \
-                 part, or try --suggest."
+                 part."
             ),
             Trouble::Limit { joint, angle, low, high } => format!(
                 "{place}: joint {} would have to stand at {angle:.1}°, its limits are {low:.0}° and {high:.0}°{more}. \
-                 Move or turn the part, or try --suggest.",
+                 Move or turn the part.",
                 joint + 1
             ),
             Trouble::Speed { joint, speed, limit, arc } => format!(

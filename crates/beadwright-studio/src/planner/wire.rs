@@ -18,7 +18,6 @@ use beadwright::task::Stage;
 use beadwright::weld::Torch;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 #[derive(Serialize, Deserialize)]
@@ -225,13 +224,12 @@ impl Found {
     fn of(finding: Finding) -> Self {
         let Finding { kind, count, layer, pass, place, size, text, remedy, .. } = finding;
         let check = CHECKS.iter().position(|known| known.name == kind).unwrap_or(CHECKS.len());
-        Self { check, count, layer, pass, place, size, text, remedy: remedy.map(Cow::into_owned) }
+        Self { check, count, layer, pass, place, size, text, remedy }
     }
 
     fn finding(self) -> Option<Finding> {
         let Self { check, count, layer, pass, place, size, text, remedy } = self;
         let check = CHECKS.get(check)?;
-        let remedy = remedy.map(Cow::Owned);
         Some(Finding { count, layer, pass, place, size, remedy, ..Finding::new(check.name, check.severity(), text) })
     }
 }

@@ -1,7 +1,6 @@
 //! Parts that end above or below the plan.
 
 use super::{Check, Finding, Subject};
-use std::borrow::Cow;
 
 pub(super) const CHECK: Check = Check {
     name: "built-height",
@@ -35,7 +34,6 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let worst = if built.hollow > built.peak { built.hollow_place } else { built.peak_place };
     let found = CHECK.of_layer(last, Some(worst.extend(last.z)), text).sized(built.hollow.max(built.peak));
     let level = subject.profile.is_level();
-    let remedy =
-        level.then_some(Cow::Borrowed("Measure the layers as they are built and correct the rest (beadwright adapt)."));
+    let remedy = level.then(|| "Measure the layers as they are built, and correct the rest.".to_owned());
     vec![Finding { remedy: remedy.or(found.remedy.clone()), ..found }]
 }

@@ -32,7 +32,7 @@ mod wire_balance;
 pub use rehearsal::rehearse;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, Words, as_sentence};
 use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::plan::{self, Summary};
@@ -42,7 +42,7 @@ use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
 use planar::Bounds;
 use serde::Serialize;
-use std::borrow::{Borrow, Cow};
+use std::borrow::Borrow;
 use std::collections::BTreeSet;
 
 /// The checks.
@@ -231,8 +231,9 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
 }
 
 /// All that is to be said of a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
-/// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice.
-pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
+/// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are in the `words` of the
+/// program that people use.
+pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding], words: Words) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
     let new = |kind, severity| move |text: &String| Finding::new(kind, severity, text.clone());
     let said: BTreeSet<String> = warned.iter().map(Finding::sentence).collect();
@@ -245,7 +246,7 @@ pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> V
     let mut known = BTreeSet::new();
     all.retain(|finding| known.insert(finding.text.clone()));
     all.sort_by_key(|finding| finding.severity);
-    all
+    all.into_iter().map(|finding| finding.in_words(words)).collect()
 }
 
 /// Whether a warning of the plan already says what a check of that name finds.
@@ -261,10 +262,7 @@ impl Check {
     }
 
     fn of_plan(&self, text: String) -> Finding {
-        let mut letters = self.remedy.chars();
-        let remedy: Option<String> =
-            letters.next().map(|first| first.to_uppercase().chain(letters).chain(['.']).collect());
-        Finding { remedy: remedy.map(Cow::Owned), ..Finding::new(self.name, self.severity(), text) }
+        Finding { remedy: Some(as_sentence(self.remedy)), ..Finding::new(self.name, self.severity(), text) }
     }
 
     fn of_layer(&self, layer: &Layer, place: Option<DVec3>, text: String) -> Finding {

@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "layers with more void in the deposit model than check.max_void",
     why: "voids stay in the part as pores and lacks of fusion",
     example: "layer 12: 4.10 % of the area stays empty; the limit is 3 %.",
-    remedy: "see what other strategies leave (`beadwright compare`), or take a smaller stepover or contour gap",
+    remedy: "compare what other strategies leave, or take a smaller stepover or contour gap",
     find,
 };
 

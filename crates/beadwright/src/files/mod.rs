@@ -20,7 +20,7 @@ use crate::check::{self, LayerFigures};
 use crate::deposit::{Figures, Judgement, stack::Growth};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
-use crate::finding::Finding;
+use crate::finding::{Finding, Words, no_words};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -194,6 +194,7 @@ pub struct PlanFiles {
     /// Totals of what the programs weld.
     totals: Metrics,
     names: BTreeSet<String>,
+    words: Words,
 }
 
 impl PlanFiles {
@@ -229,9 +230,16 @@ impl PlanFiles {
             selection,
             totals,
             names,
+            words: no_words,
         };
         files.note(&chunks);
         Ok((files, chunks))
+    }
+
+    /// The files with remedies in the words of the program that people use.
+    #[must_use]
+    pub fn in_words(self, words: Words) -> Self {
+        Self { words, ..self }
     }
 
     /// Takes the next layer, and what the deposit model says of it; returns their text.
@@ -273,7 +281,7 @@ impl PlanFiles {
     /// What people must know about the programs, once all layers are written: sentences.
     pub fn notes(&self) -> Vec<String> {
         let unchecked = (self.points > MOST_CHECKED).then(|| {
-            format!("The plan has {} points, so its checks were left out: `beadwright check` runs them.", self.points)
+            format!("The plan has {} points, so its checks were left out. They can be run on plan.json.", self.points)
         });
         self.programs.writers.iter().flat_map(|writer| writer.notes()).chain(unchecked).collect()
     }
@@ -325,7 +333,7 @@ impl PlanFiles {
             metrics["programs"] = serde_json::json!(totals);
         }
         metrics["built"] = serde_json::json!(self.built);
-        let findings = check::all_findings(summary, &repair.sentences(), &found);
+        let findings = check::all_findings(summary, &repair.sentences(), &found, self.words);
         metrics["findings"] = serde_json::json!(findings);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &findings)));
@@ -334,7 +342,7 @@ impl PlanFiles {
 
     /// The report on a plan whose programs are not written, in which the places are seen why.
     pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
-        let findings = check::all_findings(summary, &repair.sentences(), &[]);
+        let findings = check::all_findings(summary, &repair.sentences(), &[], self.words);
         Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &findings))
     }
 

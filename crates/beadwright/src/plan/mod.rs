@@ -14,9 +14,12 @@
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
 //! | [`expected`](expected()) | about how much a plan will hold |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
+//! | `judged` | how the deposit model looks at plans |
 //! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
+//! | `result` | what a plan is, where its layers go, why there may be none |
+//! | `reasons` | why a plan holds another volume than the part, or nothing |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
 //! | `support` | whether passes lie on the metal below |
@@ -30,228 +33,51 @@ mod emitter;
 mod expected;
 mod filled;
 mod helix;
+mod judged;
 mod level_layers;
 mod levels;
 mod parts;
 mod preview;
+mod reasons;
 mod relight;
+mod result;
 mod scan_lines;
 mod support;
 pub mod warm;
 
 pub use expected::{Expected, expected};
+pub use judged::{deposit_settings, deposit_settings_over, grid_over, welded};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
+pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
 
-use crate::bead::wall::WallError;
-use crate::deposit::{DepositSettings, Figures, Nominal, Stack};
+use crate::deposit::Stack;
 use crate::fill::{self, Strategy};
-use crate::layer::{Extent, Layer};
+use crate::layer::Extent;
 use crate::metrics::Metrics;
 use crate::model::holes::{self, Opening};
 use crate::model::wall_curves::WallCurves;
 use crate::model::{Mesh, PartRef};
 use crate::order;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, LayerFit, Slab, Slicer};
+use crate::slice::{self, BATCH, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, WarningSummary, Warnings};
-use crate::weld;
 use centre_lines::{weld_curves, weld_lines};
 use emitter::Emitter;
 use filled::Filled;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use helix::{Helix, NoTurn};
 use planar::Bounds;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
+use reasons::{left_over, other_volume, why_empty};
 use std::convert::Infallible;
 use support::Support;
 use warm::{Heat, Warmth};
 
-/// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
-/// profile has them.
-pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    let ends = weld::lit_ends(&profile.start_stop, layer.lit);
-    if !ends.changes_passes() {
-        return Cow::Borrowed(layer);
-    }
-    let passes = layer.passes.iter().map(|pass| weld::welded(pass, &ends, profile.bead.height)).collect();
-    Cow::Owned(Layer { passes, ..layer.clone() })
-}
-
-/// The deposit model's settings for plans made with a profile.
-pub fn deposit_settings(profile: &Profile) -> DepositSettings {
-    let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
-    let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
-    DepositSettings::new(nominal, profile.fill.machining_allowance)
-}
-
-/// Like [`deposit_settings`], with a grid fitted to a part: its lowest and its highest place, mm.
-pub fn deposit_settings_over(profile: &Profile, part: (DVec3, DVec3)) -> DepositSettings {
-    let (bounds, layers) = grid_over(profile, part);
-    deposit_settings(profile).fitted_to(&bounds, layers)
-}
-
-/// What the grid for a part is fitted to: the box around it seen from above, and about how many layers it takes.
-pub fn grid_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> (Bounds, usize) {
-    (Bounds { min: low.truncate(), max: high.truncate() }, (high.z / profile.layers.height) as usize)
-}
-
-/// What is the same for all layers of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Header {
-    /// Name of the part, for files and headings.
-    pub part: String,
-    /// Name of the profile.
-    pub profile: String,
-    /// Name of the strategy.
-    pub strategy: String,
-    /// How many layers the part has, and where it lies.
-    pub extent: Extent,
-}
-
-/// A whole plan.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// What is the same for all layers.
-    pub header: Header,
-    /// The layers, lowest first.
-    pub layers: Vec<Layer>,
-    /// Totals and warnings.
-    pub summary: Summary,
-}
-
-/// Totals and warnings of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
-    /// The totals.
-    pub metrics: Metrics,
-    /// Events on layers.
-    pub warnings: Warnings,
-    /// What does not fit in the profile, as sentences.
-    pub notes: Vec<String>,
-    /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
-    pub forbidden: Vec<String>,
-}
-
-impl Summary {
-    /// The totals, warnings and notes, and what the deposit model says: the content of `metrics.json`.
-    pub fn json(&self, figures: Option<&Figures>) -> serde_json::Value {
-        let warnings: Vec<_> = self.warnings.summaries().collect();
-        let mut value = serde_json::json!(self.metrics);
-        value["coverage"] = self.metrics.coverage().into();
-        value["warnings"] = serde_json::json!(warnings);
-        value["notes"] = serde_json::json!(self.notes);
-        value["forbidden"] = serde_json::json!(self.forbidden);
-        value["deposit"] = serde_json::json!(figures.map(Figures::summary));
-        value
-    }
-}
-
-/// Why a plan could not be made. `E` is the error of the sink.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError<E> {
-    /// Stopped by the caller.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The profile names a strategy that does not exist.
-    #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
-    UnknownStrategy(String),
-    /// The plan would be too large.
-    #[error(
-        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check the unit of the file and layers.height."
-    )]
-    TooManyLayers {
-        /// Height of the part, mm.
-        height: f64,
-        /// Number of layers.
-        layers: usize,
-        /// Thickness of a layer, mm.
-        layer_height: f64,
-    },
-    /// The bead gives no wall.
-    #[error(transparent)]
-    Wall(#[from] WallError),
-    /// A surface that is not closed, of which nobody said what it stands for.
-    #[error(
-        "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm by {width:.1} mm. If it is the skin of a solid, close it \
-         (`inspect --repair --fill-holes MM`), or say --surface solid (slice.surface), which fills what its contours enclose and leaves \
-         out those that do not close. If it stands for a wall, say --surface wall, which lays one bead along it.", .place.x, .place.y, .place.z
-    )]
-    Open {
-        /// Width of the widest opening, mm.
-        width: f64,
-        /// A place on it, mm.
-        place: DVec3,
-    },
-    /// Nothing would be laid.
-    #[error("nothing would be deposited: {0}")]
-    Empty(String),
-    /// A layer that is not one closed wall, though all are to be turns of a helix.
-    #[error(
-        "layer {layer} cannot be a turn of the helix that wall.helix asks for: {why}. Leave wall.helix out, plan a surface as walls \
-         (--surface wall), or plan the part up to there."
-    )]
-    NoHelix {
-        /// Number of the layer, from 1.
-        layer: usize,
-        /// Why, as a clause.
-        why: String,
-    },
-    /// Parts cannot be welded one after another with this profile.
-    #[error("the parts cannot be welded one after another: {0}")]
-    Parts(&'static str),
-    /// The sink failed.
-    #[error(transparent)]
-    Sink(E),
-}
-
 /// No plan has more layers than this.
 pub const MAX_LAYERS: usize = 100_000;
-
-/// Receives the layers of a plan in deposition order.
-pub trait Sink {
-    /// What can go wrong while a layer is taken in.
-    type Error: Send;
-
-    /// Called once, before the first layer.
-    ///
-    /// # Errors
-    /// Whatever the sink fails with; planning then stops.
-    fn begin(&mut self, header: &Header) -> Result<(), Self::Error>;
-
-    /// Takes the next layer.
-    ///
-    /// # Errors
-    /// Whatever the sink fails with; planning then stops.
-    fn layer(&mut self, layer: Layer) -> Result<(), Self::Error>;
-}
-
-/// Keeps the layers of a plan.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Collect {
-    /// What is the same for all layers; `None` before the plan begins.
-    pub header: Option<Header>,
-    /// The layers so far.
-    pub layers: Vec<Layer>,
-}
-
-impl Sink for Collect {
-    type Error = Infallible;
-
-    fn begin(&mut self, header: &Header) -> Result<(), Infallible> {
-        self.header = Some(header.clone());
-        Ok(())
-    }
-
-    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.layers.push(layer);
-        Ok(())
-    }
-}
 
 /// Plans a part that stands on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
 /// for files and headings.
@@ -360,91 +186,15 @@ fn plan_mesh<S: Sink + Send>(
             w.kind == WarningKind::OpenContourDropped && w.largest.size > TORN * profile.bead.width
         };
         let torn = summary.warnings.summaries().find(torn).map(WarningSummary::sentence);
-        summary
-            .forbidden
-            .extend(torn.map(|torn| format!("{torn} --surface solid goes on without what does not close.")));
+        summary.forbidden.extend(torn.map(|torn| {
+            format!("{torn} With slice.surface = \"solid\" the rest is planned without what does not close.")
+        }));
     }
     Ok(summary)
 }
 
 /// A contour that does not close and is longer than this, in bead widths, is a part of the solid that would be missing.
 const TORN: f64 = 4.0;
-
-/// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
-/// elsewhere than the part.
-fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
-    /// Fraction of the mesh's volume.
-    const WORTH_TELLING: f64 = 0.01;
-    let slices = summary.metrics.part_volume_mm3;
-    let more = slices / mesh - 1.0;
-    if more.abs() <= WORTH_TELLING || mesh <= 0.0 {
-        return None;
-    }
-    let had = |kind| summary.warnings.summaries().any(|w| w.kind == kind);
-    let why = if summary.metrics.mesh_volume_mm3.is_none() {
-        "the surface is not closed, so the mesh's volume is a guess"
-    } else if had(WarningKind::ContoursUnited) && more < 0.0 {
-        "shells overlap, and the mesh counts twice what the slices count once"
-    } else if had(WarningKind::OpenContourDropped) {
-        "contours that are not closed were dropped"
-    } else if left {
-        "the layers do not end where the part does"
-    } else {
-        "each layer is as the part is at its middle; thinner layers follow the part more closely"
-    };
-    let percent = 100.0 * more;
-    Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
-}
-
-/// Why a solid gives no passes: what was dropped on the way, or its width.
-fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
-    let told = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
-    let size = mesh.size();
-    let part = format!("the part is {:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z);
-    if summary.metrics.slice_area_mm2 == 0.0 {
-        return match told(WarningKind::OpenContourDropped) {
-            Some(open) => format!("the surface of the model is not closed. {open}"),
-            None => told(WarningKind::Sliver).or(told(WarningKind::ContoursUnited)).map_or_else(
-                || format!("the slices are empty ({part}). Surfaces of opposite sense cancel: check that the model is a solid."),
-                |lost| format!("the slices are empty. {lost}"),
-            ),
-        };
-    }
-    let width = profile.bead.width;
-    let remedy = "Take a narrower bead or a larger part, or check the unit of the file.";
-    match told(WarningKind::PassTooShort) {
-        Some(short) => {
-            format!(
-                "what is wide enough for a bead of {width} mm gives passes too short to weld ({part}). {short} {remedy}"
-            )
-        }
-        None => format!("no part of the slices is wide enough for a bead of {width} mm ({part}). {remedy}"),
-    }
-}
-
-/// How far the last layer ends below or above the part, as a sentence where it matters.
-fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Option<String> {
-    /// Fraction of the height.
-    const WORTH_TELLING: f64 = 0.005;
-    let (top, last) = (mesh.bounds().1.z, slabs.last()?.z);
-    let (left, percent) = ((top - last).abs(), 100.0 * (top - last).abs() / top);
-    if left <= WORTH_TELLING * top {
-        return None;
-    }
-    let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
-    let ends = format!("The part is {top:.2} mm high, {layers} at {last:.2} mm");
-    Some(if last < top {
-        let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
-        let each = even.first().map_or(0.0, |slab| slab.height);
-        format!(
-            "{ends}: the upper {left:.2} mm ({percent:.1} %) are not built. layers.fit = \"last\" adds a layer, \"even\" \
-             makes {} layers of {each:.3} mm.",
-            even.len()
-        )
-    } else {
-        format!("{ends}: {left:.2} mm ({percent:.1} %) above it.")
-    })
-}
 
 /// The middle of a part, seen from above.
 fn middle(mesh: &Mesh) -> DVec2 {

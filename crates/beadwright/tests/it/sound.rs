@@ -128,6 +128,22 @@ fn lines_that_change_sides_at_a_common_vertex_cross() {
     assert_eq!(sound::crossings(&[ring]).next(), None);
 }
 
+/// A line that comes back along another and leaves it by a hair beyond does not cross it, however its pieces are divided.
+#[test]
+fn lines_that_touch_along_a_stretch_do_not_cross() {
+    // As the strategy `fermat` lays a star: the second line ends 8 nm beyond the first, then goes back to its own side.
+    let first = [(0.0, -5.0), (0.0, 0.0), (10.0, 0.0), (10.0, 5.0)].map(DVec2::from);
+    let second = [(20.0, 0.0), (4.0, 8e-6), (3.9, -9.0)].map(DVec2::from);
+    let divided = [(20.0, 0.0), (8.0, 6e-6), (4.0, 8e-6), (3.98, -1.8), (3.9, -9.0)].map(DVec2::from);
+    for turn in [0.0, 0.3, 1.7] {
+        let turned = |line: &[DVec2]| line.iter().map(|p| DVec2::from_angle(turn).rotate(*p)).collect::<Vec<_>>();
+        for second in [&second[..], &divided] {
+            let lines = [turned(&first[1..3]), turned(second)];
+            assert_eq!(sound::crossings(&lines).next(), None, "turned {turn}");
+        }
+    }
+}
+
 /// Where the hybrid cannot, the best of the other strategies fills, with hardly more arc starts than islands.
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]

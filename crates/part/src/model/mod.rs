@@ -121,7 +121,7 @@ pub enum ImportError {
     Iges,
     /// Outlines where a solid is needed.
     #[error(
-        "this is {found}: a part grows from it with a height (`plan --height`), but here a solid is needed. Save the model as STL (binary or ASCII)."
+        "this is {found}: a part grows from it when it is given a height, but here a solid is needed. Save the model as STL (binary or ASCII)."
     )]
     Outline {
         /// What it is.

@@ -48,12 +48,12 @@ impl WarningKind {
             Self::GapClosed => (
                 "gap-closed",
                 "the surface of the model has a gap, which was bridged",
-                "look whether the gap is wider than you trust; `inspect --repair` shows and mends the model",
+                "see whether the gap is wider than you trust, and mend the model if it is",
             ),
             Self::OpenContourDropped => (
                 "open-contour-dropped",
                 "the surface has a hole or a slit, so a contour does not close and is left out",
-                "mend the model (`inspect --repair --fill-holes MM`), bridge wider gaps with slice.close_gap, or say what the surface stands for (`plan --surface`)",
+                "mend the model, bridge wider gaps with slice.close_gap, or say what the surface stands for (slice.surface)",
             ),
             Self::ContoursUnited => (
                 "contours-united",
@@ -68,55 +68,48 @@ impl WarningKind {
             Self::IslandTooSmall => (
                 "island-too-small",
                 "no bead has room in an island",
-                "take a narrower bead or a larger part, or say how dots are welded (`[spot]`)",
+                "take a narrower bead or a larger part, or say how dots are welded ([spot])",
             ),
             Self::ThinWall => (
                 "thin-wall",
                 "a wall is thinner than the narrowest bead, so metal lies beside it",
-                "machine it off, or allow narrower beads if the process can weld them (`[loop]`, `[wall]`)",
+                "machine it off, or allow narrower beads if the process can weld them ([loop], [wall])",
             ),
             Self::Refilled => (
                 "refilled",
                 "the strategy would have left the outline or crossed itself there, so another one fills the island, the best by the deposit model",
-                "look at the picture of the layer; if it will not do, take another strategy",
+                "look at the picture of the layer, and take another strategy if it will not do",
             ),
-            Self::Bare => (
-                "bare",
-                "beads do not reach part of an island",
-                "see what other strategies leave (`beadwright compare`)",
-            ),
+            Self::Bare => ("bare", "beads do not reach part of an island", "compare what other strategies leave"),
             Self::Unsound => (
                 "unsound",
                 "passes leave the part or cross each other, and nothing could replace them",
-                "take another strategy or another bead.width; the program is not written unless you insist",
+                "take another strategy or another bead.width",
             ),
             Self::HighStart => (
                 "high-start",
                 "no bead has room in the lowest layers, as where a round part lies on the plate, so the first would be laid in the air",
-                "begin where it has room (`--from-z MM`), stand the part on a flat face (`--lay-flat`), or take a narrower bead; \
-                 the program is not written unless you insist",
+                "begin at that height, stand the part on a flat face, or take a narrower bead (bead.width)",
             ),
             Self::NothingBelow => (
                 "nothing-below",
                 "the beads of a whole layer would be laid in the air",
-                "begin there (`--from-z MM`), turn the part, or take a narrower bead, which has room in the layers below; the \
-                 program is not written unless you insist",
+                "begin at that height, turn the part, or take a narrower bead (bead.width), which has room in the layers below",
             ),
             Self::InTheAir => (
                 "in-the-air",
                 "a pass has no bead below for more than half of its length, or for two bead widths on end",
-                "turn the part (`--orient`, `--lay-flat`), begin above the place (`--from-z MM`), or add metal below that is \
-                 machined off; the program is not written unless you insist",
+                "turn the part, begin above the place, or add metal below that is machined off",
             ),
             Self::HangingIsland => (
                 "hanging-island",
                 "a small island begins in the air, and nothing stands on it, or a pass of two bead widths hangs, so it is left out",
-                "turn the part (`--orient`), or add metal below that is machined off, if the island matters",
+                "turn the part, or add metal below that is machined off, if the island matters",
             ),
             Self::Overhang => (
                 "overhang",
                 "a layer reaches farther beyond the one below than check.max_overhang",
-                "turn the part (`--orient`), use a turn table, or add metal to be machined off below",
+                "turn the part, use a turn table, or add metal below that is machined off",
             ),
             Self::ShortArc => (
                 "short-arc",
@@ -126,7 +119,7 @@ impl WarningKind {
             Self::Relit => (
                 "relit",
                 "a pass has more points than one program of the controller may hold, so it is cut",
-                "let arcs and long moves be fitted (program.chord_tolerance, program.arcs)",
+                "let straight moves and arcs be fitted (program.chord_tolerance, program.arcs), and fewer passes are cut",
             ),
             Self::ManyPoints => (
                 "many-points",
@@ -141,7 +134,7 @@ impl WarningKind {
             Self::PassTooShort => (
                 "pass-too-short",
                 "a pass would be shorter than fill.min_pass_length, or over before the arc is steady in programs that do not wait \
-                 for it (no `{{arc_start_delay}}` where the arc is struck), and is left out",
+                 for it (no {{arc_start_delay}} where the arc is struck), and is left out",
                 "lower fill.min_pass_length if your arc is steady sooner, or take another strategy",
             ),
             Self::NeverCools => (

@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 /// Centre-lines may leave the outline by this much, mm: coordinates are rounded.
 pub const TOLERANCE_MM: f64 = 0.01;
 
+/// Places nearer to each other, mm, are one: programs give them no finer.
+const FINEST_MM: f64 = 1e-3;
+
 /// A piece of a path: number of the path, number of the piece in it.
 type Number = (usize, usize);
 
@@ -158,7 +161,8 @@ fn pieces(lines: &[Vec<DVec2>]) -> (Vec<Number>, Vec<Piece>) {
 
 /// Where two pieces cross, or where their lines do at an end of a piece; neighbours on one line do not count.
 fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Crossing> {
-    const INNER: f64 = 1e-6;
+    /// Nearer to an end of a piece, in its lengths, is at its end.
+    const AT_END: f64 = 1e-6;
     if (j, l) > (i, k) {
         return crossing(lines, (j, l), (i, k));
     }
@@ -169,13 +173,14 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
     let (u, v) = (lines[i][k + 1] - p, lines[j][l + 1] - r);
     let across = u.perp_dot(v);
     let (t, w) = ((r - p).perp_dot(v) / across, (r - p).perp_dot(u) / across);
-    let within = |by: f64| [t, w].iter().all(|x| (by..1.0 - by).contains(x));
-    if across == 0.0 || !within(-INNER) {
+    let meet = [t, w].iter().all(|x| (-AT_END..1.0 + AT_END).contains(x));
+    if across == 0.0 || !meet {
         return None;
     }
     let place = p + u * t;
     let through = || Bend::of(&lines[i], k, place)?.is_crossed_by(&Bend::of(&lines[j], l, place)?).then_some(());
-    (within(INNER) || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
+    let inner = [(t, u), (w, v)].iter().all(|(x, way)| x.min(1.0 - x) * way.length() > FINEST_MM);
+    (inner || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
 }
 
 /// The ways in which a line leaves a place on it, backwards and forwards.
@@ -196,12 +201,15 @@ impl Bend {
 
     /// Whether another line goes from one side of this one to the other.
     fn is_crossed_by(&self, other: &Self) -> bool {
-        /// Lines that leave in the same way to this angle, radians, lie on each other.
-        const SAME: f64 = 1e-6;
         let from_back = |way: DVec2| self.0[0].angle_to(way).rem_euclid(TAU);
         let on = from_back(self.0[1]);
         let [a, b] = other.0.map(from_back);
-        let beside = |angle: f64| angle.min(TAU - angle) > SAME && (angle - on).abs() > SAME;
-        beside(a) && beside(b) && (a < on) != (b < on)
+        // Lines that leave in the same way lie on each other, and no side of them is known.
+        let beside = |way: DVec2| {
+            self.0.iter().all(|own| {
+                own.dot(way) < 0.0 || own.perp_dot(way).abs() > FINEST_MM.min(0.01 * way.length()) * own.length()
+            })
+        };
+        other.0.into_iter().all(beside) && (a < on) != (b < on)
     }
 }

@@ -393,7 +393,7 @@ impl Writer for CncGcode {
         control.filter(|_| self.labels > MAX_LABEL).map(|_| DialectError::Cannot {
             dialect: "gcode",
             what: "program.restart for so many passes, as jumps of this control find blocks up to N99999 only",
-            remedy: "Set program.restart = false; --from-layer and --from-pass go on after a stop.",
+            remedy: "Set program.restart = false; after a stop, programs are written from the layer and pass that come next.",
         })
     }
 }

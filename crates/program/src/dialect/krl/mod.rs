@@ -2,9 +2,11 @@
 
 mod arctech;
 mod arctech_section;
+mod motion;
 mod read;
 mod review;
 mod section;
+mod words;
 mod write;
 
 pub use arctech_section::{ArcTech, ArcTechCrater, ArcTechStrike, ArcTechWeld, KrlArc};

@@ -33,8 +33,8 @@ impl Extra {
         match self {
             Self::Restart => (
                 "program.restart = true",
-                "Take it out; a stopped build goes on with plan --from-layer N --from-pass N. Robots have it, and CNC controls \
-                 whose gcode.control is given and whose wire is no axis.",
+                "Take it out; after a stop, programs are written from the layer and pass that come next. Robots have it, and CNC \
+                 controls whose gcode.control is given and whose wire is no axis.",
             ),
             Self::LayerOffsets => (
                 "program.layer_offsets = true",

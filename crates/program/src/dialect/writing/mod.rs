@@ -174,7 +174,7 @@ pub enum DialectError {
     /// The part does not fit on the printer's bed.
     #[error(
         "the part is {:.1} × {:.1} × {:.1} mm, and the bed has {:.0} × {:.0} × {:.0} mm (marlin.bed). Turn the part or make it \
-         smaller (--turn, --scale), or give the size of your printer.",
+         smaller, or give the size of your printer.",
         part.x, part.y, part.z, bed[0], bed[1], bed[2]
     )]
     OffBed {

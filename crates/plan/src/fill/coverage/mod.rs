@@ -1,11 +1,14 @@
 //! What beads leave bare, by their footprints: each piece of a path covers half a width to both sides and
 //! around its ends. Measured on rows across the region, exact along each row.
 
+mod strip;
+
 use super::Path;
 use crate::pass::Along;
 use glam::DVec2;
 use planar::{Bounds, PerRow, Region};
 use std::ops::Range;
+use strip::{Disc, Span, Strip, union};
 
 /// Rows in a bead's width.
 const ROWS: f64 = 6.0;
@@ -86,9 +89,6 @@ impl Grid {
         best.map(|(_, grid, rows)| (grid, rows))
     }
 }
-
-/// From one place on a row to another, mm.
-type Span = (f64, f64);
 
 impl Coverage {
     /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
@@ -346,147 +346,8 @@ impl Rows {
     }
 }
 
-/// Shorter pieces are covered one by one, in radii: they link scan lines, whose run goes on behind them.
-const SHORT: f64 = 8.0;
-
-/// Strips of a run overlap by this part of their width at least, and lean alike to this part of it.
-const OVERLAP: f64 = 1e-3;
-
 /// Cosine of a turn that is little: on its outer side strips meet 1 % of a radius beyond the round join.
 const LITTLE: f64 = 0.96;
-
-/// The strip that a straight piece covers.
-#[derive(Debug, Clone, Copy)]
-struct Strip {
-    from: DVec2,
-    /// Unit vector along it.
-    way: DVec2,
-    length: f64,
-    radius: f64,
-    /// How far it reaches beyond both ends.
-    on: [f64; 2],
-    /// Whether these are round.
-    round: [bool; 2],
-}
-
-impl Strip {
-    /// `None` for a piece without length.
-    fn new(from: DVec2, to: DVec2, radius: f64) -> Option<Self> {
-        let length = from.distance(to);
-        (length > 0.0).then(|| Self {
-            from,
-            way: (to - from) / length,
-            length,
-            radius,
-            on: [0.0; 2],
-            round: [false; 2],
-        })
-    }
-
-    fn ends(&self) -> [DVec2; 2] {
-        [self.from, self.from + self.length * self.way]
-    }
-
-    fn is_short(&self) -> bool {
-        self.length < SHORT * self.radius
-    }
-
-    /// Its lowest and its highest place.
-    fn all(&self) -> (f64, f64) {
-        let (low, high) = self.along();
-        let [one, other] = self.round;
-        let across = if one || other { self.radius } else { self.way.x.abs() * self.radius };
-        (low - across, high + across)
-    }
-
-    /// The heights between which rows cross both long sides.
-    fn core(&self) -> (f64, f64) {
-        let (low, high) = self.along();
-        let across = self.way.x.abs() * self.radius;
-        (low + across, high - across)
-    }
-
-    /// The lowest and the highest place of its middle.
-    fn along(&self) -> (f64, f64) {
-        let (a, b) = (self.from.y - self.on[0] * self.way.y, self.from.y + (self.length + self.on[1]) * self.way.y);
-        (a.min(b), a.max(b))
-    }
-
-    /// What lies between its long sides.
-    fn sides(&self) -> Slab {
-        let half = self.radius / self.way.y.abs();
-        Slab { y: self.from.y, low: self.from.x - half, high: self.from.x + half, lean: self.way.x / self.way.y }
-    }
-
-    /// What lies between its ends.
-    fn between_ends(&self) -> Slab {
-        let (a, b) = (-self.on[0] / self.way.x, (self.length + self.on[1]) / self.way.x);
-        Slab {
-            y: self.from.y,
-            low: self.from.x + a.min(b),
-            high: self.from.x + a.max(b),
-            lean: -self.way.y / self.way.x,
-        }
-    }
-
-    /// Whether another strip lies beside this one, parallel, as wide, and overlapping: then, whether towards greater x.
-    fn beside(&self, other: &Self) -> Option<bool> {
-        let reach = self.length.max(other.length) + self.from.distance(other.from);
-        let parallel = self.way.perp_dot(other.way).abs() * reach < OVERLAP * self.radius;
-        let apart = self.way.perp_dot(other.from - self.from);
-        let near = (OVERLAP..2.0 - OVERLAP).contains(&(apart.abs() / self.radius));
-        // To the left of an upward way x decreases.
-        (parallel && near && self.radius == other.radius).then_some((apart > 0.0) != (self.way.y > 0.0))
-    }
-}
-
-/// A round end of a strip.
-struct Disc {
-    middle: DVec2,
-    radius: f64,
-}
-
-impl Disc {
-    #[inline]
-    fn on(&self, y: f64) -> Span {
-        let up = y - self.middle.y;
-        // Not a number where the row passes it by.
-        let half = (self.radius * self.radius - up * up).sqrt();
-        (self.middle.x - half, self.middle.x + half)
-    }
-}
-
-/// From the lower place of two spans to the higher one; what is not a number is passed over.
-#[inline]
-fn union(a: Span, b: Span) -> Span {
-    (a.0.min(b.0), a.1.max(b.1))
-}
-
-/// What lies between two parallel lines.
-struct Slab {
-    /// The height at which it reaches from `low` to `high`.
-    y: f64,
-    low: f64,
-    high: f64,
-    /// How it moves with the height.
-    lean: f64,
-}
-
-impl Slab {
-    #[inline]
-    fn at(&self, y: f64) -> Span {
-        let moved = (y - self.y) * self.lean;
-        (self.low + moved, self.high + moved)
-    }
-
-    /// What it has in common with another on a row that meets both.
-    #[inline]
-    fn meet(&self, other: &Self, y: f64) -> Span {
-        let (a, b) = (self.at(y), other.at(y));
-        // Lines along the row have no place on it, and are passed over.
-        (a.0.max(b.0), a.1.min(b.1))
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,0 +1,38 @@
+//! How the deposit model looks at plans that are made with a profile.
+
+use crate::deposit::{DepositSettings, Nominal};
+use crate::layer::Layer;
+use crate::profile::Profile;
+use crate::weld;
+use glam::DVec3;
+use planar::Bounds;
+use std::borrow::Cow;
+
+/// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
+/// profile has them.
+pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let ends = weld::lit_ends(&profile.start_stop, layer.lit);
+    if !ends.changes_passes() {
+        return Cow::Borrowed(layer);
+    }
+    let passes = layer.passes.iter().map(|pass| weld::welded(pass, &ends, profile.bead.height)).collect();
+    Cow::Owned(Layer { passes, ..layer.clone() })
+}
+
+/// The deposit model's settings for plans made with a profile.
+pub fn deposit_settings(profile: &Profile) -> DepositSettings {
+    let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
+    let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
+    DepositSettings::new(nominal, profile.fill.machining_allowance)
+}
+
+/// Like [`deposit_settings`], with a grid fitted to a part: its lowest and its highest place, mm.
+pub fn deposit_settings_over(profile: &Profile, part: (DVec3, DVec3)) -> DepositSettings {
+    let (bounds, layers) = grid_over(profile, part);
+    deposit_settings(profile).fitted_to(&bounds, layers)
+}
+
+/// What the grid for a part is fitted to: the box around it seen from above, and about how many layers it takes.
+pub fn grid_over(profile: &Profile, (low, high): (DVec3, DVec3)) -> (Bounds, usize) {
+    (Bounds { min: low.truncate(), max: high.truncate() }, (high.z / profile.layers.height) as usize)
+}

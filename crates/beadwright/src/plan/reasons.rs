@@ -1,0 +1,83 @@
+//! Sentences about a whole plan: why it holds another volume than the part, where it ends, and why it may be empty.
+
+use super::Summary;
+use crate::model::Mesh;
+use crate::profile::Profile;
+use crate::slice::{self, LayerFit, Slab};
+use crate::warning::{WarningKind, WarningSummary};
+
+/// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
+/// elsewhere than the part.
+pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
+    /// Fraction of the mesh's volume.
+    const WORTH_TELLING: f64 = 0.01;
+    let slices = summary.metrics.part_volume_mm3;
+    let more = slices / mesh - 1.0;
+    if more.abs() <= WORTH_TELLING || mesh <= 0.0 {
+        return None;
+    }
+    let had = |kind| summary.warnings.summaries().any(|w| w.kind == kind);
+    let why = if summary.metrics.mesh_volume_mm3.is_none() {
+        "the surface is not closed, so the mesh's volume is a guess"
+    } else if had(WarningKind::ContoursUnited) && more < 0.0 {
+        "shells overlap, and the mesh counts twice what the slices count once"
+    } else if had(WarningKind::OpenContourDropped) {
+        "contours that are not closed were dropped"
+    } else if left {
+        "the layers do not end where the part does"
+    } else {
+        "each layer is as the part is at its middle; thinner layers follow the part more closely"
+    };
+    let percent = 100.0 * more;
+    Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
+}
+
+/// Why a solid gives no passes: what was dropped on the way, or its width.
+pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
+    let told = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
+    let size = mesh.size();
+    let part = format!("the part is {:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z);
+    if summary.metrics.slice_area_mm2 == 0.0 {
+        return match told(WarningKind::OpenContourDropped) {
+            Some(open) => format!("the surface of the model is not closed. {open}"),
+            None => told(WarningKind::Sliver).or(told(WarningKind::ContoursUnited)).map_or_else(
+                || format!("the slices are empty ({part}). Surfaces of opposite sense cancel: check that the model is a solid."),
+                |lost| format!("the slices are empty. {lost}"),
+            ),
+        };
+    }
+    let width = profile.bead.width;
+    let remedy = "Take a narrower bead or a larger part, or check the unit of the file.";
+    match told(WarningKind::PassTooShort) {
+        Some(short) => {
+            format!(
+                "what is wide enough for a bead of {width} mm gives passes too short to weld ({part}). {short} {remedy}"
+            )
+        }
+        None => format!("no part of the slices is wide enough for a bead of {width} mm ({part}). {remedy}"),
+    }
+}
+
+/// How far the last layer ends below or above the part, as a sentence where it matters.
+pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Option<String> {
+    /// Fraction of the height.
+    const WORTH_TELLING: f64 = 0.005;
+    let (top, last) = (mesh.bounds().1.z, slabs.last()?.z);
+    let (left, percent) = ((top - last).abs(), 100.0 * (top - last).abs() / top);
+    if left <= WORTH_TELLING * top {
+        return None;
+    }
+    let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
+    let ends = format!("The part is {top:.2} mm high, {layers} at {last:.2} mm");
+    Some(if last < top {
+        let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
+        let each = even.first().map_or(0.0, |slab| slab.height);
+        format!(
+            "{ends}: the upper {left:.2} mm ({percent:.1} %) are not built. layers.fit = \"last\" adds a layer, \"even\" \
+             makes {} layers of {each:.3} mm.",
+            even.len()
+        )
+    } else {
+        format!("{ends}: {left:.2} mm ({percent:.1} %) above it.")
+    })
+}

@@ -1,0 +1,163 @@
+//! What a plan is, where its layers go, and why there may be none.
+
+use super::MAX_LAYERS;
+use crate::bead::wall::WallError;
+use crate::deposit::Figures;
+use crate::fill;
+use crate::layer::{Extent, Layer};
+use crate::metrics::Metrics;
+use crate::task::Cancelled;
+use crate::warning::Warnings;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+
+/// What is the same for all layers of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Name of the part, for files and headings.
+    pub part: String,
+    /// Name of the profile.
+    pub profile: String,
+    /// Name of the strategy.
+    pub strategy: String,
+    /// How many layers the part has, and where it lies.
+    pub extent: Extent,
+}
+
+/// A whole plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// What is the same for all layers.
+    pub header: Header,
+    /// The layers, lowest first.
+    pub layers: Vec<Layer>,
+    /// Totals and warnings.
+    pub summary: Summary,
+}
+
+/// Totals and warnings of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The totals.
+    pub metrics: Metrics,
+    /// Events on layers.
+    pub warnings: Warnings,
+    /// What does not fit in the profile, as sentences.
+    pub notes: Vec<String>,
+    /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
+    pub forbidden: Vec<String>,
+}
+
+impl Summary {
+    /// The totals, warnings and notes, and what the deposit model says: the content of `metrics.json`.
+    pub fn json(&self, figures: Option<&Figures>) -> serde_json::Value {
+        let warnings: Vec<_> = self.warnings.summaries().collect();
+        let mut value = serde_json::json!(self.metrics);
+        value["coverage"] = self.metrics.coverage().into();
+        value["warnings"] = serde_json::json!(warnings);
+        value["notes"] = serde_json::json!(self.notes);
+        value["forbidden"] = serde_json::json!(self.forbidden);
+        value["deposit"] = serde_json::json!(figures.map(Figures::summary));
+        value
+    }
+}
+
+/// Why a plan could not be made. `E` is the error of the sink.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError<E> {
+    /// Stopped by the caller.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The profile names a strategy that does not exist.
+    #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
+    UnknownStrategy(String),
+    /// The plan would be too large.
+    #[error(
+        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check the unit of the file and layers.height."
+    )]
+    TooManyLayers {
+        /// Height of the part, mm.
+        height: f64,
+        /// Number of layers.
+        layers: usize,
+        /// Thickness of a layer, mm.
+        layer_height: f64,
+    },
+    /// The bead gives no wall.
+    #[error(transparent)]
+    Wall(#[from] WallError),
+    /// A surface that is not closed, of which nobody said what it stands for.
+    #[error(
+        "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm by {width:.1} mm. If it is the skin of a solid, mend the \
+         model, or set slice.surface = \"solid\", which fills what its contours enclose and leaves out those that do not close. If it \
+         stands for a wall, set slice.surface = \"wall\", which lays one bead along it.", .place.x, .place.y, .place.z
+    )]
+    Open {
+        /// Width of the widest opening, mm.
+        width: f64,
+        /// A place on it, mm.
+        place: DVec3,
+    },
+    /// Nothing would be laid.
+    #[error("nothing would be deposited: {0}")]
+    Empty(String),
+    /// A layer that is not one closed wall, though all are to be turns of a helix.
+    #[error(
+        "layer {layer} cannot be a turn of the helix that wall.helix asks for: {why}. Leave wall.helix out, plan a surface as \
+         walls (slice.surface = \"wall\"), or plan the part up to there."
+    )]
+    NoHelix {
+        /// Number of the layer, from 1.
+        layer: usize,
+        /// Why, as a clause.
+        why: String,
+    },
+    /// Parts cannot be welded one after another with this profile.
+    #[error("the parts cannot be welded one after another: {0}")]
+    Parts(&'static str),
+    /// The sink failed.
+    #[error(transparent)]
+    Sink(E),
+}
+
+/// Receives the layers of a plan in deposition order.
+pub trait Sink {
+    /// What can go wrong while a layer is taken in.
+    type Error: Send;
+
+    /// Called once, before the first layer.
+    ///
+    /// # Errors
+    /// Whatever the sink fails with; planning then stops.
+    fn begin(&mut self, header: &Header) -> Result<(), Self::Error>;
+
+    /// Takes the next layer.
+    ///
+    /// # Errors
+    /// Whatever the sink fails with; planning then stops.
+    fn layer(&mut self, layer: Layer) -> Result<(), Self::Error>;
+}
+
+/// Keeps the layers of a plan.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Collect {
+    /// What is the same for all layers; `None` before the plan begins.
+    pub header: Option<Header>,
+    /// The layers so far.
+    pub layers: Vec<Layer>,
+}
+
+impl Sink for Collect {
+    type Error = Infallible;
+
+    fn begin(&mut self, header: &Header) -> Result<(), Infallible> {
+        self.header = Some(header.clone());
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.layers.push(layer);
+        Ok(())
+    }
+}

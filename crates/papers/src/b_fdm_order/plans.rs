@@ -1,0 +1,127 @@
+//! The ways of planning two layers that are compared, and what each takes.
+
+use beadwright::order::Method;
+
+/// The order of the loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Loops {
+    /// As in the file, each from its first vertex. The files are shuffled, so this is a weak baseline.
+    File,
+    /// Columns of the part walked up and down (boustrophedon), each loop from its first vertex.
+    Columns,
+    /// Order and start points by a method.
+    By(Method),
+}
+
+/// The angle of the scan lines of the first layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Raster {
+    /// 0°, the second layer 90°.
+    Zero,
+    /// 0° on both layers.
+    Alike,
+    /// The least turns on the first layer (the paper, eq 9), the second turned by 90°.
+    FewestTurns,
+    /// What `raster_turn = "best"` chooses for both layers, the second turned by 90°.
+    Best,
+}
+
+/// How two layers are planned.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// What it adds to the one before.
+    pub name: &'static str,
+    /// How contours are ordered.
+    pub loops: Loops,
+    /// The angle of the scan lines.
+    pub raster: Raster,
+    /// Whether sub-regions are merged.
+    pub merge: bool,
+    /// How merged sub-regions are ordered; `None` for scan order.
+    pub fill: Option<Method>,
+}
+
+/// The paper's plain plan.
+pub const PLAIN: Plan =
+    Plan { name: "plain: file order, 0°/90°", loops: Loops::File, raster: Raster::Zero, merge: false, fill: None };
+
+/// The plain plan with its loops in columns.
+pub const COLUMNS: Plan = Plan { name: "plain, loops in columns (boustrophedon)", loops: Loops::Columns, ..PLAIN };
+
+/// The plans compared; each adds a step to the one before.
+pub(super) const STEPS: [Plan; 5] = [
+    PLAIN,
+    Plan { name: "+ contour order and start points", loops: Loops::By(Method::LocalSearch), ..PLAIN },
+    Plan { name: "+ raster angle", raster: Raster::Best, merge: false, fill: None, ..OURS },
+    Plan { name: "+ sub-regions merged", merge: true, fill: None, ..OURS },
+    OURS,
+];
+
+/// All steps together, as `plan` takes them.
+pub const OURS: Plan = Plan {
+    name: "+ their order",
+    loops: Loops::By(Method::LocalSearch),
+    raster: Raster::Best,
+    merge: true,
+    fill: Some(Method::LocalSearch),
+};
+
+/// The paper to the letter: ant colony over the improved nearest neighbour, then the nearest region next.
+pub const LITERAL: Plan = Plan {
+    name: "the paper's methods",
+    loops: Loops::By(Method::AntColony),
+    raster: Raster::FewestTurns,
+    merge: true,
+    fill: Some(Method::Nearest),
+};
+
+/// All steps but the raster angle.
+pub const FIXED: Plan = Plan { name: "all steps, fixed 0°/90°", raster: Raster::Zero, ..OURS };
+
+/// All steps but the alternation: what crossing the lines of two layers costs.
+pub const ALIKE: Plan = Plan { name: "all steps, 0° on both layers", raster: Raster::Alike, ..OURS };
+
+/// The plans beside the steps.
+pub(super) const OTHERS: [Plan; 4] = [COLUMNS, LITERAL, FIXED, ALIKE];
+
+/// The methods for start points and order of the contours.
+pub(super) const CONTOURS: [(&str, Loops); 6] = [
+    ("file order (shuffled: a weak baseline)", Loops::File),
+    ("columns walked up and down", Loops::Columns),
+    ("improved nearest neighbour (2.1)", Loops::By(Method::ImprovedNearest)),
+    ("ant colony over its start points (2.2): the paper's literal", Loops::By(Method::AntColony)),
+    ("local search (ours)", Loops::By(Method::LocalSearch)),
+    ("exact, at up to 48 vertices a loop (ours may begin between)", Loops::By(Method::Exact)),
+];
+
+/// What a plan of two layers takes.
+#[derive(Debug, Clone, Copy)]
+pub struct Outcome {
+    /// The closed tour through the start points of one layer's contours, mm.
+    pub contour_travel: f64,
+    /// Travels of the fill, mm a layer.
+    pub fill_travel: f64,
+    /// Time, s a layer.
+    pub seconds: f64,
+    /// Paths of the fill, a layer.
+    pub paths: f64,
+    /// Turns, a layer.
+    pub turns: f64,
+}
+
+/// What is saved between two outcomes.
+#[derive(Debug, Clone, Copy)]
+pub struct Saved {
+    /// Contour travel, %.
+    pub travel: f64,
+    /// Layer time, %.
+    pub time: f64,
+}
+
+impl Outcome {
+    /// What this one saves of another.
+    pub fn saved(&self, of: &Self) -> Saved {
+        let percent = |before: f64, after: f64| 100.0 * (1.0 - after / before);
+        Saved { travel: percent(of.contour_travel, self.contour_travel), time: percent(of.seconds, self.seconds) }
+    }
+}
