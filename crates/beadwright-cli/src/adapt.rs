@@ -20,13 +20,13 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// plan.json of the build.
     plan: PathBuf,
-    /// The scan: PLY, lines of x, y, z in mm (CSV, XYZ, or a few touched points), or a height map.
+    /// Scan: PLY, lines of x, y, z in mm (CSV, XYZ, or a few touched points), or a height map.
     #[arg(long, value_name = "FILE")]
     scan: PathBuf,
-    /// The layer after which it was taken, counted from 1.
+    /// Layer after which the scan was taken, counted from 1.
     #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
     after_layer: u32,
-    /// How the scan is laid on the part.
+    /// Alignment of the scan with the part.
     #[arg(long, value_enum, default_value_t = How::AsIs)]
     align: How,
     #[command(flatten)]
@@ -67,7 +67,7 @@ enum How {
     AsIs,
     /// The plate in the scan is z = 0.
     Plate,
-    /// The plate tells the height; the outline of the part tells x, y and the turn about z.
+    /// The plate gives the height; the outline of the part gives x, y and the turn about z.
     Fit,
 }
 
@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What is told of a scan and of the layers that follow.
+/// What is reported of a scan and of the layers that follow.
 fn sentences(
     scanned: &str,
     how: Align,
@@ -139,15 +139,15 @@ fn sentences(
     let Spread { mean, rms, low, high } = seen.error;
     let mut sentences = vec![
         format!(
-            "Scan: {scanned}; {} of them lie over the layer and tell {:.0} % of it.",
+            "Scan: {scanned}; {} of them lie over the layer and cover {:.0} % of it.",
             seen.points,
             100.0 * seen.covered
         ),
-        format!("Measured less predicted: {mean:+.2} mm on the mean, {low:+.2} to {high:+.2} mm, RMS {rms:.2} mm."),
+        format!("Measured minus predicted: {mean:+.2} mm on average, {low:+.2} to {high:+.2} mm, RMS {rms:.2} mm."),
     ];
     let (shift, turn) = (aligned.shift, aligned.turn.to_degrees());
     if how != Align::AsIs {
-        let height = if aligned.plate { "the plate told z" } else { "no plate was seen, so z stayed" };
+        let height = if aligned.plate { "the plate gave z" } else { "no plate was seen, so z was kept" };
         sentences.push(format!(
             "Aligned: moved by x {:+.2} y {:+.2} z {:+.2} mm, turned by {turn:+.2}°; {height}.",
             shift.x, shift.y, shift.z
@@ -155,25 +155,25 @@ fn sentences(
     }
     let (layers, planned) = (followed.layers.len(), followed.planned);
     if layers == 0 {
-        sentences.push(format!("The part has its height: no layer follows, {planned} were planned."));
+        sentences.push(format!("The part has reached its height: no layer follows; {planned} were planned."));
         return sentences;
     }
     let z = followed.layers.first().map_or(0.0, |layer| layer.z);
     let (least, most) = (100.0 * followed.metal.0, 100.0 * followed.metal.1);
     sentences.push(format!(
-        "{layers} layers follow, {planned} were planned; the next ends at z {z:.2} mm with {least:.0} to {most:.0} % of the \
+        "{layers} layers follow ({planned} were planned); the next ends at z {z:.2} mm with {least:.0} to {most:.0} % of the \
          planned metal."
     ));
     if followed.clipped > 0 {
         sentences.push(format!(
-            "{} of {} pieces want more or less than the window of {} to {} times the planned metal (--window): the layers \
+            "{} of {} pieces need more or less than the window of {} to {} times the planned metal (--window): the layers \
              above them make up for it.",
             followed.clipped, followed.pieces, rules.window.0, rules.window.1
         ));
     }
     let end = followed.end;
     sentences
-        .push(format!("Expected in the end: {:+.2} mm on the mean, {:+.2} to {:+.2} mm.", end.mean, end.low, end.high));
+        .push(format!("Expected at the end: {:+.2} mm on average, {:+.2} to {:+.2} mm.", end.mean, end.low, end.high));
     sentences
 }
 

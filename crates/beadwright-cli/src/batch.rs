@@ -22,7 +22,7 @@ use table::{Format, Table};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The models, each planned by itself.
+    /// Models, each planned by itself.
     #[arg(required = true, value_name = "MODEL")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -36,14 +36,14 @@ pub(crate) struct Arguments {
     /// Strategy instead of the profile's; may be given several times.
     #[arg(long, short, value_name = "NAME")]
     strategy: Vec<String>,
-    /// Values that a key of the profile takes, such as fill.strategy=loop,zigzag, or n of them from a to b, such as
-    /// layers.height=1.8:2.2:3. Given several times, every value of one meets every value of the others.
+    /// Values of a key of the profile, such as fill.strategy=loop,zigzag, or N of them from A to B, such as
+    /// layers.height=1.8:2.2:3; if given several times, every value of one is combined with every value of the others.
     #[arg(long, value_name = "KEY=V1,V2,…|KEY=A:B:N", value_parser = sweep::parse)]
     sweep: Vec<Sweep>,
     /// Change a value of the profile in all plans; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Table to write: .csv, .json or .html, by the ending of the name.
+    /// Table to write: .csv, .json or .html, by the extension of the name.
     #[arg(long, short, value_name = "FILE", value_parser = table::parse_output)]
     output: Option<(PathBuf, Format)>,
     /// Skip the deposit model: faster, but no voids and no overfill.
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     /// Print the table as JSON.
     #[arg(long)]
     json: bool,
-    /// Number of plans that are made side by side; one for each of the machine's processors if left out. The table does
+    /// Number of plans made at the same time; one for each of the machine's processors if left out. The table does
     /// not depend on it.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -112,7 +112,7 @@ impl Arguments {
         let plans = factors.into_iter().chain(self.sweep.iter().map(Sweep::len)).fold(1, usize::saturating_mul);
         anyhow::ensure!(
             plans <= MOST_PLANS,
-            "that are {plans} plans, and at most {MOST_PLANS} are made at a time. Sweep fewer keys or fewer values."
+            "this makes {plans} plans, and at most {MOST_PLANS} are made at a time. Sweep fewer keys or fewer values."
         );
         let points = sweep::points(&self.sweep);
         let mut runs = Vec::with_capacity(plans);
@@ -147,7 +147,7 @@ impl Arguments {
 }
 
 impl Row {
-    /// The row of a run; an error is kept in it, so that the others go on.
+    /// The row of a run; an error is kept in it, so that the others continue.
     fn of(run: &Run, asked: &Asked<'_>, task: &beadwright::task::Task) -> Self {
         let planned =
             if task.check().is_ok() { row::plan(run, asked, task) } else { Err(anyhow::anyhow!("cancelled")) };

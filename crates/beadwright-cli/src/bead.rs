@@ -20,7 +20,7 @@ pub(crate) enum Command {
     Predict(Predict),
     /// Find the parameters for a wanted bead within the measured range.
     Solve(Solve),
-    /// Fit how thickness and width of walls depend on heat, from walls welded with different waits, and foretell others.
+    /// Fit how thickness and width of walls depend on heat, from walls welded with different waits, and predict others.
     Walls(Walls),
     /// Write invented measurements as CSV, to try out the other commands.
     Example {
@@ -46,7 +46,7 @@ pub(crate) struct Fit {
     /// Library to write.
     #[arg(short, long, default_value = "bead-library.toml", value_name = "FILE")]
     output: PathBuf,
-    /// Picture of width/height over the first input, with a curve for each value of the second.
+    /// Picture to write of width/height over the first input, with a curve for each value of the second.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Print machine-readable JSON.
@@ -58,13 +58,13 @@ pub(crate) struct Fit {
 pub(crate) struct Walls {
     /// CSV with one wall per line, one bead thick: the columns dwell_s, length_mm, layers, height_mm, width_mm.
     data: PathBuf,
-    /// Profile of the process they were welded with: a built-in name or a TOML file with [heat], [material], [substrate].
+    /// Profile of the process they were welded with: a built-in name or a TOML file with [heat], [material] and [substrate].
     #[arg(long, short, value_name = "NAME|FILE")]
     profile: String,
     /// Change a value of the profile, such as process.current=132; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Fit only the walls with these waits, s, and foretell the others.
+    /// Fit only the walls with these waits, s, and predict the others.
     #[arg(long, value_delimiter = ',', value_name = "S,S,…")]
     fit: Option<Vec<f64>>,
     /// Print machine-readable JSON.
@@ -96,7 +96,7 @@ pub(crate) struct Solve {
     /// Wanted height of a layer, mm.
     #[arg(long, value_name = "MM")]
     layer_height: f64,
-    /// A narrower range for a parameter, such as current=100..150, or a single value; may be given several times.
+    /// Narrower range for a parameter, such as current=100..150, or a single value; may be given several times.
     #[arg(long, value_parser = parse_limit, value_name = "NAME=MIN..MAX")]
     limit: Vec<Limit>,
     /// Largest deviation of width and layer height that still counts as a match, %.
@@ -128,7 +128,7 @@ impl LayeringArguments {
             Some(text) => {
                 let stepover: Option<f64> = text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
                 stepover.with_context(|| {
-                    format!("--overlap {text}: expected is tangent, inclined-flat-top, or a stepover above 0 mm.")
+                    format!("--overlap {text}: tangent, inclined-flat-top, or a stepover above 0 mm is expected.")
                 })?
             }
         };
@@ -157,7 +157,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
 fn walls(arguments: &Walls) -> anyhow::Result<()> {
     let profile = profile::load(&arguments.profile, &arguments.set)?;
     let (process, mut weld) = (&profile.process, profile.weld_settings());
-    // The table says how long was waited.
+    // The table says how long the torch waited.
     (weld.ends.min_layer_time, weld.ends.interpass_time) = (0.0, 0.0);
     // Walls hold the metal of the wire, whatever the profile says of its bead.
     let metal = wire_area(profile.wire.diameter) * process.wire_feed_speed * 1000.0 / 60.0 * process.efficiency;
@@ -169,7 +169,7 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     for (input, unit) in measured.inputs.iter().zip(["s", "mm", ""]) {
         anyhow::ensure!(
             input.unit == unit,
-            "{}: the column {} is in \"{}\"; expected are dwell_s, length_mm and layers",
+            "{}: the column {} is in \"{}\"; dwell_s, length_mm and layers are expected",
             place(),
             input.name,
             input.unit
@@ -184,8 +184,8 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
             && layers.fract() == 0.0;
         anyhow::ensure!(
             possible,
-            "a wall with a dwell of {dwell} s, a length of {length} mm and {layers} layers: expected are 0 to 36000 s, 10 to \
-             10000 mm and 2 to 2000 whole layers"
+            "a wall with a dwell of {dwell} s, a length of {length} mm and {layers} layers is impossible: 0 to 36000 s, 10 to \
+             10000 mm and 2 to 2000 whole layers are expected"
         );
         let wall = Wall { length, layers: layers as usize, dwell };
         Ok(MeasuredWall { wall, height: *height, width: *width })
@@ -198,10 +198,10 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     }
     let chosen: Vec<MeasuredWall> = all.iter().filter(fitted).copied().collect();
     let law = WallLaw::fit(&chosen, &settings, &weld).with_context(place)?;
-    let foretold: Vec<_> = all.iter().map(|wall| law.foretell(&wall.wall, &settings, &weld)).collect();
+    let predicted: Vec<_> = all.iter().map(|wall| law.predict(&wall.wall, &settings, &weld)).collect();
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let value = json!({ "layer": law.layer, "width": law.width, "walls": foretold });
+        let value = json!({ "layer": law.layer, "width": law.width, "walls": predicted });
         return Ok(writeln!(out, "{value:#}")?);
     }
     for (name, value) in [("layer", law.layer), ("width", law.width)] {
@@ -214,9 +214,9 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     }
     writeln!(
         out,
-        "\n  wait s    °C   height mm: foretold   measured   error %   width mm: foretold   measured   error %"
+        "\n  wait s    °C  height mm: predicted   measured   error %  width mm: predicted   measured   error %"
     )?;
-    for (wall, own) in all.iter().zip(&foretold) {
+    for (wall, own) in all.iter().zip(&predicted) {
         let error = |ours: f64, measured: f64| 100.0 * (ours / measured - 1.0);
         writeln!(
             out,
@@ -240,7 +240,7 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
         )?,
         None => writeln!(
             out,
-            "\nno section [bead.by_heat]: at no temperature are the walls {width} mm wide, as bead.width says"
+            "\nno section [bead.by_heat]: the walls are not {width} mm wide, as bead.width says, at any temperature"
         )?,
     }
     Ok(())
@@ -367,12 +367,12 @@ fn load(path: &Path) -> anyhow::Result<BeadLibrary> {
 }
 
 fn parse_value(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("expected is NAME=VALUE, such as current=120")?;
+    let (name, value) = text.split_once('=').ok_or("NAME=VALUE is expected, such as current=120")?;
     Ok((name.trim().to_owned(), number(value)?))
 }
 
 fn parse_limit(text: &str) -> Result<Limit, String> {
-    let (name, range) = text.split_once('=').ok_or("expected is NAME=MIN..MAX, such as current=100..150")?;
+    let (name, range) = text.split_once('=').ok_or("NAME=MIN..MAX is expected, such as current=100..150")?;
     let (min, max) = range.split_once("..").unwrap_or((range, range));
     Ok(Limit { input: name.trim().to_owned(), min: number(min)?, max: number(max)? })
 }

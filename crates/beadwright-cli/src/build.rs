@@ -1,4 +1,4 @@
-//! `beadwright build`: a plan welded in the model of height, with errors and feedback.
+//! `beadwright build`: a plan welded in the height model, with errors and feedback.
 
 use crate::{adapt, model, profile, program, progress};
 use beadwright::adapt::Feedback;
@@ -21,18 +21,18 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
     #[command(flatten)]
     noise: Noise,
-    /// What the scan after each layer is used for; may be given several times; all three, side by side, if left out.
+    /// Use of the scan after each layer; may be given several times; all three, side by side, if left out.
     #[arg(long, value_enum, value_name = "KIND")]
     feedback: Vec<Kind>,
     #[command(flatten)]
     limits: adapt::Limits,
-    /// Walls grow less on warm metal, as `bead.by_heat` says, though the plan was made without it.
+    /// Let walls grow less on warm metal, as `bead.by_heat` says, although the plan was made without it.
     #[arg(long)]
     heat: bool,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// So many builds, with this seed and those after it; the page shows the first.
+    /// Number of builds, with this seed and those after it; the page shows the first.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
     /// HTML page to write.
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What goes wrong; parts of the metal, so that 0.1 is ±10 %.
+/// What goes wrong, as parts of the metal: 0.1 is ±10 %.
 #[derive(clap::Args)]
 struct Noise {
     /// Deviation of the metal from pass to pass.
@@ -58,7 +58,7 @@ struct Noise {
     /// Growth of the metal from the first to the last layer.
     #[arg(long, default_value_t = 0.03, allow_hyphen_values = true, value_parser = parse_part)]
     drift: f64,
-    /// A pass whose arc does not burn, counted from 1 over the build.
+    /// Pass whose arc does not burn, counted from 1 over the build.
     #[arg(long, value_name = "PASS", value_parser = clap::value_parser!(u32).range(1..))]
     lost_pass: Option<u32>,
     /// Deviation of a point of a scan, mm.
@@ -152,7 +152,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
     if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("json")) {
         let source = program::Source::open(path)?;
         let profile = source.profile(wanted)?;
-        let plan = source.plan().ok_or_else(|| anyhow::anyhow!("{}: this is no plan.json", path.display()))?;
+        let plan = source.plan().ok_or_else(|| anyhow::anyhow!("{}: this is not a plan.json", path.display()))?;
         let known = source.profile(&profile::Wanted::default())?.bead.by_heat.is_some();
         anyhow::ensure!(
             !(known && arguments.heat),
@@ -243,7 +243,7 @@ fn print(arguments: &Arguments, part: &str, layers: &[Layer], runs: &[Vec<Built>
     }
     writeln!(
         out,
-        "\nRMS of the top against the end of the plan, in layer heights, over all builds; layers and mean of the first."
+        "\nRMS of the top against the end of the plan, in layer heights, over all builds; layers and mean are the first's."
     )?;
     writeln!(crate::say::done(false), "the first build layer by layer in {}", arguments.output.display())?;
     Ok(())

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// plan.json, or a program in KRL, RAPID, FANUC TP, INFORM, URScript or G-code (of several files the main one), which is
-    /// read as a welding programmer would; without it, the checks are listed.
+    /// plan.json, or a program in KRL, RAPID, FANUC TP, INFORM, URScript or G-code (if it has several files, the main one),
+    /// which is read as a welding programmer would read it; without it, the checks are listed.
     plan: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if is_program {
         anyhow::ensure!(
             arguments.cell.is_none(),
-            "--cell asks the robot of a plan: give the plan.json of the program."
+            "--cell checks the robot against a plan: give the plan.json of the program."
         );
         bar.finish_and_clear();
         return read_program(arguments, plan, &loaded, &mut out);
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if findings.is_empty() { Ok(()) } else { Err(Findings { count: findings.len(), place: plan.clone() }.into()) }
 }
 
-/// Tells the dangerous lines of a program.
+/// Reports the dangerous lines of a program.
 fn read_program(
     arguments: &Arguments,
     path: &Path,
@@ -131,7 +131,7 @@ fn reach(cell: &Cell, layers: &[Layer], profile: &Profile) -> Vec<Finding> {
     robot::reach(cell, place, &track).findings.iter().map(Finding::from).collect()
 }
 
-/// Name of the check that asks the robot.
+/// Name of the check of the robot.
 const REACH: &str = "reach";
 
 fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
@@ -148,7 +148,7 @@ fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
         if found.len() > PRINTED {
             writeln!(out, "  … and {} more", found.len() - PRINTED)?;
         }
-        // That of the first fits this plan.
+        // The remedy of the first one fits this plan.
         found.first().and_then(|f| f.remedy.as_ref()).map_or(Ok(()), |remedy| writeln!(out, "  {remedy}"))?;
     }
     let reach: Vec<&Finding> = findings.iter().filter(|f| f.kind == REACH).collect();

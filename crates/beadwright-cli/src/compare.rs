@@ -20,10 +20,10 @@ pub(crate) struct Arguments {
     /// Change a value of the profile; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Strategy to compare; all strategies if left out. May be given several times.
+    /// Strategy to compare; may be given several times; all strategies if left out.
     #[arg(long, short, value_name = "NAME")]
     strategy: Vec<String>,
-    /// A program for the same part, to judge alongside them; may be given several times.
+    /// Program for the same part, to judge alongside them; may be given several times.
     #[arg(long, value_name = "FILE")]
     program: Vec<PathBuf>,
     #[command(flatten)]

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Completions {
-    /// The shell: bash, elvish, fish, powershell or zsh.
+    /// Shell: bash, elvish, fish, powershell or zsh.
     shell: Shell,
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn man<A: CommandFactory>(arguments: &Man) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A command whose subcommands know their whole names.
+/// A command whose subcommands know their full names.
 fn built(mut command: Command) -> Command {
     command.build();
     command

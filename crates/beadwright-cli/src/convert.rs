@@ -1,4 +1,4 @@
-//! STEP and IGES solids become STL by a program of others, where one is installed: Open CASCADE is not linked in.
+//! STEP and IGES solids are converted to STL by another program, where one is installed: Open CASCADE is not linked in.
 
 use crate::file;
 use anyhow::Context;
@@ -11,9 +11,9 @@ use std::process::{Command, Stdio};
 const VARIABLE: &str = "BEADWRIGHT_CONVERTER";
 
 /// How to get the usual one.
-const REMEDY: &str = "Install Open CASCADE for Python (pip install cadquery-ocp-novtk; BEADWRIGHT_PYTHON names another Python than \
-                      python3), or set BEADWRIGHT_CONVERTER to a program that takes the file and the STL file to write; or save \
-                      the model as STL.";
+const REMEDY: &str = "Install Open CASCADE for Python (pip install cadquery-ocp-novtk; BEADWRIGHT_PYTHON names a Python other \
+                      than python3), or set BEADWRIGHT_CONVERTER to a program that takes the file and the STL file to write; \
+                      or save the model as STL.";
 
 /// The usual converter: reads the file, sews its faces, meshes them within 0.02 mm, and writes STL.
 const SCRIPT: &str = include_str!("convert.py");
@@ -59,14 +59,14 @@ pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
                 model::import(&stl, &Task::new()).with_context(|| format!("{}", path.display()))?.repair.open_edges;
             anyhow::ensure!(
                 open == 0,
-                "{}: the solid that the converter {program} made of this {kind} has {open} open edges: it is not closed. Mend it \
-                 in the program that it comes from, or save it as STL there.",
+                "{}: this is {kind}, and the solid that the converter {program} made from it has {open} open edges: it is not \
+                 closed. Mend it in the program that it comes from, or save it as STL there.",
                 path.display()
             );
             Ok(stl)
         }
         _ => anyhow::bail!(
-            "{}: the converter {program} did not turn this {kind} into STL: {}. {REMEDY}",
+            "{}: this is {kind}, and the converter {program} did not turn it into STL: {}. {REMEDY}",
             path.display(),
             told.lines().last().unwrap_or("it says nothing").trim()
         ),

@@ -12,10 +12,10 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// The scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
+    /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
     /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed.
     scan: PathBuf,
-    /// Unit of the scan's coordinates, where its file does not tell it.
+    /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
     scan_units: Units,
     #[command(flatten)]
@@ -46,9 +46,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "warning: {doubt}{}", remedy(doubt))?;
     }
     let (scan, format) = (arguments.scan.display(), scan.format);
-    writeln!(out, "{scan} beside {}: {format} of {} points", arguments.model.model.display(), figures.points)?;
+    writeln!(out, "{scan} against {}: {format} of {} points", arguments.model.model.display(), figures.points)?;
     if plate > 0 {
-        writeln!(out, "{plate} points of the plate beside the part are left out")?;
+        writeln!(out, "{plate} points of the plate around the part are left out")?;
     }
     print(&mut out, &figures)
 }

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Name of the part.
     name: Option<String>,
-    /// File to write, - for standard output, or a folder for NAME.stl; NAME.stl if left out. A file name ending in .igs or .iges writes the centre-lines of a thin wall.
+    /// File to write, - for standard output, or a folder for NAME.stl; NAME.stl if left out. A file name ending in .igs or
+    /// .iges writes the centre-lines of a thin wall.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -36,7 +37,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let bytes = match (wants_curves, example.iges()) {
         (false, _) => example.stl(),
         (true, Some(text)) => text.into_bytes(),
-        (true, None) => anyhow::bail!("{name} is no thin wall and has no centre-lines; write it as STL"),
+        (true, None) => anyhow::bail!("{name} is not a thin wall and has no centre-lines; write it as STL"),
     };
     drop(out);
     file::write(&path, &bytes)?;

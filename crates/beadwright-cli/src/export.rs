@@ -16,12 +16,12 @@ pub(crate) struct Arguments {
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// File to write; its ending tells the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
-    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf, .svg or .png (drawings of layers: NAME-001.dxf and so on); - for
-    /// standard output, with --format.
+    /// File to write; its extension gives the format: .csv or .parquet (a table of all pieces of beads), .vtp (ParaView, VTK,
+    /// pyvista), .3mf (the 3MF Toolpath extension), .stl or .glb (the shape as built), .dxf, .svg or .png (drawings of
+    /// layers: NAME-001.dxf and so on); - for standard output, with --format.
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
-    /// Format of what goes to standard output, as the ending of a file that has it, such as csv.
+    /// Format of standard output, given as the extension of such files, for example csv.
     #[arg(long, value_name = "ENDING")]
     format: Option<String>,
     /// Draw only this layer, counted from 1, into the file itself; for .dxf, .svg and .png.
@@ -42,12 +42,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let extension = arguments.format.clone().or(ending).unwrap_or_default();
     anyhow::ensure!(
         !standard || arguments.format.is_some(),
-        "--output -: the format of standard output is told by --format, such as --format csv"
+        "--output -: --format gives the format of standard output, such as --format csv"
     );
     if let Some(format) = export::layer_format(&extension) {
         anyhow::ensure!(
             !standard || arguments.layer.is_some(),
-            "--output -: one layer is drawn there; --layer tells which"
+            "--output -: one layer is drawn there; --layer says which"
         );
         return drawings(arguments, plan, format);
     }
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             .map(|f| (f.extension, f.purpose))
             .chain(LAYER_FORMATS.iter().map(|f| (f.extension, f.purpose)));
         let known: Vec<String> = known.map(|(extension, purpose)| format!(".{extension} ({purpose})")).collect();
-        format!("{}: the ending tells the format, and it may be {}", arguments.output.display(), known.join(" or "))
+        format!("{}: the extension gives the format, and it may be {}", arguments.output.display(), known.join(" or "))
     })?;
     anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg, .png)");
     let profile = source.profile(&arguments.wanted)?;
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Temperatures of a plan as it stands.
+/// Temperatures of a plan as it is.
 fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>> {
     let over = Some(plan.header.extent.seen_from_above());
     let settings = HeatSettings { interpass: None, over, ..profile.heat_settings()? };

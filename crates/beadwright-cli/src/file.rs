@@ -9,7 +9,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// What came from standard input, kept for those who ask again.
+/// What came from standard input, kept in case it is asked for again.
 static STANDARD_INPUT: OnceLock<Vec<u8>> = OnceLock::new();
 
 /// Whether a name stands for standard input or output.
@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     );
     anyhow::ensure!(
         about.len() <= memory::limit(),
-        "{}: the file has {:.1} GB, more than may be used (--max-memory).",
+        "{}: the file is {:.1} GB, more memory than may be used (--max-memory).",
         path.display(),
         about.len() as f64 / 1e9
     );
@@ -49,14 +49,14 @@ pub(crate) fn model(path: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// All of standard input.
 fn standard_input() -> anyhow::Result<Vec<u8>> {
-    // Who comes while another one reads waits for what that one keeps.
+    // Whoever comes while another reads waits for what that one keeps.
     let mut input = std::io::stdin().lock();
     if let Some(bytes) = STANDARD_INPUT.get() {
         return Ok(bytes.clone());
     }
     let (limit, mut bytes) = (memory::limit(), Vec::new());
     input.by_ref().take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
-    anyhow::ensure!(bytes.len() as u64 <= limit, "there is more than may be used of memory (--max-memory)");
+    anyhow::ensure!(bytes.len() as u64 <= limit, "it is more than the memory that may be used (--max-memory)");
     Ok(STANDARD_INPUT.get_or_init(|| bytes).clone())
 }
 

@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
     plan: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// How long the build would take with this limit between passes, °C; the plan stays as it is.
+    /// Compute how long the build would take with this limit between passes, °C; the plan stays as it is.
     #[arg(long, value_name = "°C", value_parser = parse_limit)]
     limit: Option<f64>,
     /// HTML page to write, with pictures of the layers.
@@ -46,7 +46,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let interpass = arguments.limit.map(limit);
     if let (Some(limits), Some(heat)) = (&interpass, &profile.heat) {
         let (limit, ambient) = (limits.max_temperature, heat.ambient);
-        anyhow::ensure!(limit >= ambient + 10.0, "--limit {limit}: the surroundings have {ambient} °C (heat.ambient)");
+        anyhow::ensure!(
+            limit >= ambient + 10.0,
+            "--limit {limit}: the surroundings are at {ambient} °C (heat.ambient)"
+        );
     }
     let over = loaded.over.as_ref().map(|(bounds, _)| *bounds);
     let settings = heat::HeatSettings { interpass, over, ..profile.heat_settings()? };
@@ -77,7 +80,10 @@ fn print(
 ) -> std::io::Result<()> {
     writeln!(out, "{name}: {} layers, {} voxels of {:.1} mm", history.layers.len(), history.voxels, history.voxel)?;
     if history.voxel > wanted * 1.001 {
-        writeln!(out, "warning: voxels of {wanted:.1} mm would be more than {MOST_VOXELS}; larger ones know less.")?;
+        writeln!(
+            out,
+            "warning: voxels of {wanted:.1} mm would be more than {MOST_VOXELS}; larger ones are less accurate."
+        )?;
     }
     let Some((layer, pass, hottest)) = history.hottest_start() else { return Ok(()) };
     if let Some(limits) = limits.filter(|limits| hottest > limits.max_temperature + 1.0) {
@@ -96,7 +102,7 @@ fn print(
         ("hottest ahead of torch", format!("{ahead:.0} °C (layer {}, pass {})", at.0 + 1, at.1 + 1)),
         ("starts of the last layer", format!("up to {last:.0} °C")),
         ("waits for cooling", format!("{:.1} min", history.waits() / 60.0)),
-        ("whole time", format!("{:.1} min", history.seconds / 60.0)),
+        ("total time", format!("{:.1} min", history.seconds / 60.0)),
         ("heat of arc and preheating", format!("{:.1} MJ", history.supplied / 1e6)),
         ("taken by air and table", format!("{:.1} %", percent(history.lost))),
         ("left in part and plate", format!("{:.1} %", percent(history.held))),

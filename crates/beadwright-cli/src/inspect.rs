@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// - for standard input, or a model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), a plan.json, toolpaths in 3MF, or a program in G-code, KRL, RAPID, FANUC TP, INFORM or URScript.
+    /// Model (STL, 3MF, OBJ, PLY, AMF, DXF, SVG, IGES, or STEP with a converter), plan.json, toolpaths in 3MF, or program in
+    /// G-code, KRL, RAPID, FANUC TP, INFORM or URScript; - for standard input.
     file: PathBuf,
     /// Write the mended solid as STL, in the units of the file; with --output.
     #[arg(long, requires = "output")]
@@ -24,7 +25,7 @@ pub(crate) struct Arguments {
     /// Also close holes up to this size, measured across, in the units of the file.
     #[arg(long, value_name = "SIZE", requires = "repair", value_parser = parse_size)]
     fill_holes: Option<f64>,
-    /// Write a picture of the faces that hang over, seen from below, as SVG.
+    /// Write a picture of the overhanging faces, seen from below, as SVG.
     #[arg(long, value_name = "FILE")]
     overhang: Option<PathBuf>,
     #[command(flatten)]
@@ -104,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes what the mending has left, as STL.
+/// Writes the mended solid, as STL.
 fn write_mended(path: &Path, import: &Import) -> anyhow::Result<()> {
     let is_stl = file::is_standard(path) || path.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
     anyhow::ensure!(is_stl, "{}: the mended solid is written as STL; give a name that ends in .stl", path.display());
@@ -132,7 +133,7 @@ fn drawing(bytes: &[u8], arguments: &Arguments) -> anyhow::Result<()> {
     writeln!(out, "  outlines   {}, around {} islands", outlines.rings.len(), region.polygons().len())?;
     writeln!(out, "  area       {:.3}", region.area())?;
     outlines.notes.iter().try_for_each(|note| writeln!(out, "  {note}"))?;
-    writeln!(out, "  A part grows from it with a height: `beadwright plan` with --height.")?;
+    writeln!(out, "  With a height it becomes a part: `beadwright plan` with --height.")?;
     Ok(())
 }
 
@@ -195,13 +196,13 @@ fn curves(file: &IgesFile, arguments: &Arguments) -> std::io::Result<()> {
         let value = serde_json::json!({ "format": "IGES", "system": file.system, "unit_mm": file.unit_mm, "entities": entities, "curves": curves, "warnings": file.warnings });
         return writeln!(out, "{value:#}");
     }
-    writeln!(out, "{}: IGES by {}, {} mm a unit", arguments.file.display(), file.system.trim(), file.unit_mm)?;
+    writeln!(out, "{}: IGES by {}, {} mm per unit", arguments.file.display(), file.system.trim(), file.unit_mm)?;
     writeln!(out, "  entity                                 read  not read")?;
     for e in &file.entities {
         writeln!(out, "  {:>3} {:<33} {:>5} {:>9}", e.entity, e.name, e.read, e.unread)?;
     }
     let own = || file.independent_curves();
-    writeln!(out, "  {} curves, {} of them stand for themselves", file.curves.len(), own().count())?;
+    writeln!(out, "  {} curves, {} of them independent", file.curves.len(), own().count())?;
     for curve in own() {
         let bounds = curve.parts.iter().map(|part| part.bounds());
         let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();

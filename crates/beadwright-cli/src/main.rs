@@ -41,13 +41,13 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Most memory that may be used, GB; three quarters of the machine's if left out.
+    /// Maximum memory to use, GB; three quarters of the machine's if left out.
     #[arg(long, global = true, value_name = "GB", value_parser = parse_memory)]
     max_memory: Option<f64>,
-    /// Say only warnings and errors, on standard error, besides what is asked for.
+    /// Print only what is asked for, and warnings and errors on standard error.
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Tell how long each stage took.
+    /// Print how long each stage took.
     #[arg(long, short, global = true)]
     verbose: bool,
 }
@@ -71,13 +71,13 @@ enum Command {
     Adapt(adapt::Arguments),
     /// Compare a scan of the built part with the part: how far its surface lies outside and inside.
     Deviation(deviation::Arguments),
-    /// Weld a plan in a model of its height, with errors, to see what feedback from scans is worth.
+    /// Weld a plan in the height model, with errors, to see what feedback from scans is worth.
     Build(build::Arguments),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),
     /// Compute how warm the metal is before each pass of a plan, and what waiting for a limit costs.
     Heat(heat::Arguments),
-    /// Reproduce the papers' experiments: our results beside theirs.
+    /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
     /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
     Export(export::Arguments),

@@ -1,4 +1,4 @@
-//! How much memory may be used: what would need more is stopped with a sentence before the machine begins to swap.
+//! How much memory may be used: a run that would need more is stopped with a sentence before the machine begins to swap.
 
 use crate::progress;
 use std::sync::OnceLock;
@@ -9,7 +9,7 @@ use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, RefreshK
 static LIMIT: OnceLock<u64> = OnceLock::new();
 static EXCEEDED: AtomicBool = AtomicBool::new(false);
 
-/// Part of the machine's memory that is used at most if nothing else is said.
+/// Maximum part of the machine's memory that is used by default.
 const PART: f64 = 0.75;
 /// Beyond this multiple of the limit, or this time after it was reached, the run is ended without waiting for it.
 const PATIENCE: (f64, Duration) = (1.15, Duration::from_secs(3));
@@ -22,7 +22,7 @@ pub(crate) fn limit() -> u64 {
         let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
         let system = System::new_with_specifics(memory);
         let total = system.cgroup_limits().map_or(system.total_memory(), |limits| limits.total_memory);
-        // Where the system does not tell, nothing is limited.
+        // Where the system does not say, nothing is limited.
         if total == 0 { u64::MAX } else { (total as f64 * PART) as u64 }
     })
 }
@@ -60,7 +60,7 @@ pub(crate) fn watch(most: Option<f64>) {
     }
 }
 
-/// The sentence of a run that was stopped because of its memory, or that got none where it asked for some.
+/// The sentence for a run that was stopped because of its memory, or that was refused some when it asked.
 pub(crate) fn exceeded(error: &anyhow::Error) -> Option<String> {
     let kind =
         |cause: &(dyn std::error::Error + 'static)| cause.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
@@ -79,7 +79,7 @@ fn sentence() -> String {
 fn told(limit: u64, remedy: &str) -> String {
     let digits = if limit < 100_000_000 { 2 } else { 1 };
     format!(
-        "more than {:.digits$} GB of memory would be needed, and nothing was written. Take a coarser model or --grid, or allow \
+        "more than {:.digits$} GB of memory would be needed, and nothing was written. Use a coarser model or --grid, or allow \
          more with {remedy}.",
         limit as f64 / 1e9
     )

@@ -11,29 +11,30 @@ use std::path::{Path, PathBuf};
 /// Which model, and how it is placed.
 #[derive(clap::Args, Clone)]
 pub(crate) struct Model {
-    /// The model, - for standard input, or the name of an example part, such as propeller: STL, 3MF, OBJ, PLY or AMF; STEP and IGES surfaces with a converter; for `plan`, also IGES with the
-    /// centre-lines of walls, and DXF and SVG with outlines (--height).
+    /// Model, - for standard input, or the name of an example part, such as propeller. A model is STL, 3MF, OBJ, PLY or AMF;
+    /// STEP or IGES surfaces with a converter; for `plan`, also IGES with the centre-lines of walls, or DXF or SVG with
+    /// outlines (--height).
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) placing: Placing,
 }
 
-/// How models are placed, and what is taken of them.
+/// How models are placed, and what is used of them.
 #[derive(clap::Args, Clone)]
 pub(crate) struct Placing {
     /// Unit of the model's coordinates; needed if the part would otherwise be smaller than a few beads.
     #[arg(long, value_parser = parse_units, value_name = "mm|cm|m|in")]
     pub(crate) units: Option<Units>,
-    /// Factor by which the part is enlarged.
+    /// Factor by which to enlarge the part.
     #[arg(long, default_value_t = 1.0, value_parser = parse_scale)]
     scale: f64,
     /// Turn the part about x, then y, then z, in degrees, such as --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
     turn: DVec3,
-    /// Turn the part so that the largest flat face on which it can stand lies below.
+    /// Turn the part so that it stands on its largest suitable flat face.
     #[arg(long)]
     lay_flat: bool,
-    /// Turn the part onto that of its flat faces which leaves the least overhang, or the lowest part of those.
+    /// Turn the part onto the flat face that leaves the least overhang; among equals, the one that leaves the part lowest.
     #[arg(long, conflicts_with = "lay_flat")]
     orient: bool,
     /// Move the middle of the part to x = y = 0.
@@ -42,7 +43,7 @@ pub(crate) struct Placing {
     /// Move the part along x and y after all else, in mm, such as --shift 250,-40.
     #[arg(long, value_parser = parse_shift, value_name = "X,Y", allow_hyphen_values = true, default_value = "0,0")]
     shift: DVec2,
-    /// Take what triangles there are of an STL file that ends too early or holds more than it says.
+    /// Use the triangles that are there in an STL file that ends too early or holds more than it says.
     #[arg(long)]
     accept_damaged: bool,
 }
@@ -145,7 +146,7 @@ impl Model {
 }
 
 impl Placing {
-    /// Whether the part is turned by how it lies.
+    /// Whether the part is turned according to how it lies.
     fn turns(&self) -> bool {
         self.lay_flat || self.orient
     }

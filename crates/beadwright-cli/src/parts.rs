@@ -1,4 +1,4 @@
-//! Parts that are welded one after another, each with plan and programs of its own.
+//! Parts that are welded one after another, each with its own plan and programs.
 
 use crate::plan::{self, Arguments, Files, Refused, print_findings, print_head, print_summary, refused};
 use crate::several::Programs;
@@ -43,7 +43,7 @@ struct Own {
     note: Option<String>,
 }
 
-/// Plans the parts one after another, each with programs of its own. All are written, or none.
+/// Plans the parts one after another, each with its own programs. All are written, or none.
 fn each(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let build = arguments.build(arguments.profile(&arguments.profile)?.bead.width, &task)?;
@@ -107,7 +107,7 @@ fn one<'a>(
 }
 
 impl Planned<'_> {
-    /// Writes the files and tells of them; with `--json` it gives the totals instead.
+    /// Writes the files and reports them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
         let found =

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     pub(crate) height: Option<f64>,
     #[arg(long, short, value_name = "NAME", help = strategy_help())]
     pub(crate) strategy: Option<String>,
-    /// What an open surface stands for: the skin of a solid, whose contours are filled, or a wall, along which one bead is
+    /// Meaning of an open surface: the skin of a solid, whose contours are filled, or a wall, along which one bead is
     /// laid.
     #[arg(long, value_name = "solid|wall", value_parser = ["solid", "wall"])]
     surface: Option<String>,
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Plan only what lies above this height of the placed part, mm: the cut comes to lie on the table.
+    /// Plan only what lies above this height of the placed part, mm: the cut then lies on the table.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     pub(crate) from_z: Option<f64>,
     /// Write the programs of these layers only, counted from 1, such as 3,10-20; plan.json and the report keep all layers.
@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     /// report keep all layers.
     #[arg(long, value_name = "LAYER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     from_layer: u32,
-    /// Begin that layer with this pass, counted from 1: the one that was interrupted is welded anew.
+    /// Begin that layer with this pass, counted from 1: the one that was interrupted is welded again.
     #[arg(long, value_name = "PASS", default_value_t = 1, requires = "from_layer", value_parser = clap::value_parser!(u32).range(1..))]
     from_pass: u32,
     /// Write programs that only move the torch, to run before the first bead: the same paths at the same speeds, but
@@ -81,7 +81,7 @@ pub(crate) struct Arguments {
     /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
     pub(crate) grid: Option<f64>,
-    /// Write the files even where the program would leave the part, be laid on nothing, or drag the torch over beads.
+    /// Write the files even if the program would leave the part, weld over nothing, or drag the torch over beads.
     #[arg(long)]
     pub(crate) allow_findings: bool,
     /// Print the metrics as JSON instead of the summary.
@@ -163,7 +163,7 @@ impl Arguments {
         Ok(profile)
     }
 
-    /// The programs of a part beside others that stand that high, mm.
+    /// The programs of a part next to others of this height, mm.
     pub(crate) fn programs(
         &self,
         name: &str,
@@ -187,7 +187,7 @@ impl Arguments {
     }
 }
 
-/// Sets the threads, and looks whether the arguments go together.
+/// Sets the threads, and checks whether the arguments go together.
 pub(crate) fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(threads) = arguments.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
@@ -274,7 +274,7 @@ fn selection_exists(selection: &Selection, layers: usize) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Says before a large plan is made how large it will be.
+/// Says how large a large plan will be, before it is made.
 pub(crate) fn say_size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
     let Some(Expected { layers, layer_length, .. }) = plan::expected(mesh, profile).filter(|expected| expected.large)
     else {
@@ -284,7 +284,7 @@ pub(crate) fn say_size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
     writeln!(
         say::done(true),
         "about {layers} layers with {metres:.0} m of bead each, {kilometres:.1} km in all, are to be planned, which may take \
-         many minutes. Where that is not meant, Ctrl-C stops it: look at bead.width ({} mm), layers.height ({} mm) and the unit \
+         many minutes. If that is not intended, press Ctrl-C and check bead.width ({} mm), layers.height ({} mm) and the unit \
          of the model.",
         profile.bead.width,
         profile.layers.height
@@ -306,14 +306,14 @@ pub(crate) fn refused(error: PlanError<anyhow::Error>, model: &Path) -> anyhow::
 /// Programs that nobody should start.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "no program was written, since it should not be started:\n{}\n{}--allow-findings writes it all the same.",
+    "no program was written, since it should not be started:\n{}\n{}--allow-findings writes it anyway.",
     .reasons.join("\n"),
     .report.as_ref().map_or(String::new(), |report| format!("{} shows the places. ", report.display()))
 )]
 pub(crate) struct Refused {
     /// Sentences.
     pub(crate) reasons: Vec<String>,
-    /// The report that was written all the same.
+    /// The report that was written anyway.
     pub(crate) report: Option<PathBuf>,
 }
 
@@ -342,7 +342,7 @@ impl<'a> Files<'a> {
         Self { judge, ..self }
     }
 
-    /// What the deposit model says of all layers.
+    /// What the deposit model says about all layers.
     pub(crate) fn figures(&self) -> Option<Figures> {
         self.judge.as_ref().map(|judge| *judge.total())
     }
@@ -368,7 +368,7 @@ impl<'a> Files<'a> {
         Ok(files.check(task)?)
     }
 
-    /// Writes the report alone, in which the places are seen why there is no program; where it lies.
+    /// Writes only the report, which shows the places because of which there is no program; returns its path.
     fn refuse(self, summary: &Summary, repair: &RepairReport, output: &Path) -> anyhow::Result<Option<PathBuf>> {
         let Some(files) = self.files else { return Ok(None) };
         drop(self.folder);
@@ -431,7 +431,7 @@ pub(crate) fn deposit_settings(
     settings.with_context(|| format!("--grid {}", grid.unwrap_or_default()))
 }
 
-/// Name and size, and where each of several parts stands.
+/// Name and size, and where each of several parts is placed.
 pub(crate) fn print_head(
     out: &mut impl Write,
     part: &str,
@@ -452,12 +452,12 @@ pub(crate) fn print_head(
     writeln!(out, "profile {}, strategy {}", profile.name, profile.fill.strategy)
 }
 
-/// What is said even with `--quiet`: a line a finding, the worst first.
+/// What is printed even with `--quiet`: one line per finding, the worst first.
 pub(crate) fn print_findings(findings: &[Finding]) -> std::io::Result<()> {
     let mut out = say::warnings();
     for finding in findings {
         let (word, sentence) = (finding.severity.word(), finding.sentence());
-        // The sentences of checks are short of their subject.
+        // The sentences of checks lack their subject.
         match check::by_name(finding.kind) {
             Some(check) => writeln!(out, "{word}: {}: {sentence}", check.name)?,
             None => writeln!(out, "{word}: {sentence}")?,

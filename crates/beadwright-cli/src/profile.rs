@@ -22,7 +22,7 @@ pub(crate) enum Command {
     Show {
         /// Name of the profile.
         name: String,
-        /// Save it as this new file instead, with the schema beside it by which editors complete keys.
+        /// Save it as this new file instead, and next to it the schema by which editors complete keys.
         #[arg(long, short, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -66,7 +66,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             if let Some(reason) = checked.forbidden().into_iter().next() {
                 anyhow::bail!("{profile}: {reason}");
             }
-            writeln!(out, "{}: every value is possible.", checked.name)?;
+            writeln!(out, "{}: every value is valid.", checked.name)?;
             for note in checked.notes() {
                 writeln!(out, "note: {note}")?;
             }
@@ -86,9 +86,9 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
 /// The file that the `#:schema` lines of profiles name.
 const SCHEMA: &str = "profile.schema.json";
 
-/// Writes a profile to be edited, and its schema beside it.
+/// Writes a profile to be edited, and its schema next to it.
 fn save(text: &str, path: &Path) -> anyhow::Result<()> {
-    anyhow::ensure!(!path.exists(), "{}: there is such a file already; give the name of a new one", path.display());
+    anyhow::ensure!(!path.exists(), "{}: this file already exists; give the name of a new one", path.display());
     write_file(path, text.as_bytes())?;
     Ok(write_file(&path.with_file_name(SCHEMA), format!("{:#}\n", Profile::schema()).as_bytes())?)
 }
@@ -140,7 +140,7 @@ fn own_folder() -> Option<PathBuf> {
     variable("BEADWRIGHT_PROFILES").or_else(|| settings().map(|folder| folder.join("beadwright").join("profiles")))
 }
 
-/// Reads a profile whose `inherits` may name a built-in profile, one of the user's own, or a file from `folder` on.
+/// Reads a profile whose `inherits` may name a built-in profile, one of the user's own, or a file relative to `folder`.
 fn parse(text: &str, folder: &Path) -> Result<Profile, ProfileError> {
     let mut folder = folder.to_owned();
     Profile::parse_with(text, &mut |name| {
@@ -175,7 +175,7 @@ pub(crate) fn with_settings(text: String, folder: &Path, settings: &[String]) ->
     for setting in settings {
         let lay = || -> anyhow::Result<String> {
             let (key, value) =
-                setting.split_once('=').context("expected is key=value, such as fill.raster_angle=45")?;
+                setting.split_once('=').context("key=value is expected, such as fill.raster_angle=45")?;
             Ok(edit::with_value(&edited, key, value)?)
         };
         edited = lay().with_context(|| format!("--set {setting}"))?;
@@ -188,7 +188,7 @@ pub(crate) fn with_settings(text: String, folder: &Path, settings: &[String]) ->
     })
 }
 
-/// The folder in which a profile lies, where its `posts` look for dialects of one's own; the current one for a built-in
+/// The folder in which a profile lies, where its `posts` look for dialects of your own; the current one for a built-in
 /// name.
 pub(crate) fn folder(profile: &str) -> PathBuf {
     file_of(profile).as_deref().and_then(Path::parent).map_or_else(PathBuf::new, Path::to_owned)

@@ -67,7 +67,7 @@ impl Source {
         }
     }
 
-    /// The profile that is asked for; if none is, that of the plan or the one that the program names.
+    /// The profile that was asked for; if none was, that of the plan or the one that the program names.
     pub(crate) fn profile(&self, wanted: &Wanted) -> anyhow::Result<Profile> {
         if let Some(name) = &wanted.profile {
             return profile::load(name, &wanted.set);
@@ -81,7 +81,7 @@ impl Source {
         let Some(profile) = &plan.profile else {
             let name = &plan.header.profile;
             anyhow::bail!(
-                "{}: this plan does not carry its profile{}, as neither plan.json of version 1 nor toolpaths of other \
+                "{}: this plan does not carry its profile{}, as neither plan.json version 1 nor toolpaths of other \
                  programs do. Give it with --profile, or make the plan again.",
                 self.path.display(),
                 if name.is_empty() { String::new() } else { format!(" (\"{name}\")") }
@@ -127,7 +127,7 @@ impl Reading {
     }
 }
 
-/// The main file of a program, whose modules lie beside it.
+/// The main file of a program, whose modules are next to it.
 struct Main {
     folder: PathBuf,
     /// Its extension, in lower case.
@@ -136,8 +136,8 @@ struct Main {
 }
 
 impl Main {
-    /// A module by name, whatever its case and extension. A folder may hold the same part in several languages: a
-    /// module in another language than the main file's is none of it, and the main file's extension comes first.
+    /// A module by name, whatever its case and extension. A folder may hold the same part in several languages: a module in
+    /// another language than the main file's is not part of it, and the main file's extension comes first.
     fn module(&self, name: &str) -> Option<String> {
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
         let wanted = name.to_ascii_lowercase();
@@ -155,7 +155,7 @@ impl Main {
     }
 }
 
-/// The language of a program, if a line of it tells.
+/// The language of a program, if one of its lines shows it.
 fn recognised(text: &str) -> Option<&'static str> {
     reading::recognise(text).map(|dialect| dialect.language)
 }

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 static RUNNING: OnceLock<Task> = OnceLock::new();
 
-/// A stage that has run so long is asked how long it will go on.
+/// After this time, a stage is asked how long it will still take.
 const SOON: Duration = Duration::from_secs(5);
-/// A rest that is told.
+/// Remaining times of this length or more are reported.
 const LONG: Duration = Duration::from_secs(60);
 
 /// The bar and the clock of a command.
@@ -60,7 +60,7 @@ fn stopped_by_ctrl_c(task: &Task) -> anyhow::Result<()> {
 }
 
 impl Bar {
-    /// Takes the bar away, and tells with `--verbose` how long the stages took.
+    /// Takes the bar away, and with `--verbose` reports how long the stages took.
     pub(crate) fn finish_and_clear(&self) {
         self.bar.finish_and_clear();
         if loudness() == Loudness::Verbose {
@@ -73,10 +73,10 @@ impl Bar {
 /// Stages with the time spent in them.
 struct Clock {
     begun: Instant,
-    /// The stage since when.
+    /// The stage, and since when it runs.
     now: Option<(Stage, Instant)>,
     spent: Vec<(Stage, Duration)>,
-    /// The last stage whose rest was told.
+    /// The last stage whose remaining time was reported.
     told: Option<Stage>,
 }
 
@@ -85,7 +85,7 @@ impl Clock {
         Self { begun, now: None, spent: Vec::new(), told: None }
     }
 
-    /// Takes note of a step; once a stage, a sentence where it will go on for long.
+    /// Takes note of a step; once per stage, a sentence if it will take long.
     fn step(&mut self, stage: Stage, fraction: f64, at: Instant) -> Option<String> {
         let since = match self.now {
             Some((current, since)) if current == stage => since,
@@ -131,7 +131,7 @@ impl Clock {
     }
 }
 
-/// Asked once, stops the task; asked again, ends at once. What it leaves, the next run clears.
+/// Asked once, stops the task; asked again, ends at once. The next run clears what it leaves.
 fn stop() {
     static ASKED: AtomicBool = AtomicBool::new(false);
     if ASKED.swap(true, Ordering::Relaxed) {

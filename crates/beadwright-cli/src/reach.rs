@@ -15,10 +15,10 @@ pub(crate) struct Arguments {
     /// plan.json, as `beadwright plan` writes it.
     #[arg(required_unless_present_any = ["list", "show"])]
     plan: Option<PathBuf>,
-    /// The cell: a built-in name or a TOML file.
+    /// Cell: a built-in name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["list", "show"])]
     cell: Option<String>,
-    /// Take the arm from this URDF file instead of the cell's; torch and part stay where the cell has them.
+    /// Take the arm from this URDF file instead of the cell's; torch and part stay where the cell places them.
     #[arg(long, value_name = "FILE")]
     urdf: Option<PathBuf>,
     /// Place of the part's origin, instead of the one in the cell: x,y,z in mm and the turn about the vertical in °.
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     at: Option<PartPlace>,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// Search for a place of the part that gives more margin.
+    /// Search for a place for the part that gives more margin.
     #[arg(long)]
     suggest: bool,
     /// HTML page to write, with joint angles and margins over the program.
@@ -100,7 +100,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             Some(Some(better)) => writeln!(out, "\n{}", better.sentence())?,
             Some(None) => writeln!(
                 out,
-                "\nThe arm does not reach all of the part from any place that was tried: the part is too large."
+                "\nThe arm cannot reach all of the part from any of the places tried: the part is too large."
             )?,
             None if !reach.is_reachable() => writeln!(out, "\n--suggest looks for a better place for the part.")?,
             None => {}
@@ -129,7 +129,7 @@ fn print(
     writeln!(out, "{part} on {}: {}", cell.name, cell.description)?;
     writeln!(out, "origin of the part at {}\n", reach.place.sentence())?;
     if reach.reached().next().is_none() {
-        return writeln!(out, "  no point of {} is reached", track.stops.len());
+        return writeln!(out, "  none of the {} points can be reached", track.stops.len());
     }
     writeln!(out, "  joint      from       to    margin   speed with arc   on travel     limit")?;
     for j in 0..6 {
@@ -152,7 +152,7 @@ fn print(
     };
     let t = &reach.turning;
     let turned = match t.range {
-        (low, high) if high - low < 0.5 => format!("{low:.0}° all the way"),
+        (low, high) if high - low < 0.5 => format!("{low:.0}° throughout"),
         (low, high) => format!("{low:.0}° to {high:.0}°"),
     };
     let single = match t.single_margin {
@@ -234,7 +234,7 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
 fn parse_trajectory(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let known = path.extension().is_some_and(|end| ["csv", "json"].iter().any(|known| end.eq_ignore_ascii_case(known)));
-    if known { Ok(path) } else { Err("the ending tells the format: .csv or .json".to_owned()) }
+    if known { Ok(path) } else { Err("the extension gives the format: .csv or .json".to_owned()) }
 }
 
 fn parse_place(text: &str) -> Result<PartPlace, String> {
@@ -243,6 +243,6 @@ fn parse_place(text: &str) -> Result<PartPlace, String> {
         Ok(all) if all.iter().any(|v| v.is_nan() || v.abs() > 1e5) => Err("the place must lie within 100 m".to_owned()),
         Ok(&[x, y, z]) => Ok(PartPlace { position: [x, y, z], rotation: 0.0 }),
         Ok(&[x, y, z, rotation]) => Ok(PartPlace { position: [x, y, z], rotation }),
-        _ => Err("expected is x,y,z in mm, such as 1200,0,500, or x,y,z,turn with the turn in °".to_owned()),
+        _ => Err("x,y,z in mm is expected, such as 1200,0,500, or x,y,z,turn with the turn in °".to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! Which flags help against an error of the library, which knows of none.
+//! Which flags help with an error of the library, which knows no flags.
 
 use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
@@ -7,7 +7,7 @@ use beadwright::model::{ImportError, PartError};
 use beadwright::plan::PlanError;
 use beadwright::read_back::ReadBackError;
 
-/// What the command has against a kind of finding.
+/// What the command offers against a kind of finding.
 pub(crate) fn words(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "gap-closed" => "inspect --repair shows and mends it",
@@ -47,7 +47,7 @@ fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
         PartError::HeightOfSolid => "Leave --height out.",
         PartError::Import(ImportError::Outline { .. }) => "--height gives it one.",
         PartError::Import(ImportError::TooFar { .. }) => "--units sets the unit.",
-        PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged takes what there is of it.",
+        PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged uses what there is of it.",
         _ => return None,
     })
 }
@@ -68,9 +68,9 @@ fn library(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
 fn scan(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
     Some(match cause.downcast_ref()? {
         SeeError::Beside { .. } | SeeError::TooFew { .. } | SeeError::Uneven { .. } => {
-            "--align fit lays the scan on the part."
+            "--align fit aligns the scan with the part."
         }
-        SeeError::Height { .. } => "--align plate takes the plate in the scan for z = 0.",
+        SeeError::Height { .. } => "--align plate takes the plate in the scan as z = 0.",
         SeeError::NoLayer { .. } => return None,
     })
 }

@@ -1,4 +1,4 @@
-//! `beadwright reproduce`: the papers' tables and figures, ours beside theirs.
+//! `beadwright reproduce`: the papers' tables and figures, ours next to theirs.
 
 use crate::progress;
 use anyhow::Context;

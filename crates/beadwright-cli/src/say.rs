@@ -31,7 +31,7 @@ pub(crate) fn loudness() -> Loudness {
     LOUDNESS.get().copied().unwrap_or(Loudness::Usual)
 }
 
-/// Where a command tells what it has done: nowhere with `--quiet`, on standard error where standard output takes a file.
+/// Where a command reports what it has done: nowhere with `--quiet`, on standard error where standard output takes a file.
 pub(crate) fn done(output_is_standard: bool) -> Box<dyn Write> {
     match loudness() {
         Loudness::Quiet => Box::new(std::io::sink()),

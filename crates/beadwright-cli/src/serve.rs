@@ -6,9 +6,9 @@ use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 use tiny_http::{Header, Method, Request, Response, Server};
 
-/// Where the page lies beside the command: as installed, and as `web/build` makes it beside `target/release`.
+/// Where the page is relative to the command: as installed, and as `web/build` makes it next to `target/release`.
 const PLACES: [&str; 2] = ["studio-web", "../studio-web"];
-/// What tells that a folder holds the page.
+/// The file that shows that a folder holds the page.
 const PAGE: &str = "index.html";
 
 /// Serves the page until the command is ended.
@@ -28,20 +28,20 @@ pub(crate) fn run(port: u16, folder: Option<&Path>) -> anyhow::Result<()> {
     println!("The studio is at http://{}/ until this command is ended (Ctrl-C).", server.server_addr());
     std::io::stdout().flush()?;
     for request in server.incoming_requests() {
-        // A browser that has left is no fault.
+        // A browser that has left is not a fault.
         let _ = answer(request, &folder, port);
     }
     Ok(())
 }
 
 fn beside() -> anyhow::Result<PathBuf> {
-    let own = std::env::current_exe().context("the place of this program is not known")?;
+    let own = std::env::current_exe().context("the folder of this program is not known")?;
     let places = PLACES.map(|place| own.with_file_name(place));
     match places.iter().find(|place| place.join(PAGE).is_file()) {
         Some(place) => Ok(place.clone()),
         None => bail!(
-            "the studio's page is not there: it was looked for at {} and {}; build it with \
-             `crates/beadwright-studio/web/build`, which writes target/studio-web, or name its folder with --pages",
+            "the studio's page was not found at {} or {}; build it with `crates/beadwright-studio/web/build`, which writes \
+             target/studio-web, or name its folder with --pages",
             places[0].display(),
             places[1].display()
         ),
@@ -50,8 +50,9 @@ fn beside() -> anyhow::Result<PathBuf> {
 
 fn answer(request: Request, folder: &Path, port: u16) -> std::io::Result<()> {
     if !is_own(&request, port) {
-        return request
-            .respond(Response::from_string("Only this machine's own address is answered.").with_status_code(403));
+        return request.respond(
+            Response::from_string("Only requests to this machine's own address are answered.").with_status_code(403),
+        );
     }
     if !matches!(request.method(), Method::Get | Method::Head) {
         return request.respond(Response::from_string("Only GET and HEAD are answered.").with_status_code(405));
@@ -59,7 +60,7 @@ fn answer(request: Request, folder: &Path, port: u16) -> std::io::Result<()> {
     match wanted(request.url()).and_then(|path| Some((kind(&path)?, read(folder, &path)?))) {
         Some((kind, bytes)) => {
             let mut response = Response::from_data(bytes);
-            // A page that was built anew is shown anew.
+            // A page that was built again is shown anew.
             for (name, value) in
                 [("Content-Type", kind), ("Cache-Control", "no-cache"), ("X-Content-Type-Options", "nosniff")]
             {
@@ -87,14 +88,14 @@ fn read(folder: &Path, path: &Path) -> Option<Vec<u8>> {
 /// The file that an address asks for, below the folder; nothing that leads out of it.
 fn wanted(address: &str) -> Option<PathBuf> {
     let path = address.split(['?', '#']).next()?.strip_prefix('/')?;
-    // The page's files have plain names, so that what is coded in the address asks for none of them.
+    // The page's files have plain names, so an encoded address asks for none of them.
     let plain = path.bytes().all(|b| b.is_ascii_alphanumeric() || b"._-/".contains(&b));
     let path = Path::new(if path.is_empty() { PAGE } else { path });
     let below = path.components().all(|part| matches!(part, Component::Normal(_)));
     (plain && below).then(|| path.to_owned())
 }
 
-/// The type that a browser must be told, by the ending; nothing else is handed out.
+/// The type that the browser is given, by the extension; nothing else is served.
 fn kind(path: &Path) -> Option<&'static str> {
     Some(match path.extension()?.to_str()? {
         "html" => "text/html; charset=utf-8",
@@ -106,5 +107,5 @@ fn kind(path: &Path) -> Option<&'static str> {
 }
 
 fn header(name: &str, value: &str) -> std::io::Result<Header> {
-    Header::from_bytes(name, value).map_err(|()| std::io::Error::other("a header that is none"))
+    Header::from_bytes(name, value).map_err(|()| std::io::Error::other("a header that is not valid"))
 }

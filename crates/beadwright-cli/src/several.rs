@@ -7,21 +7,21 @@ use std::path::Path;
 
 #[derive(clap::Args)]
 pub(crate) struct Several {
-    /// Another part for the same build, turned and scaled alike; may be given several times. The parts stand in rows. With
-    /// --programs parts it may have a profile of its own: FILE:profile=NAME.
+    /// Another part for the same build, turned and scaled alike; may be given several times. The parts are placed in rows.
+    /// With --programs parts it may have its own profile: FILE:profile=NAME.
     #[arg(long, value_name = "MODEL")]
     pub(crate) with: Vec<String>,
     /// Distance between the parts of one build, mm.
     #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = parse_gap, requires = "with")]
     gap: f64,
-    /// Leave the parts of one build where their files have them, seen from above.
+    /// Leave the parts of one build where their files place them in x and y.
     #[arg(long, requires = "with", conflicts_with = "gap")]
     as_placed: bool,
-    /// Let the parts grow together, layer by layer, or weld one after another, the lowest first. Refused where the torch
-    /// (section [torch] of the profile) would hit a part that stands.
+    /// Build the parts together, layer by layer, or one after another, the lowest first; refused if the torch (section
+    /// [torch] of the profile) would hit a finished part.
     #[arg(long, value_enum, default_value_t = Order::Layers, requires = "with")]
     pub(crate) order: Order,
-    /// Write one plan with one program, or those of each part into a folder of its own; with --order parts.
+    /// Write one plan with one program, or a plan and a program for each part into its own folder; with --order parts.
     #[arg(long, value_enum, default_value_t = Programs::One, requires = "with")]
     pub(crate) programs: Programs,
 }
@@ -50,15 +50,15 @@ fn parse_gap(text: &str) -> Result<f64, String> {
 }
 
 impl Several {
-    /// What does not go together.
+    /// Refuses arguments that do not go together.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         anyhow::ensure!(
             self.programs == Programs::One || self.order == Order::Parts,
-            "--programs parts: parts that grow together need one program. --order parts welds them one after another."
+            "--programs parts: parts that are built together need one program. --order parts welds them one after another."
         );
         let own = self.with.iter().find(|with| own_profile(with).1.is_some());
         if let Some(with) = own.filter(|_| self.programs == Programs::One) {
-            anyhow::bail!("--with {with}: a part has a profile of its own only with --programs parts");
+            anyhow::bail!("--with {with}: a part may have its own profile only with --programs parts");
         }
         Ok(())
     }
@@ -67,7 +67,7 @@ impl Several {
         if self.as_placed { Arrangement::AsTheyAre } else { Arrangement::Rows { gap: self.gap } }
     }
 
-    /// Where the first model and the others stand; `place` reads and places one of them.
+    /// Where the first model and the others are placed; `place` reads and places one of them.
     pub(crate) fn stand(
         &self,
         first: &model::Model,
@@ -88,7 +88,7 @@ impl Several {
         Ok(Build { whole: Part::Mesh(whole), places, lowest_first: solids })
     }
 
-    /// The name of the profile that a part has for its own.
+    /// The name of the profile that is a part's own.
     pub(crate) fn profile_of(&self, part: &str) -> Option<&str> {
         let named = |with: &&String| model::Model::of(own_profile(with).0).part() == part;
         self.with.iter().find(named).and_then(|with| own_profile(with).1)
@@ -99,7 +99,7 @@ impl Several {
 pub(crate) struct Build {
     /// As one part.
     pub(crate) whole: Part,
-    /// Where each of several parts stands.
+    /// Where each of several parts is placed.
     pub(crate) places: Vec<Place>,
     /// Each of several parts by its name and by itself, the lowest first.
     pub(crate) lowest_first: Vec<(String, Import)>,
@@ -108,7 +108,7 @@ pub(crate) struct Build {
 fn solid(part: Part, path: &Path) -> anyhow::Result<Import> {
     match part {
         Part::Mesh(import) => Ok(import),
-        Part::Curves { .. } => anyhow::bail!("{}: only solids stand together in one build", path.display()),
+        Part::Curves { .. } => anyhow::bail!("{}: only solids can share a build", path.display()),
     }
 }
 

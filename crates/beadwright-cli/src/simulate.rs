@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     /// plan.json, toolpaths in 3MF, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or
     /// URScript; if it has several files, the main one.
     file: PathBuf,
-    /// The part it was made for, as STL: without it a program has no outline, and neither voids nor overfill are
+    /// Part that the program was made for, as STL; without it a program has no outline, and neither voids nor overfill are
     /// reported.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
@@ -82,7 +82,7 @@ fn print(out: &mut impl Write, loaded: &beadwright::read_back::ReadBack, entry: 
     if f.area > 0.0 {
         rows.extend(rows::deposit(f));
         rows.push((
-            "height a layer",
+            "height per layer",
             format!("{:.2} ± {:.2} mm, {:.2} to {:.2} mm", f.mean(), f.deviation(), f.min, f.max),
         ));
     }
@@ -126,7 +126,8 @@ fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
     if let Some(built) = entry.built.filter(|_| entry.growth.len() > 1) {
         writeln!(
             out,
-            "\n  bead laid on bead, {:.1} % of the area ends within one layer height of the last layers, on average {:+.2} mm off,",
+            "\n  bead laid on bead, {:.1} % of the area ends within one layer height of the last layers, on average {:+.2} \
+             mm off,",
             100.0 * built.within,
             built.mean
         )?;

@@ -1,4 +1,4 @@
-//! `beadwright studio`: starts the desktop program installed beside this one, or serves its page to a browser.
+//! `beadwright studio`: starts the desktop program installed next to this one, or serves its page to a browser.
 
 use crate::serve;
 use anyhow::{Context, bail};
@@ -9,13 +9,13 @@ use std::process::{Command, ExitCode};
 #[derive(clap::Args)]
 #[command(disable_help_flag = true)]
 pub(crate) struct Arguments {
-    /// Show the studio in a browser instead: serve its page on this machine, at this port (0: any that is free).
+    /// Show the studio in a browser instead: serve its page on this machine, at this port (0: any free one).
     #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8320")]
     serve: Option<u16>,
-    /// The folder of that page, instead of the one beside this program.
+    /// Folder of that page, instead of the one next to this program.
     #[arg(long, value_name = "DIR", requires = "serve")]
     pages: Option<PathBuf>,
-    /// Passed unchanged to the desktop program: a model, a project, options; --help lists them.
+    /// Arguments passed unchanged to the desktop program: a model, a project, options; --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     args: Vec<OsString>,
 }
@@ -26,12 +26,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         serve::run(port, arguments.pages.as_deref())?;
         return Ok(ExitCode::SUCCESS);
     }
-    let own = std::env::current_exe().context("the place of this program is not known")?;
+    let own = std::env::current_exe().context("the folder of this program is not known")?;
     let program = own.with_file_name(format!("beadwright-studio{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         bail!(
-            "the desktop program is not there: it was looked for at {}; build it with `cargo build --release -p \
-             beadwright-studio`, and put it beside this program",
+            "the desktop program was not found at {}; build it with `cargo build --release -p beadwright-studio`, and put it \
+             next to this program",
             program.display()
         );
     }

@@ -83,7 +83,7 @@ impl Array {
         let contiguous = [ffi::PyBUF_C_CONTIGUOUS, ffi::PyBUF_ANY_CONTIGUOUS].into_iter().any(asks);
         if asks(ffi::PyBUF_F_CONTIGUOUS) && array.shape.len() > 1 || !whole && (contiguous || !asks(ffi::PyBUF_STRIDES))
         {
-            return Err(PyBufferError::new_err("the numbers do not lie in memory as asked for"));
+            return Err(PyBufferError::new_err("the numbers are not laid out in memory as requested"));
         }
         let item = array.item;
         // SAFETY: `view` is not null, and Python lets us fill it in. The pointers lead into the frozen array, whose numbers

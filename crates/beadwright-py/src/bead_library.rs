@@ -1,4 +1,4 @@
-//! Measured beads: fitted, foretold, and sought.
+//! Measured beads: fitted, predicted, and solved for.
 
 use crate::error::{Refuse, raise};
 use beadwright::bead::Overlap;

@@ -56,7 +56,7 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
     }
 }
 
-/// What the package has against a kind of finding.
+/// What the package offers against a kind of finding.
 pub(crate) fn words(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "high-start" | "nothing-below" => "Part.above(z), stand=\"flat\"",
@@ -68,7 +68,7 @@ pub(crate) fn words(kind: &str) -> Option<&'static str> {
     })
 }
 
-/// Which argument helps; the library knows of none.
+/// Which argument helps; the library knows no arguments.
 fn remedy(error: &(dyn Error + 'static)) -> Option<&'static str> {
     if let Some(LibraryError::Inputs { .. } | LibraryError::TooFew { .. }) = error.downcast_ref() {
         return Some("inputs=[…] names those that are fitted.");
@@ -81,7 +81,7 @@ fn remedy(error: &(dyn Error + 'static)) -> Option<&'static str> {
         PartError::NoHeight => "height=… sets it, in mm.",
         PartError::HeightOfSolid => "Leave height out.",
         PartError::Import(ImportError::TooFar { .. }) => "units=… sets the unit.",
-        PartError::Import(ImportError::Damaged { .. }) => "accept_damaged=True takes what there is of it.",
+        PartError::Import(ImportError::Damaged { .. }) => "accept_damaged=True uses what there is of it.",
         _ => return None,
     })
 }

@@ -16,7 +16,7 @@ pub(crate) struct Heat {
     html: String,
 }
 
-/// Works out the temperatures of a plan as it stands, or with waits for a limit between passes (°C).
+/// Computes the temperatures of a plan as it is, or with waits for a limit between passes (°C).
 #[pyfunction]
 #[pyo3(signature = (plan, limit, threads, progress))]
 pub(crate) fn heat<'py>(
@@ -29,11 +29,11 @@ pub(crate) fn heat<'py>(
     let planned = &plan.0;
     let (name, profile) = (&planned.header.part, &planned.profile);
     let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true, along: false };
-    // Without a limit, the plan has the waits of its own one.
+    // Without a limit, the plan has the waits of its own limit.
     let interpass = limit.map(|max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) });
     let least = profile.heat.as_ref().map_or(30.0, |heat| heat.ambient + 10.0);
     if let Some(limit) = limit.filter(|limit| !(least..=1500.0).contains(limit)) {
-        let message = format!("limit = {limit} is impossible here: {least:.0} to 1500 °C are.");
+        let message = format!("limit = {limit} is impossible here; {least:.0} to 1500 °C is possible.");
         return Err(raise(&message, Some("limit"), None));
     }
     let over = Some(planned.header.extent.seen_from_above());

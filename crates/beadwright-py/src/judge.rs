@@ -164,7 +164,7 @@ pub(crate) fn height_field(
     let Some(layer) = planned.layers.get(layer) else {
         let last = planned.layers.len() - 1;
         return Err(raise(
-            &format!("there is no layer {layer}; they have the indices 0 to {last}."),
+            &format!("there is no layer {layer}; the layers have the indices 0 to {last}."),
             Some("layer"),
             None,
         ));

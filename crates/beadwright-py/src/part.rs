@@ -21,11 +21,11 @@ pub(crate) fn example_names() -> Vec<&'static str> {
 #[pyfunction]
 pub(crate) fn example_stl(name: &str) -> PyResult<Cow<'static, [u8]>> {
     let found = example::find(name).map(|part| part.stl().into());
-    let known = || format!("there is no example part \"{name}\": {} are.", example_names().join(", "));
+    let known = || format!("there is no example part \"{name}\"; the parts are {}.", example_names().join(", "));
     found.ok_or_else(|| raise(&known(), Some("name"), None))
 }
 
-/// How a part is placed: unit, factor, turn about x, y and z (°), whether its middle comes to x = y = 0, how far it is then
+/// How a part is placed: unit, factor, turn about x, y and z (°), whether its middle is moved to x = y = 0, how far it is then
 /// moved along x and y (mm), how it is laid ("flat" or "orient"), and where it ends (mm).
 type Placing = (Option<String>, f64, [f64; 3], bool, [f64; 2], Option<String>, Option<f64>);
 
@@ -68,10 +68,10 @@ impl Part {
 
 fn unit_of(unit: &str) -> PyResult<Units> {
     let found = Units::ALL.iter().find(|(name, _)| *name == unit).map(|(_, units)| *units);
-    found.ok_or_else(|| raise(&format!("\"{unit}\" is no unit: mm, cm, m and in are."), Some("units"), None))
+    found.ok_or_else(|| raise(&format!("\"{unit}\" is not a unit; use mm, cm, m or in."), Some("units"), None))
 }
 
-/// The size of a model whose unit nobody told, before it is turned.
+/// The size of a model whose unit was not given, before it is turned.
 fn guessed_size(model: &Model, placement: &Placement) -> Option<DVec3> {
     let (told, size) = match model {
         Model::Mesh(import) => (import.units, import.mesh.size()),
@@ -119,7 +119,7 @@ impl Part {
         &self.name
     }
 
-    /// Whether it is a solid; a wall given by curves is none.
+    /// Whether it is a solid; a wall given by curves is not.
     #[getter]
     fn is_solid(&self) -> bool {
         self.part.mesh().is_some()
@@ -169,7 +169,7 @@ fn solid(corners: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Import, String
     let strange = triangles.iter().position(|triangle| triangle.iter().any(|&corner| corner as usize >= corners.len()));
     if let Some(at) = strange {
         let count = corners.len();
-        return Err(format!("triangle {at} (counted from 0) names a corner that is not there; there are {count}."));
+        return Err(format!("triangle {at} (counted from 0) names a corner that does not exist; there are {count}."));
     }
     let read = triangles.len();
     let (mesh, repair) = Mesh::from_triangles(corners, triangles);

@@ -88,13 +88,13 @@ impl Plan {
         self.0.summary.warnings.summaries().map(told).collect()
     }
 
-    /// What does not fit in the profile, and why the strategy is another, as sentences.
+    /// What does not fit together in the profile, and why the strategy is not the profile's, as sentences.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.0.note.iter().chain(&self.0.summary.notes).cloned().collect()
     }
 
-    /// All that is to be said of the plan, the worst first, each with its sentence: as `beadwright plan` finds it.
+    /// Everything to report about the plan, the worst first, each with its sentence: as `beadwright plan` finds it.
     fn findings<'py>(
         &self,
         py: Python<'py>,
@@ -135,11 +135,11 @@ impl Plan {
         Running::new(threads, progress).run(py, None, |task| save::save(&self.0, &wanted, task))
     }
 
-    /// The bytes of a file in a format for other programs, by its ending.
+    /// The bytes of a file in a format for other programs, by its extension.
     fn export(&self, py: Python<'_>, extension: &str) -> PyResult<Cow<'static, [u8]>> {
         let known = || export::FORMATS.iter().map(|format| format.extension).collect::<Vec<_>>().join(", ");
         let format = export::format(extension)
-            .ok_or_else(|| PyValueError::new_err(format!("\"{extension}\" is no format: {} are.", known())))?;
+            .ok_or_else(|| PyValueError::new_err(format!("\"{extension}\" is not a format; use {}.", known())))?;
         let plan = &self.0;
         let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &plan.profile, heat: None };
         Ok(Running::new(None, None).run(py, None, |_| (format.write)(&beads))?.into())

@@ -14,7 +14,7 @@ pub(crate) struct Planned {
     pub(crate) header: Header,
     pub(crate) layers: Layers,
     pub(crate) summary: Summary,
-    /// Why the strategy is another than the profile's.
+    /// Why the strategy is not the profile's.
     pub(crate) note: Option<String>,
     pub(crate) profile: profile::Profile,
     /// Where the profile's own dialects lie.

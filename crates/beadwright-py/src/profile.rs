@@ -29,8 +29,8 @@ pub(crate) fn strategy_names() -> Vec<&'static str> {
     fill::STRATEGIES.map(|strategy| strategy.name()).to_vec()
 }
 
-/// Parses a profile; `base` (Python) gives the text of what `inherits` names, or none for a built-in one. What it raises
-/// is raised again.
+/// Parses a profile; `base` (Python) gives the text of what `inherits` names, or none for a built-in one. Exceptions from it
+/// are passed on.
 fn parse(text: &str, base: &Bound<'_, PyAny>) -> PyResult<Result<profile::Profile, ProfileError>> {
     let mut raised = None;
     let parsed = profile::Profile::parse_with(text, &mut |name| {

@@ -8,7 +8,7 @@ use beadwright::robot::{self as library, Cell, PartPlace, Track, Trajectory, cel
 use pyo3::prelude::*;
 use std::convert::Infallible;
 
-/// The way of a robot along a plan.
+/// The path of a robot along a plan.
 #[pyclass(frozen, module = "beadwright._core")]
 pub(crate) struct Reach {
     values: serde_json::Value,

@@ -1,5 +1,5 @@
-//! Long calls. They run on threads of their own without the interpreter's lock, so that other Python threads go on; the
-//! calling thread hands progress to Python meanwhile and asks for Ctrl-C.
+//! Long calls. They run on threads of their own without the interpreter's lock, so that other Python threads go on;
+//! meanwhile the calling thread hands progress to Python and checks for Ctrl-C.
 
 use crate::error::{exception, raise};
 use beadwright::Task;
@@ -11,10 +11,10 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::{ScopedJoinHandle, scope};
 use std::time::Duration;
 
-/// How often Ctrl-C is asked for.
+/// How often Ctrl-C is checked for.
 const ASKED: Duration = Duration::from_millis(50);
 
-/// The most threads of a call.
+/// Maximum number of threads of a call.
 const MOST_THREADS: usize = 1024;
 
 /// How a long call runs.
@@ -29,7 +29,7 @@ enum Event {
 }
 
 impl<'py> Running<'py> {
-    /// With so many threads (all of the machine's if none are given), and a callable that takes stage and fraction.
+    /// With this many threads (all of the machine's if not given), and a callable that takes stage and fraction.
     pub(crate) fn new(threads: Option<usize>, progress: Option<Bound<'py, PyAny>>) -> Self {
         Self { threads, progress }
     }
@@ -67,11 +67,11 @@ impl<'py> Running<'py> {
         outcome.map_err(|error| exception(&error, place))
     }
 
-    /// Threads of its own for each call: two calls share none, and processes that were forked lack none.
+    /// Separate threads for each call: two calls share none, and forked processes lack none.
     fn pool(&self) -> PyResult<ThreadPool> {
         let threads = self.threads.unwrap_or(0);
         if self.threads == Some(0) || threads > MOST_THREADS {
-            let message = format!("threads = {threads} is impossible: 1 to {MOST_THREADS} are.");
+            let message = format!("threads = {threads} is impossible; 1 to {MOST_THREADS} are possible.");
             return Err(raise(&message, Some("threads"), None));
         }
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();

@@ -27,9 +27,7 @@ pub(crate) struct Wanted<'a> {
 /// Why nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SaveError {
-    #[error(
-        "nothing was written, since the program should not be started: {0} allow_findings=True writes it all the same."
-    )]
+    #[error("nothing was written, since the program should not be started: {0} allow_findings=True writes it anyway.")]
     Refused(String),
     #[error(transparent)]
     Dialect(#[from] DialectError),
@@ -63,7 +61,7 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
     Ok(folder.commit()?.files)
 }
 
-/// All that is to be said of a plan, the worst first.
+/// Everything to report about a plan, the worst first.
 pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, Cancelled> {
     let (layers, profile) = (&planned.layers[..], &planned.profile);
     let settings = plan::deposit_settings_over(profile, planned.part.bounds());

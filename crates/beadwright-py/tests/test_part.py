@@ -128,7 +128,7 @@ def test_a_drawing_grows_to_its_height(tmp_path: Path) -> None:
     assert part.volume == pytest.approx(50 * 30 * 8, rel=1e-6)
     with pytest.raises(BeadwrightError) as caught:
         Part.read(path)
-    assert caught.value.remedy == "height=… tells it, in mm."
+    assert caught.value.remedy == "height=… sets it, in mm."
 
 
 def test_trimesh_goes_in_and_out() -> None:
@@ -176,8 +176,8 @@ def test_a_file_cut_short_is_refused_or_taken_as_it_is(tmp_path: Path) -> None:
     [
         ([[0, 0], [1, 0]], [[0, 1, 1]], r"vertices have the shape \(2, 2\)"),
         ([[0, 0, 0]], [[0, 0, 1]], "names vertex 1; there are 1"),
-        ([[0, 0, 0]], [[0, 0, -1]], "whole numbers from 0 on"),
-        ([[0, 0, 0]], [[0.0, 0.5, 0.0]], "whole numbers from 0 on"),
+        ([[0, 0, 0]], [[0, 0, -1]], "whole numbers from 0 up"),
+        ([[0, 0, 0]], [[0.0, 0.5, 0.0]], "whole numbers from 0 up"),
         ([[0, 0, 0], [1, 0, 0], [0, np.nan, 0]], [[0, 1, 2]], "corner 2 .* not a finite number"),
         ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]], "nothing to build"),
     ],

@@ -58,7 +58,7 @@ pub enum Action {
     Quit,
     /// Asks for a file.
     Ask(Ask),
-    /// Goes on with a path that was typed.
+    /// Continues with a path that was typed.
     Answer(Ask, PathBuf),
     /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),
@@ -88,9 +88,9 @@ pub enum Action {
     Dismiss(usize),
     /// Computes the steps of the strategies in the layer in view.
     LookCloser,
-    /// Takes the scan away.
+    /// Closes the scan.
     CloseScan,
-    /// Takes another robot cell.
+    /// Uses another robot cell.
     TakeCell(&'static str),
     /// Computes temperatures.
     Heat,

@@ -1,4 +1,4 @@
-//! The arm of the robot cell, as it stands with the torch at a place of the plan.
+//! The arm of the robot cell, in its pose with the torch at a place of the plan.
 
 use crate::studio::Studio;
 use beadwright::robot::body::{Capsule, capsules};
@@ -27,7 +27,7 @@ pub struct Stand {
     pub links: Vec<Capsule>,
 }
 
-/// How the arm stands with the torch at a place, in the posture that the walk along the program has chosen; none where the
+/// The pose of the arm with the torch at a place, in the posture that the walk along the program has chosen; none where the
 /// arm cannot get there.
 pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     let key = (place.layer, place.pass);
@@ -73,7 +73,7 @@ impl Studio {
         Some(Place { layer, pass: beads.pass_of(shown.max(1) - 1), at: bead.to().as_dvec3() })
     }
 
-    /// How the arm stands there; none where it is not shown, not yet computed, or cannot get there.
+    /// The pose of the arm there; none where it is not shown, not yet computed, or cannot get there.
     pub(crate) fn arm(&self) -> Option<Stand> {
         let (cell, reach) = (self.jobs.cell.as_ref()?, self.jobs.reach.as_ref()?);
         stand(cell, reach, &self.torch_place()?).filter(|_| self.view.robot)

@@ -10,7 +10,7 @@ use eframe::egui::Context;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A scan beside a part.
+/// A scan compared with a part.
 pub struct Compared {
     /// The name of its file.
     pub name: String,

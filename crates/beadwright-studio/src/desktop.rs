@@ -13,15 +13,15 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// A model (STL, IGES) or a project (.bwp) to open; or the name of an example part, such as propeller.
+    /// Model (STL, IGES) or project (.bwp) to open, or the name of an example part, such as propeller.
     file: Option<PathBuf>,
-    /// The view to start with.
+    /// View to start with.
     #[arg(long, value_name = "VIEW")]
     view: Option<View>,
-    /// The panel to start with.
+    /// Panel to start with.
     #[arg(long, value_name = "PANEL")]
     panel: Option<Panel>,
-    /// The highest layer to show, counted from 1.
+    /// Highest layer to show, counted from 1.
     #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
     layer: Option<u32>,
     /// Show heights and voids in the layer view.
@@ -36,19 +36,19 @@ struct Arguments {
     /// Compare in 3-D.
     #[arg(long)]
     solid: bool,
-    /// A section through the middle of the part, square to this axis.
+    /// Show a section through the middle of the part, square to this axis.
     #[arg(long, value_name = "AXIS")]
     section: Option<Axis>,
-    /// A scan of the built part to show, coloured by its distance from the part.
+    /// Scan of the built part to show, coloured by its distance from the part.
     #[arg(long, value_name = "FILE")]
     scan: Option<PathBuf>,
     /// Show the arm of the robot cell.
     #[arg(long)]
     robot: bool,
-    /// A second strategy to plan and show beside the first.
+    /// Second strategy to plan and show next to the first.
     #[arg(long, value_name = "STRATEGY")]
     compare_with: Option<String>,
-    /// A value of the profile, such as fill.strategy=hybrid; may be given several times.
+    /// Change a value of the profile, such as fill.strategy=hybrid; may be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     set: Vec<(String, String)>,
     /// Folder for settings and the autosaved project, instead of the user's own.
@@ -103,7 +103,7 @@ pub(crate) fn main() -> ExitCode {
             let reason = reason.trim_end_matches('.');
             eprintln!(
                 "error: the window cannot be opened: {reason}. It needs a screen, and a driver for Vulkan, Metal, Direct3D \
-                 12 or OpenGL; on Linux, mesa-vulkan-drivers does without a graphics card."
+                 12 or OpenGL; on Linux, mesa-vulkan-drivers works without a graphics card."
             );
             ExitCode::FAILURE
         }
@@ -145,7 +145,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
     view.placing |= arguments.place;
     view.robot |= arguments.robot;
     view.compare_solid |= arguments.solid;
-    // Parts stand about x = y = 0, and what lies in front is cut away.
+    // Parts lie around x = y = 0, and what is in front is cut away.
     let section = |axis: Axis| Section { axis: axis as usize, at: 0.0, lower: matches!(axis, Axis::Y) };
     view.section = arguments.section.map(section);
     arguments.layer.into_iter().for_each(|layer| view.look_at(layer as usize - 1));

@@ -55,8 +55,8 @@ impl Export {
 fn allowed(summary: &Summary) -> Result<(), String> {
     match summary.forbidden.first() {
         Some(reason) => Err(format!(
-            "Nothing was written, since the program should not be started. {reason} `beadwright plan --allow-findings` writes \
-             it all the same."
+            "Nothing was written, since the program should not be started. {reason} `beadwright plan --allow-findings` writes it \
+             anyway."
         )),
         None => Ok(()),
     }

@@ -19,7 +19,7 @@ fn chinese() -> Option<FontData> {
     HANDED.get().cloned().map(FontData::from_owned)
 }
 
-/// Font families with Chinese characters that are usual on each system.
+/// Font families with Chinese characters that are common on each system.
 #[cfg(not(target_arch = "wasm32"))]
 const FAMILIES: [&str; 10] = [
     "Noto Sans CJK SC",

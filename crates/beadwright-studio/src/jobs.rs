@@ -42,7 +42,7 @@ fn sentence(panic: &(dyn Any + Send)) -> String {
 pub fn fault(reason: &str) -> String {
     format!(
         "Beadwright has a fault that stopped this work: {reason}. Please report it at {}/issues with the model and the \
-         project; the program goes on.",
+         project; the program continues.",
         env!("CARGO_PKG_REPOSITORY")
     )
 }

@@ -10,10 +10,10 @@
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
-//! | [`compared`], `scan` | a scan of the built part beside the part |
+//! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
-//! | [`arm`] | how the robot stands with the torch at a place |
+//! | [`arm`] | the robot's pose with the torch at a place |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |

@@ -3,8 +3,8 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `work` | carries out an order: reads the model, plans the layer in view, then all layers, judges and checks them |
-//! | `thread` | does so on a thread beside the window |
-//! | `worker`, `at_work` | do so in a worker beside a browser's page: its side of the page, and its own |
+//! | `thread` | does so on a thread other than the window's |
+//! | `worker`, `at_work` | do so in a worker of a browser's page: the page's side, and its own |
 //! | [`wire`] | orders and events as bytes, which is what passes between the two |
 //!
 //! What has been read is kept, so that a change of the profile does not read the model again.
@@ -51,7 +51,7 @@ pub enum Event {
     Layer(Arc<Layer>, Arc<LayerBeads>),
     /// All layers are planned.
     Planned(Box<Summary>),
-    /// What the deposit model says of a layer, and the height error at every piece, in nominal bead heights.
+    /// What the deposit model says about a layer, and the height error at every piece, in nominal bead heights.
     Judged(usize, Arc<Judgement>, Arc<[f32]>),
     /// What it says of all layers together, and what the checks found.
     Checked(Figures, Vec<Finding>),

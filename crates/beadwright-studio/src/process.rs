@@ -13,7 +13,7 @@ const SPEAKERS: [(&str, &str); 5] = [
 ];
 
 impl Studio {
-    /// Takes the first of the profile's dialects to write programs in and, unless a cell was chosen by hand, a cell whose
+    /// Uses the first of the profile's dialects to write programs in and, unless a cell was chosen by hand, a cell whose
     /// robot speaks it.
     pub(crate) fn follow_profile(&mut self) {
         let posts = self.parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
@@ -25,7 +25,7 @@ impl Studio {
         self.view.dialect = post;
     }
 
-    /// Takes another robot cell; what was computed for the former is forgotten.
+    /// Uses another robot cell; what was computed for the former is forgotten.
     pub(crate) fn take_cell(&mut self, name: &str) {
         if self.view.cell != name {
             name.clone_into(&mut self.view.cell);

@@ -62,7 +62,7 @@ pub enum ProjectError {
     #[error("this is not a Beadwright project: {0}. Open a .bwp file that this program has written.")]
     Text(String),
     /// Written by a later version.
-    #[error("the project has version {0}; this program reads version {VERSION}. Take a newer Beadwright.")]
+    #[error("the project has version {0}; this program reads version {VERSION}. Use a newer Beadwright.")]
     Version(u32),
     /// It names both kinds of model, or an unknown model.
     #[error("the project names {0}")]

@@ -1,4 +1,4 @@
-//! The scan in the window: opened, compared with the part in view, taken away.
+//! The scan in the window: opened, compared with the part in view, closed.
 
 use crate::compared::{Compared, compare, read};
 use crate::jobs::{self, Job};
@@ -17,7 +17,7 @@ impl Studio {
         self.view.switch(Mode::Solid);
     }
 
-    /// Takes the scan away.
+    /// Closes the scan.
     pub(crate) fn close_scan(&mut self) {
         (self.jobs.scan, self.jobs.scan_job, self.jobs.scan_wanted) = (None, None, None);
         self.plans.own.scene.set_scan(None);

@@ -24,7 +24,7 @@ pub struct PlanState {
     pub layers: Vec<Arc<Layer>>,
     /// The layer in view, planned first, until the other layers have come that far.
     pub preview: Option<Arc<Layer>>,
-    /// What the deposit model says of each layer.
+    /// What the deposit model says about each layer.
     pub judgements: Vec<Arc<Judgement>>,
     /// Its figures for all layers together.
     pub total: Option<Figures>,

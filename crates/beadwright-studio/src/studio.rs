@@ -100,7 +100,7 @@ pub struct Jobs {
     pub(crate) reach: Option<Reach>,
     /// The cell that this is about.
     pub(crate) cell: Option<Cell>,
-    /// A scan that is to be opened.
+    /// A scan to be opened.
     pub(crate) scan_wanted: Option<PathBuf>,
     pub(crate) scan_job: Option<Job<Result<Compared, String>>>,
     /// A scan of the built part.
@@ -287,7 +287,7 @@ impl Studio {
             travels: view.show.travels && !scan,
             starts: view.show.starts && !scan,
             marks_from: if view.all_marks { 0 } else { view.last },
-            // Beads would lie before the faces to be clicked, and before the scan.
+            // Beads would be in front of the faces to be clicked, and in front of the scan.
             beads: view.show.beads && !view.laying && !scan,
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
@@ -300,7 +300,7 @@ impl Studio {
         }
     }
 
-    /// The plate on which the part is built, where the profile tells of one.
+    /// The plate on which the part is built, if the profile has one.
     pub(crate) fn plate(&self) -> Option<Plate> {
         let plate = self.plans.own.profile.as_ref()?.substrate.as_ref()?;
         let (low, high) = self.plans.own.part.as_ref()?.bounds();
@@ -403,7 +403,7 @@ impl Studio {
         }
     }
 
-    /// Plans the part with a second strategy too, shown beside the first; none removes the second plan.
+    /// Plans the part with a second strategy too, shown next to the first; none removes the second plan.
     pub fn compare_with(&mut self, strategy: Option<&str>) {
         let Some(strategy) = strategy else {
             self.plans.other = None;

@@ -84,7 +84,7 @@ pub struct ViewState {
     pub folder: String,
     /// The robot cell to check the plan with.
     pub cell: String,
-    /// Whether it was chosen by hand, not taken after the profile.
+    /// Whether it was chosen by hand rather than by the profile.
     pub cell_chosen: bool,
     /// The text searched for among the parameters.
     pub search: String,

@@ -1,4 +1,4 @@
-//! The page in a browser: the studio on a canvas, and what stands beside it in words.
+//! The page in a browser: the studio on a canvas, and the words next to it.
 //!
 //! The address may say what to open: `?open=propeller` an example part, `?fill.strategy=zigzag` a value of the profile.
 
@@ -15,7 +15,7 @@ use web_sys::{Document, HtmlCanvasElement, HtmlElement, Response, UrlSearchParam
 /// Starts the page; a worker, which has no window, waits for its orders instead.
 pub fn main() {
     std::panic::set_hook(Box::new(|panic| {
-        // `worker.js` and the page tell it.
+        // `worker.js` and the page report it.
         let _ = Reflect::set(&global(), &"reason".into(), &panic.to_string().into());
         web_sys::console::error_1(&panic.to_string().into());
     }));
@@ -58,14 +58,14 @@ fn options() -> eframe::WebOptions {
     eframe::WebOptions { wgpu_options, ..eframe::WebOptions::default() }
 }
 
-/// A font with Chinese characters that lies beside the page; without it the page stays English.
+/// A font with Chinese characters that is next to the page; without it the page stays English.
 async fn font(window: &Window, name: &str) -> Option<Vec<u8>> {
     let response: Response = JsFuture::from(window.fetch_with_str(name)).await.ok()?.unchecked_into();
     let bytes = response.ok().then(|| response.array_buffer().ok()).flatten()?;
     Some(Uint8Array::new(&JsFuture::from(bytes).await.ok()?).to_vec())
 }
 
-/// The studio, and what the page says of it to readers of the screen.
+/// The studio, and what the page says about it to screen readers.
 struct Page {
     studio: Studio,
     status: Option<HtmlElement>,
@@ -87,7 +87,7 @@ impl Page {
         Self { studio, status, body: document.body(), said: String::new() }
     }
 
-    /// How things stand, and what was last told.
+    /// The state of things, and the last message.
     fn sentence(&self) -> String {
         let (plan, part) = (self.studio.plan(), self.studio.project().part());
         if let Some(Failure::Units(text) | Failure::Height(text) | Failure::Sentence(text)) = &plan.failure {

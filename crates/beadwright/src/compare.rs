@@ -1,4 +1,4 @@
-//! Strategies and programs side by side: what each lays, and what the deposit model says of it.
+//! Strategies and programs side by side: what each lays, and what the deposit model says about it.
 
 use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, Stack, stack::Growth};
 use crate::dialect::reading::ReadTotals;
@@ -30,7 +30,7 @@ pub struct Entry {
     pub name: String,
     /// Its arc starts, lengths, times and metal.
     pub totals: Totals,
-    /// What the deposit model says of the judged layers together.
+    /// What the deposit model says about the judged layers together.
     pub figures: Figures,
     /// The judged layers.
     pub layers: Vec<JudgedLayer>,
@@ -49,7 +49,7 @@ pub struct Totals {
     pub deposited_length_mm: f64,
     /// Length of all other moves, mm.
     pub travel_length_mm: f64,
-    /// Whole time, s.
+    /// Total time, s.
     pub total_time_s: f64,
     /// Wire or filament, by volume, mm³.
     pub metal_volume_mm3: f64,
@@ -260,7 +260,7 @@ pub const COLUMNS: [Column; 14] = [
 
 /// How the score is computed, in words.
 pub const SCORE: &str = "score: 10 for each % of void and of metal outside, 1 for each % of overfill, \
-                         10 for each arc start a metre of bead; the least is the best.";
+                         10 for each arc start per metre of bead; the lowest score is best.";
 
 impl Entry {
     /// One figure for the quality of the deposit and the number of arc starts; the lower, the better ([`SCORE`]).

@@ -1,6 +1,6 @@
-//! Beadwright turns a part into a weld-deposition program, and tells beforehand what that program would build.
+//! Beadwright turns a part into a weld-deposition program, and predicts what that program would build.
 //!
-//! A file's bytes become a [`Model`], placed it is a [`Part`]; the part is cut into [slices](mod@slice), every island of a
+//! A file's bytes become a [`Model`]; placed, it is a [`Part`]; the part is cut into [slices](mod@slice), every island of a
 //! slice is [filled](fill), the passes are put in order, and a [`Plan`] holds the result. A plan is written in a robot's
 //! language by a [`dialect`], judged by the deposit model ([`deposit`]), checked ([`check`](mod@check)) and shown
 //! ([`report`]). All values of the process come from a [`Profile`].
@@ -17,7 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The library does no I/O (but for [`files`], with the feature of that name) and never panics on input. More programs like
+//! The library does no I/O (except [`files`], with the feature of that name) and never panics on input. More programs like
 //! this one are in `examples/`.
 
 pub mod adapt;
@@ -30,21 +30,22 @@ pub mod plan;
 pub mod profile;
 pub mod read_back;
 pub mod report;
-pub mod simulate;
 
-// Used by the modules above, and open to who needs them.
+// Used by the modules above, and open to anyone who needs them.
 #[doc(hidden)]
 pub mod metrics;
 #[doc(hidden)]
 pub mod plan_file;
+#[doc(hidden)]
+pub mod simulate;
 
 #[doc(hidden)]
-pub use bead_part::{curve, task, warning};
-pub use bead_part::{deviation, example, finding, model, slice, text};
+pub use bead_part::{curve, deviation, finding, task, text, warning};
+pub use bead_part::{example, model, slice};
 use bead_plan::random;
-pub use bead_plan::{bead, deposit, fill, heat, process};
+pub use bead_plan::{bead, deposit, fill, heat};
 #[doc(hidden)]
-pub use bead_plan::{layer, limit, motion, order, pass, weld};
+pub use bead_plan::{layer, limit, motion, order, pass, process, weld};
 pub use bead_program::{dialect, program};
 #[doc(hidden)]
 pub use bead_program::{number, template};

@@ -20,13 +20,13 @@ pub struct Metrics {
     pub deposited_length_mm: f64,
     /// Length of all moves without arc, mm.
     pub travel_length_mm: f64,
-    /// Time with the arc on, the torch moving or standing in craters, s; with acceleration where the profile gives it.
+    /// Time with the arc on, the torch moving or stationary in craters, s; with acceleration where the profile gives it.
     pub arc_time_s: f64,
     /// Waits between layers and passes, s.
     pub dwell_time_s: f64,
-    /// Whole time with travels, delays, gas and waits, s; with acceleration where the profile gives it.
+    /// Total time with travels, delays, gas and waits, s; with acceleration where the profile gives it.
     pub total_time_s: f64,
-    /// Wire, with that of overlaps, hot starts and craters, m.
+    /// Wire, including that of overlaps, hot starts and craters, m.
     pub wire_length_m: f64,
     /// Wire, kg.
     pub wire_mass_kg: f64,

@@ -31,7 +31,7 @@ pub fn head(header: &Header, profile: &Profile) -> String {
     format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
-/// The text of one layer; a comma comes before all but the one of index 0.
+/// The text of one layer; all but the one with index 0 begin with a comma.
 pub fn layer(layer: &Layer) -> String {
     let points: usize = layer.passes.iter().map(|p| p.points.len()).sum();
     let mut text = String::with_capacity(256 + points * 28);
@@ -150,7 +150,8 @@ pub enum PlanFileError {
     Empty,
     /// An impossible bead.
     #[error(
-        "width, height, speed and rise of the bead must be greater than 0 and at most {MAX_MEASURE}, the machining allowance 0 to 50 mm. Make the plan again with `beadwright plan`."
+        "width, height, speed and rise of the bead must be greater than 0 and at most {MAX_MEASURE}, the machining allowance \
+         0 to 50 mm. Make the plan again with `beadwright plan`."
     )]
     Bead,
     /// An impossible layer.
@@ -262,8 +263,8 @@ struct FileLayer {
     passes: Vec<FilePass>,
 }
 
-/// Why a layer is no turn of a helix.
-const NOT_ONE_TURN: &str = "the arc goes on from layer to layer there (goes_on), so it must have one pass";
+/// Why a layer is not a turn of a helix.
+const NOT_ONE_TURN: &str = "the arc continues from layer to layer there (goes_on), so it must have one pass";
 
 #[derive(Deserialize)]
 struct FileIsland {
@@ -354,14 +355,14 @@ impl FilePass {
     }
 }
 
-/// What no machine could weld about a pass that was read, as the end of a sentence.
+/// What no machine could weld in a pass that was read, as the end of a sentence.
 pub(crate) fn check_pass(pass: &Pass) -> Result<(), &'static str> {
     let count = pass.points.len();
     if count < 2 {
         return Err("a pass needs two points");
     }
     if !pass.points.iter().all(|p| near(p.x) && near(p.y) && near(p.z)) {
-        return Err("a coordinate is out of all bounds (20 m)");
+        return Err("a coordinate is out of bounds (20 m)");
     }
     if !(0.0..=LONGEST_WAIT).contains(&pass.wait) {
         return Err("a wait must last 0 to 36000 s");
@@ -380,6 +381,6 @@ pub(crate) fn check_layer(z: f64, height: f64, islands: &[Polygon]) -> Result<()
     if possible(height) && near(z) && points.all(|p| near(p.x) && near(p.y)) {
         Ok(())
     } else {
-        Err("its thickness (at most 2 m) or a coordinate (at most 20 m) is out of all bounds")
+        Err("its thickness (at most 2 m) or a coordinate (at most 20 m) is out of bounds")
     }
 }

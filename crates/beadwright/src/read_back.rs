@@ -50,7 +50,8 @@ pub struct ReadBack {
     pub totals: Totals,
     /// How its layers are judged.
     pub settings: DepositSettings,
-    /// What the grid is fitted to: the box around all layers seen from above, and their number; of a plan, as when it was made.
+    /// What the grid is fitted to: the box around all layers seen from above, and their number; for a plan, as when it was
+    /// made.
     pub over: Option<(Bounds, usize)>,
     /// What was assumed, as sentences.
     pub notes: Vec<String>,
@@ -61,13 +62,13 @@ pub struct ReadBack {
 /// Why a program cannot be read back.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadBackError {
-    /// It is in no language that is understood, or holds nothing to judge.
+    /// It is in no known language, or holds nothing to judge.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// It prints, and nobody knows the bead.
+    /// It is for a printer, and its bead is unknown.
     #[error(
-        "this is a printer's program, and it names no built-in profile: give the profile of its bead, such as fdm-abs-0.4 or one of \
-         your own."
+        "this is a printer's program, and it names no built-in profile: give the profile of its bead, such as fdm-abs-0.4 or \
+         one of your own."
     )]
     Printer,
     /// Stopped by the caller.
@@ -77,7 +78,7 @@ pub enum ReadBackError {
 
 /// A grid that is too fine or too coarse.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("points {step} mm apart are impossible here: {least:.3} to {COARSEST} mm are.")]
+#[error("a grid of points {step} mm apart is impossible here; {least:.3} to {COARSEST} mm is possible.")]
 pub struct GridError {
     step: f64,
     least: f64,
@@ -91,7 +92,7 @@ const FINEST: f64 = 1e-3;
 /// Settings with the grid asked for, mm between its points, or with one that fits layers within `bounds`.
 ///
 /// # Errors
-/// [`GridError`] for a distance from which no grid follows, or one of more than [`MANY_POINTS`].
+/// [`GridError`] for a distance that gives no grid, or one of more than [`MANY_POINTS`].
 pub fn with_grid(
     step: Option<f64>,
     settings: DepositSettings,
@@ -101,7 +102,7 @@ pub fn with_grid(
     let Some(step) = step else { return Ok(settings.fitted_to(bounds, layers)) };
     let size = bounds.size();
     let least = (size.x * size.y / MANY_POINTS).sqrt().max(FINEST);
-    // In whole thousandths, rounded up, so that what the error names is taken.
+    // In whole thousandths, rounded up, so that the value named in the error is accepted.
     let least = (least * 1e3).ceil() / 1e3;
     if (least..=COARSEST).contains(&step) {
         Ok(DepositSettings { step, ..settings })
@@ -110,7 +111,7 @@ pub fn with_grid(
     }
 }
 
-/// The built-in profile that a program of ours names in its first comments, after the part: `; cross, fdm-abs-0.4`.
+/// The built-in profile that one of our programs names in its first comments, after the part: `; cross, fdm-abs-0.4`.
 pub fn named_profile(text: &str) -> Option<&'static str> {
     const HEAD: usize = 40;
     let named = |line: &str| {
@@ -121,7 +122,7 @@ pub fn named_profile(text: &str) -> Option<&'static str> {
 }
 
 impl ReadBack {
-    /// A plan, judged with the profile that it carries or that was asked for.
+    /// A plan, judged with the profile that it carries or the one that was asked for.
     pub fn plan(name: &str, plan: PlanFile, profile: &Profile) -> Self {
         let own = plan.settings.filter(|_| plan.profile.is_none());
         let settings = own.unwrap_or_else(|| plan::deposit_settings(profile));
@@ -141,7 +142,7 @@ impl ReadBack {
     }
 
     /// A program in anyone's language; `name` is that of its file, and `module` gives the text of a module by its name. With a
-    /// part, its slices become the islands of the layers, and a program that lies elsewhere is moved over its middle.
+    /// part, its slices become the islands of the layers, and a program that lies elsewhere is centred on it.
     ///
     /// # Errors
     /// [`ReadBackError`].
@@ -167,12 +168,12 @@ impl ReadBack {
         let mut layers = simulate::layers(&program, &settings, &profile.bead.law, &profile.process, reading.bead_width);
         let mut notes = program.notes.clone();
         if !reading.profile_chosen {
-            let source = if named { "the program names it" } else { "nobody chose another" };
+            let source = if named { "the program names it" } else { "no other was chosen" };
             notes.insert(0, format!("Read with the profile {} ({source}).", profile.name));
         }
         if profile.process.follow == Follow::WireFeed && !printer {
             notes.push(
-                "The profile changes the wire feed along a pass (process.follow), and programs' wire feeds are not read: all \
+                "The profile changes the wire feed along a pass (process.follow), but wire feeds are not read from programs: all \
                  beads are judged with the nominal one. Judge plan.json for their true widths."
                     .to_owned(),
             );

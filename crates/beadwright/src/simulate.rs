@@ -77,8 +77,8 @@ fn pass(
     Some(Pass { kind, closed: false, points, width: Along::Each(widths), pace: Along::Each(paces), wait: 0.0 })
 }
 
-/// The shift, mm, that brings the middle of the program's passes to the middle of the part. `None` where the passes
-/// already keep within the part grown by a bead width: they are taken as they lie.
+/// The shift, mm, that brings the middle of the program's passes to the middle of the part. `None` where the passes already
+/// lie within the part grown by a bead width: they are taken as they lie.
 pub fn shift(layers: &[Layer], mesh: &Mesh, settings: &DepositSettings) -> Option<DVec2> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let (beads, (low, high)) = (Bounds::of(points)?, mesh.bounds());

@@ -20,7 +20,7 @@ const PRINTED_SPEED: f64 = 20.0;
 /// Index of the layer that is drawn, from 0.
 const LAYER: usize = 4;
 
-/// The part lies as it is, and turned about the vertical by this, degrees.
+/// The part as it is, and turned about the vertical by this angle, degrees.
 const TURNS: [f64; 2] = [0.0, 37.0];
 /// The parts on which our own hybrid is compared with contours.
 const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
@@ -54,7 +54,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          near them, and where regions would need more arc starts than contours, the smallest are left to the contours.",
     );
     compare::add_steps(&mut page, &mesh, &profile, "hybrid", LAYER, task).map_err(|e| wrong(&e))?;
-    page.heading("What the deposit model says of all layers");
+    page.heading("What the deposit model says about all layers");
     page.text(
         "Figure 5 of the paper: along the long side of a region, lines are long but stairs stay at its edges; along the \
          short side they meet the contours squarely.",
@@ -73,7 +73,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let files: Vec<_> =
         dialect::write("krl", &plan.layers, &profile.job("propeller")).map_err(|e| wrong(&e))?.into_iter().collect();
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
-    lines.push(format!("KRL of the default hybrid: {} files beside the page", names.len()));
+    lines.push(format!("KRL of the default hybrid: {} files next to the page", names.len()));
     Ok(Reproduced { page, lines, files })
 }
 
@@ -130,7 +130,12 @@ fn goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
         better = better.min(along.figures.void_percent() - ours.figures.void_percent());
     }
     let mut goals = vec![
-        Goal::new("literal, propeller: arc starts a layer, at most 12", format!("{most:.1}"), "not told", most <= 12.0),
+        Goal::new(
+            "literal, propeller: arc starts a layer, at most 12",
+            format!("{most:.1}"),
+            "not given",
+            most <= 12.0,
+        ),
         Goal::new("literal, propeller: void, at most 0.8 %", format!("{void:.3} %"), "no unfilled areas", void <= 0.8),
         Goal::new(
             "literal, propeller: fewer arc starts a layer than contours",
@@ -156,7 +161,7 @@ fn goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
         goals.push(Goal::new(
             &format!("default, {name}: no more arc starts a layer than contours, and a fifth of their voids"),
             format!("{more:+.1} starts, voids divided by {times:.1}"),
-            "not told",
+            "not given",
             more <= 0.0 && times >= 5.0,
         ));
     }

@@ -20,7 +20,7 @@ const PAPER: f64 = 0.591;
 /// The stepover of the zigzag lines, in bead widths.
 const TANGENT: f64 = 0.738;
 
-/// What the paper says of its four specimens, and our own strategy beside them.
+/// What the paper says of its four specimens, and our own strategy next to them.
 const SPECIMENS: [(&str, &str, f64, &str); 5] = [
     ("zigzag", "zigzag only", PAPER, "the outline is ragged"),
     ("contour", "contour only", PAPER, "pores along the middle"),
@@ -33,9 +33,9 @@ const SPECIMENS: [(&str, &str, f64, &str); 5] = [
 const PARTS: [&str; 5] = ["cross", "star", "gear", "propeller", "plate"];
 /// The angles, about the vertical, at which each of them is tried, degrees.
 const TURNS: [f64; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0, 150.0, 165.0];
-/// The cross lies as in the paper, and turned by this, degrees.
+/// The cross lies as in the paper, and turned by this angle, degrees.
 const ASKEW: f64 = 10.0;
-/// The cross whose distance is varied: how it is called, its angle in degrees, and how its lines are spread.
+/// The cross whose distance is varied: its name, its angle in degrees, and how its lines are spread.
 const SWEEPS: [(&str, f64, RasterSpacing); 3] = [
     ("as in the paper", 0.0, RasterSpacing::Even),
     ("lines fitted to long edges", 0.0, RasterSpacing::Fitted),
@@ -222,7 +222,7 @@ fn goals(specimens: &[(&str, &str, [Entry; 2])], sweeps: &[(&str, Vec<(f64, Entr
             goals.push(Goal::new(
                 &format!("cross, {turn}: void at 0.738 w over void at 0.591 w, at least 5"),
                 format!("{ratio:.1}"),
-                "pores, and none; no figures",
+                "pores, and no pores; no figures",
                 ratio >= 5.0,
             ));
             let [own, contour, zigzag] = [near, contour, zigzag].map(|figures| figures.void_percent());
@@ -254,7 +254,7 @@ fn goals(specimens: &[(&str, &str, [Entry; 2])], sweeps: &[(&str, Vec<(f64, Entr
         goals.push(Goal::new(
             &format!("cross, {name}: void grows with the distance and falls back by at most {JUMP} points"),
             format!("{fall:.2} points"),
-            "not told",
+            "not given",
             fall <= JUMP,
         ));
     }

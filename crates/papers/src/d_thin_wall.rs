@@ -56,7 +56,7 @@ pub const PARTS: [Part; 4] = [
 /// Numbers of layers of the frame that are judged: what the paper's first plan could be welded, and all.
 const JUDGED: [usize; 2] = [8, 18];
 
-/// How the parts are turned about the vertical, degrees; of two figures the worse is told.
+/// How the parts are turned about the vertical, degrees; of two figures the worse is reported.
 const TURNS: [f64; 2] = [0.0, 33.0];
 
 /// Good beads of the paper (section 3): λ, A, mm/s.
@@ -109,7 +109,7 @@ pub struct Figures {
     pub gourd_by_pot: usize,
     /// Layers of the pot with the gourd's bead.
     pub pot_by_gourd: usize,
-    /// Layers of the blade with the pot's wire feed, which the same current sets.
+    /// Layers of the blade with the pot's wire feed, since the same current sets it.
     pub blade_by_pot: usize,
     /// The frame as planned.
     pub planned: Frame,
@@ -157,8 +157,9 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     page.text(
         "Heights are those of the deposit model, where metal does not flow, in multiples of the wall's mean. The paper \
          measured 25.6 mm on its second path, and 22 to 24 mm on its first, whose many turns it blames; that path is \
-         only a picture there, so it is not repeated. Its initial plan, three passes a layer straight through the junctions, was given up after \
-         8 layers; it is what is called straight through here. The lowest points are in corners that a rounded path cuts.",
+         only a picture there, so it is not repeated. Its initial plan, three passes a layer straight through the \
+         junctions, was given up after 8 layers; it is what is called straight through here. The lowest points are in corners \
+         that a rounded path cuts.",
     );
     page.table(&FRAME_HEAD, &[frame_row("planned", &plain.planned), frame_row("straight through", &plain.straight)]);
     let maps = [&plain.planned, &plain.straight].map(|frame| vec![frame.picture.as_ref()]);
@@ -174,7 +175,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     }
     let mut lines: Vec<String> = goals.iter().map(Goal::line).collect();
     lines.extend([one, window]);
-    lines.push("RAPID of the four parts beside the page".to_owned());
+    lines.push("RAPID of the four parts next to the page".to_owned());
     Ok(Reproduced { page, lines, files })
 }
 
@@ -294,8 +295,8 @@ impl Frame {
     }
 }
 
-/// Lowest and highest point after each of [`JUDGED`] layers, in multiples of their `mean` (mm), where the metal of a bead stays as it
-/// would lie on a plate: what the paper's welders saw at junctions, before metal flows.
+/// Lowest and highest point after each of [`JUDGED`] layers, in multiples of their `mean` (mm), where the metal of a bead
+/// stays as it would lie on a plate: what the paper's welders saw at junctions, before metal flows.
 fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64) -> [Heights; 2] {
     let points = layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| &pass.points);
     let Some(bounds) = Bounds::of(points.map(|point| point.truncate())) else {
@@ -392,14 +393,14 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
         Goal::new(
             "four parts: metal of the wire over the part's volume, 0.98 to 1.02",
             format!("{:.3} to {:.3}", metal.0, metal.1),
-            "not told",
+            "not given",
             metal.0 >= 0.98 && metal.1 <= 1.02,
         ),
-        Goal::new("four parts: findings of wire-balance", unbalanced.to_string(), "not told", unbalanced == 0),
+        Goal::new("four parts: findings of wire-balance", unbalanced.to_string(), "not given", unbalanced == 0),
         Goal::new(
             "four parts: covered, at least 99 %",
             format!("{:.2} %", 100.0 * covered.0),
-            "not told",
+            "not given",
             covered.0 >= 0.99,
         ),
         Goal::new(
@@ -476,7 +477,7 @@ fn frame_row(name: &str, frame: &Frame) -> Row {
 /// Where the plans lie in the paper's process window.
 fn window(figures: &Figures) -> String {
     let place = |range: (f64, f64), (low, high): (f64, f64)| {
-        // To the last digit that is told.
+        // To the last digit that is printed.
         let inside = range.0 >= low - 0.005 && range.1 <= high + 0.05;
         if inside { "inside" } else { "outside" }
     };
@@ -506,8 +507,8 @@ fn one_process(figures: &Figures) -> String {
     format!(
         "One process: gourd and pot were welded alike. With the bead of the pot the gourd takes {} layers (paper 168), \
          with that of the gourd the pot {} (paper 66). The blade had the same current, so the same wire feed on a synergic \
-         line, and with the pot's would take {} layers (paper 74): its own ask for {:.2} m/min, the pot's for {:.2}, the \
-         gourd's for {:.2}.",
+         line, and with the pot's would take {} layers (paper 74): its own layers ask for {:.2} m/min, the pot's for {:.2}, \
+         the gourd's for {:.2}.",
         figures.gourd_by_pot,
         figures.pot_by_gourd,
         figures.blade_by_pot,

@@ -1,4 +1,4 @@
-//! The papers' experiments repeated, with our results beside theirs. A paper is one file and one line in [`PAPERS`].
+//! The papers' experiments repeated, with our results next to theirs. A paper is one file and one line in [`PAPERS`].
 
 pub mod a_skeleton_hybrid;
 pub mod b_fdm_order;
@@ -48,12 +48,12 @@ pub const PAPERS: [Paper; 4] = [
     },
     Paper {
         name: "d-thin-wall",
-        about: "Li et al.: heights of thin walls foretold, and paths that do not cross, on a frame, a blade, a gourd and a pot",
+        about: "Li et al.: predicted heights of thin walls, and paths that do not cross, on a frame, a blade, a gourd and a pot",
         run: d_thin_wall::run,
     },
 ];
 
 /// Why an experiment could not be run.
 #[derive(Debug, thiserror::Error)]
-#[error("the experiment could not be made: {0}")]
+#[error("the experiment could not be run: {0}")]
 pub struct ReproduceError(pub String);

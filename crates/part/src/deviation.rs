@@ -1,7 +1,7 @@
 //! How far a scan of the built part lies from the part's surface.
 //!
 //! A point's distance is that to the nearest triangle, found by a tree of boxes (rstar). Its sign is that of the normals
-//! around the nearest place, each weighted by the angle of its triangle there, which tells inside from outside also where
+//! around the nearest place, each weighted by the angle of its triangle there, which distinguishes inside from outside also where
 //! that place is an edge or a corner (Bærentzen and Aanæs 2005, *Signed distance computation using the angle weighted
 //! pseudonormal*).
 
@@ -17,37 +17,37 @@ use std::ops::RangeInclusive;
 /// Places that are nearer to each other count as one, mm.
 const SAME_MM: f64 = 1e-6;
 
-/// A point so near to the surface lies on it, mm: files are rounded.
+/// A point this near to the surface lies on it, mm: files are rounded.
 const ON_SURFACE_MM: f64 = 1e-3;
 
-/// A scan is taken to be in another unit if it then has this part of the part's size: it need not show all of it.
+/// A scan is taken to be in another unit if it then has this fraction of the part's size: it need not show the whole part.
 const SEEN: RangeInclusive<f64> = 0.5..=1.05;
 
-/// A scan is not where the part is if half its points lie farther off than this part of its size.
+/// A scan is not where the part is if half its points lie farther off than this fraction of its size.
 const FAR: f64 = 0.1;
 
-/// A scan shows the plate up to this height, and from this distance to the part on, mm; nearer, metal and plate are not told
-/// apart.
+/// A scan shows the plate up to this height, and from this distance from the part on, mm; nearer, metal and plate cannot be
+/// distinguished.
 const PLATE_MM: f64 = 0.5;
 const BESIDE_MM: f64 = 1.0;
 
-/// Points between two looks at whether the task was cancelled.
+/// Points between two checks whether the task was cancelled.
 const BATCH: usize = 50_000;
 
-/// A scan beside the part.
+/// A scan compared with the part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deviation {
     /// Distance of each point from the surface, mm: above 0 outside the part, below 0 inside.
     pub distances: Vec<f64>,
-    /// What they come to, the plate left out.
+    /// Their summary, without the plate.
     pub figures: Figures,
-    /// Number of points that show the plate on z = 0 beside a part that stands on it.
+    /// Number of points that show the plate on z = 0 next to a part that stands on it.
     pub plate: usize,
-    /// What speaks against comparing the two as they are.
+    /// Reasons not to compare the two as they are.
     pub doubts: Vec<Doubt>,
 }
 
-/// What the distances of a scan's points come to; every point counts alike.
+/// A summary of the distances of a scan's points; every point counts alike.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figures {
     /// Number of points.
@@ -62,11 +62,11 @@ pub struct Figures {
     pub lowest: Extreme,
     /// What is left to be milled off, mm.
     pub allowance: f64,
-    /// Part of the points that lie outside by the allowance at most, or on the surface, 0 to 1.
+    /// Fraction of the points that lie outside by the allowance at most, or on the surface, 0 to 1.
     pub within: f64,
-    /// Part of the points that lie farther outside, 0 to 1.
+    /// Fraction of the points that lie farther outside, 0 to 1.
     pub above: f64,
-    /// Part of the points that lie inside the part, where metal is missing, 0 to 1.
+    /// Fraction of the points that lie inside the part, where metal is missing, 0 to 1.
     pub below: f64,
 }
 
@@ -79,11 +79,11 @@ pub struct Extreme {
     pub at: DVec3,
 }
 
-/// What speaks against comparing a scan with a part as they are.
+/// A reason not to compare a scan with a part as they are.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Doubt {
     /// The scan is about as much smaller than the part as numbers in this unit are smaller than those in mm.
-    #[error("the scan has about 1/{} of the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
+    #[error("the scan has about 1/{} the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
     ScanUnit(Units),
     /// The scan is about as much larger.
     #[error("the scan is about {} times as large as the part: the numbers of the part seem to be {}, not mm.", .0.in_mm(), .0.plural())]
@@ -94,9 +94,9 @@ pub enum Doubt {
          the part as it is planned, with z = 0 on the plate."
     )]
     Off(f64),
-    /// The part's surface has holes, beside which nothing tells inside from outside.
+    /// The part's surface has holes, near which nothing distinguishes inside from outside.
     #[error(
-        "the part's surface is not closed ({0} open edges): beside its holes inside and outside are not told apart."
+        "the part's surface is not closed ({0} open edges): near its holes, inside and outside cannot be distinguished."
     )]
     Open(usize),
 }
@@ -139,8 +139,8 @@ pub fn deviation(part: &Mesh, points: &[DVec3], allowance: f64, task: &Task) -> 
     Ok(Deviation { distances, figures, plate, doubts })
 }
 
-/// The points that do not show the plate, with their distances; all of a scan that shows nothing else, which is rather in
-/// another unit.
+/// The points that do not show the plate, with their distances; all points of a scan that shows nothing else, which is more
+/// likely in another unit.
 fn without_plate(part: &Mesh, points: &[DVec3], distances: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
     let stands = part.bounds().0.z.abs() < ON_SURFACE_MM;
     let is_plate = |(point, distance): &(DVec3, f64)| stands && point.z <= PLATE_MM && *distance > BESIDE_MM;
@@ -236,7 +236,7 @@ impl Facet {
         })
     }
 
-    /// The angle of the triangle around one of its places: all around inside it, half on an edge.
+    /// The angle of the triangle around one of its places: a full turn inside it, half a turn on an edge.
     fn angle_at(&self, spot: DVec3) -> f64 {
         let [a, b, c] = self.corners;
         let corner = [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|[at, ..]| at.distance(spot) < SAME_MM);

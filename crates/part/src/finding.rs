@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Severity {
     /// The program should not be started as it is.
     Serious,
-    /// The part may not become what was meant.
+    /// The part may not turn out as intended.
     Doubt,
-    /// Something was done that people should know of.
+    /// Something was done that people should know about.
     Note,
 }
 
@@ -38,12 +38,12 @@ impl Severity {
 /// Something that is wrong, doubtful or worth knowing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What kind of thing: the name of a check or of a warning, or `reach`, `model` (what was mended), `plan` (a note)
+    /// What kind of thing: the name of a check or of a warning, or `reach`, `model` (what was repaired), `plan` (a note)
     /// or `refused`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,
-    /// How many such findings this one stands for; it is the first of a check's, and the largest of a warning's.
+    /// How many such findings this one represents; it is the first of a check's findings, and the largest of a warning's.
     pub count: usize,
     /// Index of the layer, from 0; `None` when it concerns the whole plan.
     pub layer: Option<usize>,
@@ -59,7 +59,7 @@ pub struct Finding {
     pub remedy: Option<String>,
 }
 
-/// By the kind of a finding, what the program that people use has against it, in its own words: flags, arguments, buttons.
+/// The remedy for a kind of finding in the words of the program that people use: flags, arguments, buttons.
 pub type Words = fn(kind: &str) -> Option<&'static str>;
 
 /// The words of the library, which has none.
@@ -67,7 +67,7 @@ pub fn no_words(_kind: &str) -> Option<&'static str> {
     None
 }
 
-/// Part of a sentence as a sentence.
+/// Turns part of a sentence into a sentence.
 pub fn as_sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).chain(['.']).collect()).unwrap_or_default()

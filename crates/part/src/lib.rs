@@ -1,4 +1,4 @@
-//! Parts for weld deposition: what a file describes, repaired, and its level slices. Nothing here knows of beads or machines.
+//! Parts for weld deposition: what a file describes, repaired, and its level slices. Nothing here knows about beads or machines.
 //!
 //! | module | what it holds |
 //! | --- | --- |

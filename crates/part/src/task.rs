@@ -1,4 +1,4 @@
-//! One handle for long calls: it reports progress and carries the wish to stop.
+//! One handle for long calls: it reports progress and carries the request to stop.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Nothing is lost in silence: whatever is dropped, closed or cannot be built is a [`Warning`], and
+//! Nothing is lost silently: whatever is dropped, closed or cannot be built is a [`Warning`], and
 //! [`Warnings`] sums them up over the layers in sentences for people.
 
 mod about;
@@ -34,7 +34,7 @@ pub enum WarningKind {
     Bare,
     /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
     Unsound,
-    /// No bead has room in the lowest layers, so the first would be laid above the plate; the size is how high, mm.
+    /// The lowest layers have no room for a bead, so the first would be laid above the plate; the size is how high, mm.
     HighStart,
     /// No bead lies below a whole layer; the size is the gap, mm.
     NothingBelow,
@@ -47,17 +47,17 @@ pub enum WarningKind {
     Overhang,
     /// A pass is over before its arc is steady; the size is its length, mm.
     ShortArc,
-    /// A pass is longer than one program of a controller and was cut; the size is how often its arc is lit again.
+    /// A pass is longer than one program of a controller and was cut; the size is how often its arc is struck again.
     Relit,
     /// A layer has more points than check.max_points; the size is their number.
     ManyPoints,
-    /// A hole or an island too thin to be anything was left out; the size is its area, mm².
+    /// A hole or an island too thin to matter was left out; the size is its area, mm².
     Sliver,
     /// A pass was shorter than the shortest allowed and was dropped; the size is its length, mm.
     PassTooShort,
     /// Metal does not cool to interpass.max_temperature before a pass; the size is its temperature, °C.
     NeverCools,
-    /// A pass that begins within interpass.max_temperature meets hotter metal on its way; the size is its temperature, °C.
+    /// A pass that begins within interpass.max_temperature meets hotter metal along the way; the size is its temperature, °C.
     HotAhead,
     /// A pass was cut where the metal ahead of the torch would be too hot (interpass.along); the size is 1 for each cut.
     Paused,
@@ -71,7 +71,7 @@ pub enum WarningKind {
 pub const SLIVER_MM: f64 = 0.05;
 
 impl WarningKind {
-    /// Whether a program with such a fault is not written unless somebody insists.
+    /// Whether a program with this fault is only written if somebody insists.
     pub fn forbids(self) -> bool {
         matches!(self, Self::Unsound | Self::HighStart | Self::NothingBelow | Self::InTheAir)
     }
@@ -190,12 +190,12 @@ impl WarningSummary {
                 times("feature", "features")
             ),
             WarningKind::ThinWall => format!(
-                "{layers}: {} thinner than the narrowest bead and welded with that, {total:.1} mm² in all, the largest \
-                 {size:.1} mm² {place}. Metal lies beside them.",
+                "{layers}: {} thinner than the narrowest bead and welded with it, {total:.1} mm² in all, the largest \
+                 {size:.1} mm² {place}. Metal lies outside them.",
                 times("wall", "walls")
             ),
             WarningKind::IslandTooSmall => format!(
-                "{layers}: {} left out in which no bead has room, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
+                "{layers}: {} left out with no room for a bead, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
                 times("island", "islands")
             ),
             WarningKind::Refilled => format!(
@@ -217,7 +217,8 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::HighStart => format!(
-                "{layers}: no bead has room in the layers below; the first would be laid {size:.2} mm above the plate {place}."
+                "{layers}: the layers below have no room for a bead; the first would be laid {size:.2} mm above the plate \
+                 {place}."
             ),
             WarningKind::NothingBelow => {
                 format!("{layers}: no bead lies below; these would be laid {size:.2} mm above the last one {place}.")
@@ -240,7 +241,7 @@ impl WarningSummary {
             ),
             WarningKind::Relit => format!(
                 "{layers}: {} longer than one program of the controller (max_points of its section), cut between programs: \
-                 the arc is lit again {total:.0} times on the end of the bead, first {place}.",
+                 the arc is struck again {total:.0} times on the end of the bead, first {place}.",
                 times("pass is", "passes are")
             ),
             WarningKind::ManyPoints => format!(
@@ -263,11 +264,11 @@ impl WarningSummary {
             ),
             WarningKind::Paused => format!(
                 "{layers}: {} where the metal ahead would be hotter than interpass.max_temperature: the torch waits there, and \
-                 the arc is lit again on the end of the bead, first {place}.",
+                 the arc is struck again on the end of the bead, first {place}.",
                 times("pass is cut", "passes are cut")
             ),
             WarningKind::TooCold => format!(
-                "{layers}: {} on metal colder than interpass.min_temperature, such as {size:.0} °C {place}.",
+                "{layers}: {} on metal colder than interpass.min_temperature, for example at {size:.0} °C {place}.",
                 times("pass begins", "passes begin")
             ),
             WarningKind::EmptyLayer => {

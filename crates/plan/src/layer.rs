@@ -19,14 +19,14 @@ pub struct Temperature {
 /// Where the arc stays lit from layer to layer: the turns of a helix, each the only pass of its layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Lit {
-    /// The pass goes on from that of the layer below.
+    /// The pass continues that of the layer below.
     pub before: bool,
-    /// It goes on in the layer above.
+    /// It continues in the layer above.
     pub after: bool,
 }
 
 impl Lit {
-    /// The least metal of a piece of a turn, as a part of a whole bead's: with less the torch would be too fast.
+    /// The least metal of a piece of a turn, as a fraction of a whole bead's: with less the torch would be too fast.
     pub const LEAST: f64 = 0.5;
 
     /// Whether a layer is a turn of a helix: it rises from the layer below.
@@ -34,7 +34,7 @@ impl Lit {
         self.before || self.after
     }
 
-    /// Lets every layer know whether the arc of the one below goes on in it, as only that one says in files.
+    /// Lets every layer know whether the arc of the one below continues in it, as only that one says in files.
     ///
     /// # Errors
     /// The index of a layer that then has not just one pass.
@@ -71,7 +71,7 @@ pub struct Layer {
     pub slice_area: f64,
     /// Area that beads cover, mm².
     pub planned_area: f64,
-    /// What was lost or mended here.
+    /// What was lost or repaired here.
     pub warnings: Vec<Warning>,
 }
 
@@ -92,7 +92,7 @@ impl Extent {
         Bounds { min: self.low.truncate(), max: self.high.truncate() }
     }
 
-    /// That of passes alone, without what their beads take beside and below them.
+    /// That of passes alone, without the room that their beads take next to and below them.
     pub fn of<L: Borrow<Layer>>(layers: &[L]) -> Self {
         let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
         let bounds = points.fold(None, |bounds: Option<(DVec3, DVec3)>, &p| {
@@ -115,7 +115,7 @@ pub fn bounds(layers: &[Layer]) -> Option<Bounds> {
     Bounds::of(points.chain(outlines))
 }
 
-/// Where islands hang farther than `reach` (mm) beyond those below: area (mm²) and a place; smaller areas than half a bead's
+/// Where islands overhang those below by more than `reach` (mm): area (mm²) and a place; areas smaller than half a bead's
 /// `width` squared do not count.
 pub fn overhang(below: &[Polygon], above: &[Polygon], reach: f64, width: f64) -> Option<(f64, DVec2)> {
     /// Smaller areas do not count, in squared bead widths.

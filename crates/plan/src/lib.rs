@@ -1,5 +1,5 @@
-//! What is welded, and what comes of it: beads, passes and layers, fills and their order, the metal they lay and how hot it gets.
-//! Nothing here knows of profiles, robots or their languages; every stage has its settings in millimetres and seconds.
+//! What is welded, and what results: beads, passes and layers, fills and their order, the metal they lay and how hot it gets.
+//! Nothing here knows about profiles, robots or their languages; every stage has its settings in millimetres and seconds.
 //!
 //! | module | what it holds |
 //! | --- | --- |
@@ -7,7 +7,7 @@
 //! | [`process`] | wire, arc, speeds, gas, starts and stops |
 //! | [`motion`] | how long a path takes, with acceleration |
 //! | [`pass`], [`layer`] | a path in space with width and pace along it; a layer's slice and passes |
-//! | [`fill`] | an island becomes paths: one file a strategy |
+//! | [`fill`] | an island becomes paths: one file per strategy |
 //! | [`order`] | the paths of a layer in sequence, with their start points |
 //! | [`deposit`] | layers become a height field, with its voids and humps |
 //! | [`weld`] | passes with start and stop, and the moves between them |

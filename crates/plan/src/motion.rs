@@ -1,6 +1,6 @@
 //! How long a machine takes along a path: it speeds up, and slows down before corners.
 //!
-//! Along every piece of a path the speed over time is a trapezoid: up with the acceleration, on at the wanted speed,
+//! Along every piece of a path the speed over time is a trapezoid: up with the acceleration, along at the wanted speed,
 //! down again. At a corner the velocity may jump by at most the corner speed, so sharp corners are passed slowly and
 //! straight joints at full speed; a path begins and ends at rest. Without these values, as for robots whose controllers
 //! keep the speed, the time is length over speed.
@@ -35,7 +35,7 @@ impl Motion {
             "motion.acceleration": self.acceleration, 1.0, 1e6, "mm/s²",
                 "a machine that hardly speeds up never gets there";
             "motion.corner_speed": self.corner_speed, 0.01, 1000.0, "mm/s",
-                "a machine that stops at every corner has no corner speed to tell";
+                "a machine that stops at every corner needs no corner speed";
         }
     }
 

@@ -166,7 +166,7 @@ impl Pass {
         if self.closed { self.points.first().copied() } else { self.points.last().copied() }
     }
 
-    /// Begins a closed pass at the point with an index; an open one stays as it is.
+    /// Begins a closed pass at the point with this index; an open one stays as it is.
     pub fn begin_at(&mut self, index: usize) {
         if self.closed && index < self.points.len() {
             self.points.rotate_left(index);

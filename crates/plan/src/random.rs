@@ -4,7 +4,7 @@
 pub struct Random(u64);
 
 impl Random {
-    /// The same seed brings the same numbers.
+    /// The same seed gives the same numbers.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -28,7 +28,7 @@ impl Random {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number of the normal distribution of mean 0 and deviation 1 (Box and Muller 1958).
+    /// A number from the normal distribution of mean 0 and deviation 1 (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
         // In 0.0..1.0 less its lower end, whose logarithm is not finite.
         let (radius, turn) = (1.0 - self.unit(), self.unit());

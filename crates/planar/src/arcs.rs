@@ -1,4 +1,4 @@
-//! Lines of many points fitted by few straight pieces and circular arcs.
+//! Lines of many points, fitted with a few straight pieces and circular arcs.
 //!
 //! From each point on, a piece is made as long as the tolerance allows. An arc passes through both ends of its piece
 //! and encloses the same area with the chord as the line does. A piece fits when every point of the line lies within
@@ -18,7 +18,7 @@ pub const MIN_SWEEP: f64 = PI / 180.0;
 /// Shortest chord of an arc, mm: its three points lie 0.1 mm apart or more.
 const MIN_CHORD: f64 = 0.25;
 
-/// An arc replaces at least this many straight pieces: through three points there is always an arc.
+/// An arc replaces at least this many straight pieces: there is always an arc through three points.
 const MIN_REPLACED: usize = 3;
 
 /// Largest radius of an arc, mm: flatter ones are lines to a controller.
@@ -35,7 +35,7 @@ pub struct Fit {
     pub grid: f64,
 }
 
-/// A circular arc; the pieces tell where it begins and ends.
+/// A circular arc; the pieces say where it begins and ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// A point in its middle, a multiple of [`Fit::grid`], mm.
@@ -58,7 +58,7 @@ pub struct Piece {
 }
 
 impl Arc {
-    /// The arc through three points; none when they lie on a line or it would turn half around or more.
+    /// The arc through three points; none when they lie on a line or it would turn by half a turn or more.
     pub fn through(from: DVec2, via: DVec2, to: DVec2) -> Option<Self> {
         let (a, b) = (via - from, to - from);
         let cross = a.perp_dot(b);
@@ -72,7 +72,7 @@ impl Arc {
 }
 
 impl Fit {
-    /// The pieces of the open line through `points`; every piece ends at one of them, the last at the last.
+    /// The pieces of the open line through `points`; every piece ends at one of them, the last piece at the last point.
     pub fn pieces(&self, points: &[DVec2]) -> Vec<Piece> {
         let (mut pieces, mut start) = (Vec::new(), 0);
         while start + 1 < points.len() {
@@ -89,7 +89,7 @@ impl Fit {
     }
 
     /// The longest piece from a point. On a coarsely sampled arc even the first few pieces cannot be replaced by a
-    /// straight one, so an arc over the fewest pieces is tried as a start as well.
+    /// straight one, so an arc over the fewest pieces is also tried as a start.
     fn farthest(&self, points: &[DVec2], start: usize) -> Piece {
         let one = self.grown(points, start, Piece { end: start + 1, arc: None });
         let least = start + MIN_REPLACED;

@@ -68,7 +68,7 @@ fn combine_by_winding(subject: &[Vec<GridPoint>], clip: &[Vec<GridPoint>], rule:
 pub(crate) fn unite_rings(rings: &[Ring], rule: FillRule) -> Region {
     let rings: Vec<Vec<GridPoint>> = rings.iter().map(ring_to_grid).collect();
     let by_winding = match rule {
-        // Where everything is wound around once or not at all, all rules say the same.
+        // Where everything is wound around once or not at all, all rules agree.
         FillRule::EvenOdd => region_within(in_mm(&distinct(&rings)), 1, 0..=1),
         // Where nothing is wound around clockwise, the other two rules agree.
         FillRule::NonZero => region_within(in_mm(&distinct(&rings)), 1, 0..),
@@ -81,7 +81,7 @@ fn in_mm(rings: &[Vec<GridPoint>]) -> Vec<Vec<DVec2>> {
     rings.iter().map(|ring| ring.iter().map(|&p| from_grid(p)).collect()).collect()
 }
 
-/// Rings without points that follow their equals, and without those of fewer than three points.
+/// Rings without repeated points; rings of fewer than three points are left out.
 fn distinct(rings: &[Vec<GridPoint>]) -> Vec<Vec<GridPoint>> {
     let ring = |ring: &Vec<GridPoint>| {
         let mut points = ring.clone();

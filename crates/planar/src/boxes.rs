@@ -1,8 +1,8 @@
 //! Straight pieces in a tree of boxes, so that those that may meet are found without comparing all with all.
 //!
 //! Pieces that follow each other share the smallest boxes, so an outline costs little more than its points. The boxes lie
-//! along the longest piece: scan lines then have flat boxes that meet little else, while their boxes along x and y would
-//! cover each other wherever they run aslant.
+//! along the longest piece: scan lines then have flat boxes that meet little else, while boxes along x and y would
+//! cover each other wherever the lines are slanted.
 
 use crate::Bounds;
 use glam::DVec2;
@@ -11,7 +11,7 @@ use std::ops::Range;
 /// From one point to another, mm.
 pub type Piece = [DVec2; 2];
 
-/// Boxes are larger than their pieces by this part of the extent of all, so that rounding loses none.
+/// Boxes are larger than their pieces by this fraction of the whole extent, so that rounding loses none.
 const ROUNDING: f64 = 1e-9;
 /// The smallest boxes hold no more pieces than this.
 const MOST: usize = 12;
@@ -162,7 +162,7 @@ impl Boxes {
     }
 }
 
-/// The way along the longest piece.
+/// The direction of the longest piece.
 fn longest(pieces: &[Piece]) -> DVec2 {
     let mut longest = (0.0, DVec2::ZERO);
     for &[a, b] in pieces {
@@ -189,7 +189,7 @@ fn leaves(pieces: &[Piece], boxes: &[Bounds]) -> Vec<Node> {
     leaves
 }
 
-/// Adds a tree of leaves, halved again and again across the way on which their middles lie farthest apart.
+/// Adds a tree of leaves, halved again and again in the direction in which their middles lie farthest apart.
 fn grow(nodes: &mut Vec<Node>, leaves: &mut [Node]) {
     let [first, rest @ ..] = leaves else { return };
     if rest.is_empty() {

@@ -6,7 +6,7 @@ use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Squares that are looked at before an offset decides.
+/// Squares that are examined before an offset decides.
 const MOST_SQUARES: usize = 300;
 
 /// A square and the room about its middle.
@@ -39,7 +39,7 @@ impl PartialEq for Square {
 impl Eq for Square {}
 
 impl Polygon {
-    /// Whether a disc of a radius (mm) fits in somewhere: whether an offset inwards by it leaves something.
+    /// Whether a disc of this radius (mm) fits somewhere: whether an inward offset by the radius leaves anything.
     pub fn holds_disc(&self, radius: f64) -> bool {
         let Some(bounds) = Bounds::of(self.outer.points().iter().copied()) else { return false };
         let size = bounds.max - bounds.min;

@@ -3,7 +3,7 @@
 //! Every edge moves sideways. Where two edges move apart an arc or a tip joins them, where they move into each other they
 //! are cut off at their intersection; an edge between two such places that is used up is left out, which is exact since
 //! there the offset is what the half-planes of the edges have in common. Where an edge is used up by one cut alone, or edges
-//! turn back sharply, the way leads through the corner of the outline instead, and winds clockwise around what must not count.
+//! turn back sharply, the path leads through the corner of the outline instead, and winds clockwise around what must not count.
 //! The offset is what the rings that result wind around ([`winding`](crate::winding)); what touches itself is left to the
 //! boolean ([`offset`](mod@crate::offset)).
 
@@ -27,11 +27,12 @@ pub(crate) fn edgewise_offset(region: &Region, distance: f64, join: Join) -> Opt
 struct Gaps {
     /// Where the cosine of the turn is greater than this, by a tip.
     tip: f64,
-    /// Else by an arc with a point after each such angle, radians, if arcs are wanted.
+    /// Otherwise by an arc with a point every such angle, radians, if arcs are wanted.
     step: Option<f64>,
 }
 
-/// A tip that reaches no farther beyond the arc than this part of the tolerance is drawn for it: one point for two.
+/// A tip that reaches no farther beyond the arc than this fraction of the tolerance is drawn in its place: one point instead of
+/// two.
 const TIP: f64 = 0.2;
 
 impl Gaps {
@@ -45,7 +46,7 @@ impl Gaps {
     }
 }
 
-/// An edge that moves sideways.
+/// An edge that is moved sideways.
 struct Edge {
     /// Where it begins before and after it has moved, mm.
     from: DVec2,
@@ -62,7 +63,7 @@ impl Edge {
     }
 }
 
-/// How the offset goes on from an edge to the next.
+/// How the offset continues from an edge to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Corner {
     /// Straight on.
@@ -81,7 +82,7 @@ impl Corner {
     }
 }
 
-/// How an edge goes on to a later one, if those between them are left out. `None` where they do not meet, and between
+/// How an edge continues to a later one, if those between them are left out. `None` where they do not meet, and between
 /// neighbours where one runs back over the other.
 fn corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
     let (edge, next) = (&edges[i], &edges[j]);
@@ -132,12 +133,12 @@ fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
 struct Left {
     /// Their numbers.
     edges: Vec<usize>,
-    /// How each goes on to the next, the last one to the first.
+    /// How each continues to the next, the last one to the first.
     corners: Vec<Corner>,
 }
 
 impl Left {
-    /// `None` where an edge runs back over its neighbour. The edges are rotated so that they begin behind a gap if there is
+    /// `None` where an edge runs back over its neighbour. The edges are rotated so that they begin after a gap if there is
     /// one: what is left out never reaches across it.
     fn of(edges: &mut [Edge], distance: f64) -> Option<Self> {
         let n = edges.len();
@@ -190,7 +191,7 @@ impl Left {
         self.corners.last().copied().unwrap_or(Corner::Over)
     }
 
-    /// Where the last edge is used up by the cut before it alone, the way leads over that corner instead.
+    /// Where the last edge is used up by the cut before it alone, the path leads over that corner instead.
     fn give_way(&mut self, edges: &[Edge], after: Corner) {
         let before = self.before();
         if let [.., _, last] = self.edges[..]
@@ -203,14 +204,14 @@ impl Left {
         }
     }
 
-    /// Goes on from the last edge over all corners to another, along what was left out between them.
+    /// Continues from the last edge over all corners to another, along what was left out between them.
     fn lead_over(&mut self, to: usize) {
         let next = self.edges.last().map_or(to, |last| last + 1);
         self.edges.extend(next..=to);
         self.corners.resize(self.edges.len() - 1, Corner::Over);
     }
 
-    /// Cuts the last edge and the first off where they meet, if that leaves something of both.
+    /// Cuts off the last edge and the first where they meet, if that leaves something of both.
     fn cut_seam(&mut self, edges: &[Edge], distance: f64) {
         let ([after, .., before, seam], [first, .., last]) = (&mut self.corners[..], edges) else { return };
         let cut = corner(edges, edges.len() - 1, 0, distance).filter(|cut| !is_sharp(*cut, last, first));
@@ -237,7 +238,7 @@ fn join_gap(points: &mut Vec<DVec2>, edge: &Edge, next: &Edge, gaps: &Gaps) -> O
         points.push(edge.moved + edge.meets(next).0 * edge.way);
         return Some(());
     }
-    // As the boolean does: whole steps, and what is left of the angle at the end.
+    // As the boolean does: whole steps, then what is left of the angle.
     let (step, angle) = (gaps.step?, edge.way.angle_to(next.way));
     let count = ((angle.abs() - 1e-9).max(0.0) / step) as usize;
     let start = edge.moved + edge.length * edge.way;

@@ -49,7 +49,7 @@ fn half_hull(points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
     chain
 }
 
-/// The rectangle of least area around `points`; `None` when there are fewer than two different ones.
+/// The rectangle of least area around `points`; `None` when fewer than two of them differ.
 /// One of its sides lies along a hull edge (Freeman and Shapira 1975), so the edges are tried in turn.
 pub fn min_area_rect(points: &[DVec2]) -> Option<OrientedRect> {
     let hull = convex_hull(points);

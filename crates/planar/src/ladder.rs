@@ -42,7 +42,7 @@ impl Rung {
 pub struct Ladder {
     /// At least one.
     pub rungs: Vec<Rung>,
-    /// Whether it begins and ends freely, and not at a fork.
+    /// Whether its beginning and its end are free, not at a fork.
     pub free: [bool; 2],
     /// Whether it closes to a loop.
     pub closed: bool,
@@ -180,7 +180,7 @@ impl Mesh {
             rungs.push(self.rung(from, k));
             next = self.triangles[from].1[k]?;
         };
-        // A single rung between two triangles that are no sleeves is found from both sides.
+        // A single rung between two triangles that are not sleeves is found from both sides.
         if rungs.len() == 1 && next < start {
             return None;
         }
@@ -197,8 +197,8 @@ struct Walked {
     forks: [usize; 2],
 }
 
-/// Removes the ladders that run into corners, fork by fork, and joins two ladders that are all that is left at a fork.
-/// Where every ladder at a fork runs into a corner, only the shortest goes: the shape is a blob, and the rest crosses
+/// Removes the ladders that run into corners, fork by fork, and joins two ladders where only those are left at a fork.
+/// Where every ladder at a fork runs into a corner, only the shortest is removed: the shape is a blob, and the rest crosses
 /// it.
 fn prune(mut walked: Vec<Walked>) -> Vec<Ladder> {
     loop {

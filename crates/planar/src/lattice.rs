@@ -3,7 +3,7 @@
 use crate::Bounds;
 use glam::DVec2;
 
-/// Points `step` apart in x and y, in as many columns and rows on either side of the middle: turned by a right angle
+/// Points `step` apart in x and y, with equally many columns and rows on either side of the middle: turned by a right angle
 /// it is the same lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
@@ -53,7 +53,7 @@ impl Lattice {
         self.low() + DVec2::new(column as f64, row as f64) * self.step
     }
 
-    /// Where the point of that index lies; points are numbered row by row.
+    /// Where the point with that index lies; points are numbered row by row.
     pub fn place_of(&self, index: usize) -> DVec2 {
         self.place(index % self.columns, index / self.columns)
     }
@@ -111,7 +111,7 @@ impl Lattice {
     }
 }
 
-/// Coordinates that are 0 or more, rounded down: a cast is quicker than `floor` where processors of all ages are served.
+/// Coordinates that are 0 or more, rounded down: a cast is quicker than `floor` in builds for processors of all ages.
 fn whole(at: DVec2) -> DVec2 {
     at.as_uvec2().as_dvec2()
 }

@@ -11,7 +11,7 @@
 //!    topology of the polygon: one connected piece, one loop round every hole.
 //! 3. On the way from one end of a chord to the other, over a point of its Voronoi edge, the nearest boundary
 //!    changes sides: there lies a point of the medial axis. It is found exactly, against the true edges and not the
-//!    samples (bracketing on the two nearest edges; a tree of boxes over the edges tells which they are). A triangle
+//!    samples (bracketing on the two nearest edges; a tree of boxes over the edges finds them). A triangle
 //!    with three chords is a junction, its disc touches three edges (Newton); one with a single chord is a corner.
 //! 4. Noise is removed (below) and the rest cut into branches; junctions closer than 1 µm are one.
 //!
@@ -29,7 +29,7 @@
 //! - [`MedialOptions::min_angle`] (50°): free ends below it are noise and never appear, and neither do free branches
 //!   whose radius grows as fast from end to end. An arc sampled every 5° makes 5°; only corners blunter than 130° go
 //!   with them. A scan's spikes with sharper corners stay until they are pruned.
-//! - [`MedialAxis::pruned`] removes what runs into corners: from every free end, for as long as the radius grows by
+//! - [`MedialAxis::pruned`] removes what runs into corners: from every free end, as long as the radius grows by
 //!   at least sin(corner/2) per mm. [`CORNER`] = 40° takes square and slanted wall ends and leaves sharp trailing
 //!   edges. A rounded end loses no more than about its end radius. A part that widens steadily at 40° or more is
 //!   one great corner to this rule and goes too.
@@ -56,7 +56,7 @@ const MERGE_MM: f64 = 1e-3;
 /// The finest spacing, mm.
 const LEAST_SPACING_MM: f64 = 1e-3;
 
-/// An outline that touches itself and cannot be triangulated is shrunk by these in turn until it can, mm.
+/// An outline that touches itself and cannot be triangulated is shrunk by each of these in turn until it can be, mm.
 const SHRINK_MM: [f64; 4] = [0.0, 1e-3, 1e-2, 1e-1];
 
 /// How finely the axis is sampled, and what counts as noise.
@@ -75,7 +75,7 @@ impl Default for MedialOptions {
 }
 
 impl MedialOptions {
-    /// With the default for a spacing that is no length, and never finer than [`LEAST_SPACING_MM`].
+    /// With the default where the spacing is not a length, and never finer than [`LEAST_SPACING_MM`].
     fn sane(self) -> Self {
         let spacing = if self.spacing > 0.0 { self.spacing } else { Self::default().spacing };
         Self { spacing: spacing.max(LEAST_SPACING_MM), ..self }

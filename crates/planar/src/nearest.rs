@@ -116,7 +116,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Takes the nearest segments from the row beside, then along the row both ways.
+    /// Takes the nearest segments from the neighbouring row, then along the row both ways.
     fn row(&mut self, row: usize, beside: Option<usize>) {
         let columns = self.columns;
         if let Some(beside) = beside {

@@ -35,7 +35,7 @@ impl Join {
     /// A round join within [`ARC_TOLERANCE_MM`].
     pub const ROUND: Self = Self::Round(ARC_TOLERANCE_MM);
 
-    /// The angle between the points of an arc whose chords keep within a tolerance (mm), radians.
+    /// The angle between the points of an arc whose chords stay within a tolerance (mm), radians.
     pub(crate) fn step(tolerance: f64, distance: f64) -> f64 {
         // The boolean takes no finer steps than 1024 a turn.
         const LEAST: f64 = std::f64::consts::TAU / 1024.0;
@@ -86,39 +86,39 @@ impl Polygon {
         Region::from(self.clone()).offset(distance, join)
     }
 
-    /// Where the centre of a disc of a radius (mm) may lie that stays inside: [`Self::offset`] inwards, but not simplified, so
+    /// Where the centre of a disc of this radius (mm) that stays inside may lie: [`Self::offset`] inwards, but not simplified, so
     /// that areas are exact.
     pub fn centres_of_disc(&self, radius: f64, join: Join) -> Region {
         Region::from(self.clone()).unsimplified_offset(-radius, join)
     }
 
-    /// Area (mm²) that a disc of a radius (mm) reaches without leaving the polygon, given where its centre may lie: area +
-    /// radius · perimeter + π radius² · euler of that region (Steiner). `None` where the region is connected in another way
-    /// than the polygon: then parts of it may reach the same points.
+    /// Area (mm²) that a disc of this radius (mm) reaches without leaving the polygon, given where its centre may lie: area +
+    /// radius · perimeter + π radius² · euler of that region (Steiner). `None` where the region is connected differently
+    /// from the polygon: then parts of it may reach the same points.
     pub fn reached_by_disc(&self, radius: f64, centre: &Region) -> Option<f64> {
         let [part] = centre.polygons() else { return None };
         let round = std::f64::consts::PI * radius * radius * centre.euler() as f64;
         (part.holes.len() == self.holes.len()).then(|| centre.area() + radius * centre.perimeter() + round)
     }
 
-    /// Whether a disc of a radius (mm) that rolls through the polygon, its centre where it may lie, leaves nowhere more than
-    /// `smallest` (mm²) empty in one place. Corners between long edges may be left as empty as they must be; "no" may be
-    /// wrong, where many other corners together are left emptier.
+    /// Whether a disc of this radius (mm) that rolls through the polygon, its centre within `centre`, nowhere leaves more than
+    /// `smallest` (mm²) empty in one place. Corners between long edges may be as empty as they must be; "no" may be
+    /// wrong where many other corners together are left emptier.
     pub fn is_roomy_for_disc(&self, radius: f64, centre: &Region, smallest: f64) -> bool {
         let corners: f64 = self.rings().map(|ring| emptied_corners(ring, radius, smallest)).sum();
         self.reached_by_disc(radius, centre).is_some_and(|reached| self.area() - reached - corners <= smallest)
     }
 }
 
-/// Area (mm²) that a disc leaves empty in the convex corners of a ring; only corners from whose edges it touches less than
-/// half, and that are left less empty than `smallest` (mm²).
+/// Area (mm²) that a disc leaves empty in the convex corners of a ring; only corners whose edges it touches for less than
+/// half their length, and that are left less empty than `smallest` (mm²).
 fn emptied_corners(ring: &Ring, radius: f64, smallest: f64) -> f64 {
     let points = ring.points();
     let n = points.len();
     let corner = |i: usize| {
         let (into, out) = (points[i] - points[(i + n - 1) % n], points[(i + 1) % n] - points[i]);
         let lengths = (into.length_squared(), out.length_squared());
-        // Of half the turn: the disc touches each edge so many radii from the corner.
+        // Of half the turn: the disc touches each edge this many radii from the corner.
         let tangent = into.perp_dot(out) / ((lengths.0 * lengths.1).sqrt() + into.dot(out));
         if tangent <= 0.0 || 4.0 * (radius * tangent).powi(2) > lengths.0.min(lengths.1) {
             return 0.0;

@@ -56,7 +56,7 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     kept
 }
 
-/// Whether a point between two others is kept in any case: it lies more than three times the tolerance from the line
+/// Whether a point between two others is always kept: it lies more than three times the tolerance from the line
 /// between them, so no straight line passes within the tolerance of all three. Only the short stretches between such corners
 /// are left to be simplified.
 fn is_corner(before: DVec2, point: DVec2, after: DVec2, tolerance: f64) -> bool {
@@ -64,7 +64,7 @@ fn is_corner(before: DVec2, point: DVec2, after: DVec2, tolerance: f64) -> bool 
     !turns_back && distance_squared_to_segment(point, before, after) > 9.0 * tolerance * tolerance
 }
 
-/// [`simplify`] for a closed ring, anchored at two far points so that the start vertex does not matter.
+/// [`simplify`] for a closed ring, anchored at two points far apart so that the start vertex does not matter.
 /// `None` when fewer than three points remain.
 pub fn simplify_ring(ring: Ring, tolerance: f64) -> Option<Ring> {
     let mut points = ring.into_points();
@@ -90,8 +90,8 @@ fn lexicographic(a: DVec2, b: DVec2) -> std::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
 }
 
-/// Marks what must stay within stretches from one point to another; own stack, so that long lines cannot overflow the real
-/// one.
+/// Marks what must stay within stretches from one point to another; with a stack of its own, so that long lines cannot overflow
+/// the real one.
 fn mark_kept(points: &[DVec2], open: &mut Vec<(usize, usize)>, tolerance_squared: f64, keep: &mut [bool]) {
     while let Some((a, b)) = open.pop() {
         let mut worst = (tolerance_squared, None);

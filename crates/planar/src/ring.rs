@@ -42,7 +42,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// A box about the origin without extent.
+    /// A box without extent at the origin.
     pub const EMPTY: Self = Self { min: DVec2::ZERO, max: DVec2::ZERO };
 
     /// The box around `points`; `None` when there are none.
@@ -85,7 +85,7 @@ impl Ring {
         &self.0
     }
 
-    /// The vertices, given away.
+    /// The vertices, by value.
     pub fn into_points(self) -> Vec<DVec2> {
         self.0
     }
@@ -175,7 +175,7 @@ impl Region {
         &self.0
     }
 
-    /// The disjoint polygons, given away.
+    /// The disjoint polygons, by value.
     pub fn into_polygons(self) -> Vec<Polygon> {
         self.0
     }

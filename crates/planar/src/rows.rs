@@ -2,7 +2,7 @@
 
 use crate::{Region, Ring};
 
-/// Something of each of many rows, in one piece of memory.
+/// The items of many rows, in one piece of memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerRow<T> {
     items: Vec<T>,
@@ -11,7 +11,7 @@ pub struct PerRow<T> {
 }
 
 impl<T> PerRow<T> {
-    /// Puts things into `count` rows, each behind what came before it.
+    /// Sorts items into `count` rows; within a row they keep their order.
     pub fn grouped(count: usize, things: impl Iterator<Item = (usize, T)> + Clone) -> Self
     where
         T: Clone + Default,
@@ -33,12 +33,12 @@ impl<T> PerRow<T> {
         self.starts.len() - 1
     }
 
-    /// All things, one row after the other.
+    /// All items, one row after the other.
     pub fn into_items(self) -> Vec<T> {
         self.items
     }
 
-    /// The things of each row.
+    /// The items of each row.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         let mut rest = self.items.as_mut_slice();
         self.starts.windows(2).map(move |ends| {
@@ -48,7 +48,7 @@ impl<T> PerRow<T> {
         })
     }
 
-    /// What belongs to a row, nothing beyond the last.
+    /// The items of a row; none beyond the last row.
     pub fn row(&self, row: usize) -> &[T] {
         self.starts.get(row..row + 2).map_or(&[], |ends| &self.items[ends[0]..ends[1]])
     }

@@ -41,7 +41,7 @@ impl End {
     }
 }
 
-/// The way along the boundary from the end of one span to the same end of a span on the next line.
+/// The path along the boundary from the end of one span to the same end of a span on the next line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
     /// Index of the span it leads to.
@@ -103,7 +103,7 @@ impl Spacing {
 const LONG: f64 = 1.5;
 /// But not where that line would be closer than this to another one, in line distances.
 const NEAREST: f64 = 0.6;
-/// Lines may be this much farther apart than asked, where one more would put them much too close, in line distances.
+/// Lines may be this much farther apart than asked for where one more would put them much too close, in line distances.
 const FARTHER: f64 = 0.25;
 
 /// Lines along all long edges that run along x, and evenly spaced between them, about `distance` apart; `None` where
@@ -140,7 +140,7 @@ impl Scan {
     }
 
     /// Lays scan lines at `angle` (radians from x) through `region`, about `distance` (mm) apart, so that one runs
-    /// along every long edge parallel to them: no strip narrower than `distance` is left beside such an edge.
+    /// along every long edge parallel to them: no strip narrower than `distance` is left next to such an edge.
     pub fn fitted(region: &Region, angle: f64, distance: f64) -> Self {
         Self::with_lines(region, angle, |rings, low, high| {
             fitted(rings, low, high, distance).unwrap_or_else(|| Spacing::AtMost(distance).lines(low, high))

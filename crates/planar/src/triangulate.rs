@@ -25,7 +25,7 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
 
 /// As [`triangulate`], but every edge of the polygon is an edge of one triangle, and every other edge one of two, also where points
 /// lie in line to the last digit, which ear clipping passes over: the constrained Delaunay triangulation. Where edges of the
-/// polygon cross each other, the triangles overlap, some of them clockwise, and their areas still add up.
+/// polygon cross each other, the triangles overlap, some of them are clockwise, and their areas still add up.
 pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let (mut corners, mut edges) = (Vec::new(), Vec::new());
     for ring in polygon.rings() {

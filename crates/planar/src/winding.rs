@@ -1,7 +1,7 @@
 //! Rings that cross resolved by their winding number, without a sweep over everything.
 //!
 //! At every crossing the two rings exchange how they go on: in from one, out on the other. That leaves closed curves that
-//! cross nowhere, and beside each of them the winding number is the same all along. Those with the wanted number on their
+//! cross nowhere, and along each side of them the winding number is constant. Those with the wanted number on their
 //! left and one less on their right bound the result. What touches without crossing is left to the boolean.
 
 use crate::boxes::{Boxes, Piece};
@@ -33,7 +33,7 @@ pub(crate) fn region_within(rings: Vec<Vec<DVec2>>, level: i32, allowed: impl Ra
     (!turns_off || cross_nowhere(&kept)).then(|| nested(kept))
 }
 
-/// Whether no two edges of some rings cross or touch but neighbours at their common end; exact on the grid.
+/// Whether no two edges of some rings cross or touch, except neighbours at their common end; exact on the grid.
 fn cross_nowhere(rings: &[Vec<GridPoint>]) -> bool {
     let rings: Vec<Vec<DVec2>> = rings.iter().map(|ring| ring.iter().map(|&p| from_grid(p)).collect()).collect();
     let crossings = Edges::of(&rings).and_then(|edges| edges.crossings(&Boxes::new(edges.ends.clone())));
@@ -65,10 +65,10 @@ struct Crossing {
     place: DVec2,
 }
 
-/// A closed curve that crosses none.
+/// A closed curve that crosses no other.
 struct Curve {
     points: Vec<DVec2>,
-    /// The edge on which it goes on from each point.
+    /// The edge on which it continues from each point.
     edges: Vec<usize>,
     /// Whether it turns off at crossings.
     turns_off: bool,
@@ -90,7 +90,7 @@ impl Edges {
         Some(Self { ends, next })
     }
 
-    /// Where edges cross; `None` where two touch otherwise than as neighbours.
+    /// Where edges cross; `None` where two touch other than as neighbours.
     fn crossings(&self, boxes: &Boxes) -> Option<Vec<Crossing>> {
         let (mut found, mut touching) = (Vec::new(), false);
         boxes.pairs(|i, j| {
@@ -132,7 +132,7 @@ impl Edges {
         Meeting::Crossing(Crossing { edges: [i, j], along, place: a.lerp(b, along[0]) })
     }
 
-    /// The curves that result when rings exchange how they go on at every crossing. `None` where crossings fall together on
+    /// The curves that result when rings exchange how they go on at every crossing. `None` where crossings coincide on
     /// the grid.
     fn exchanged(&self, crossings: &[Crossing]) -> Option<Vec<Curve>> {
         let mut cuts: Vec<(usize, f64, usize)> = (0..crossings.len())
@@ -199,7 +199,7 @@ impl Edges {
 
 enum Meeting {
     None,
-    /// They touch, or lie on each other.
+    /// They touch, or lie on top of each other.
     Touch,
     Crossing(Crossing),
 }
@@ -215,7 +215,7 @@ impl Curve {
     }
 }
 
-/// The points of a closed curve on the grid, without those that fall together or between two edges in the same direction.
+/// The points of a closed curve on the grid, without those that coincide or between two edges in the same direction.
 fn on_grid(curve: &[DVec2]) -> Vec<GridPoint> {
     let mut points: Vec<GridPoint> = curve.iter().map(|&p| to_grid(p)).collect();
     points.dedup();
@@ -270,7 +270,7 @@ fn nested(mut curves: Vec<Vec<GridPoint>>) -> Region {
     Region::from_normalised(outers.into_iter().map(|(polygon, ..)| polygon).collect())
 }
 
-/// Twice the area of a triangle, its sign exact: positive where `r` lies left of the way from `p` to `q`.
+/// Twice the area of a triangle, its sign exact: positive where `r` lies left of the path from `p` to `q`.
 fn side(p: DVec2, q: DVec2, r: DVec2) -> f64 {
     let [p, q, r] = [p, q, r].map(|p| robust::Coord { x: p.x, y: p.y });
     robust::orient2d(p, q, r)

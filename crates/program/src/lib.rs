@@ -1,11 +1,11 @@
-//! Programs for weld deposition: layers become neutral instructions, and these the languages of robots and machines. Programs are
-//! read back to moves as well. Nothing here plans, and nothing knows of profiles.
+//! Programs for weld deposition: layers become neutral instructions, and these become the languages of robots and machines.
+//! Programs are also read back as moves. Nothing here plans, and nothing knows about profiles.
 //!
 //! | module | what it holds |
 //! | --- | --- |
 //! | [`program`] | instructions: straight moves and arcs, arc on and off, layer by layer |
-//! | [`dialect`] | one folder a language: KRL, RAPID, FANUC TP, INFORM, URScript, G-code |
-//! | [`number`] | numbers written as controllers and tables take them |
+//! | [`dialect`] | one folder per language: KRL, RAPID, FANUC TP, INFORM, URScript, G-code |
+//! | [`number`] | numbers written as controllers and tables accept them |
 //! | [`template`] | pages and texts with places for values |
 
 pub mod dialect;

@@ -1,13 +1,13 @@
-//! Numbers as programs and files want them: fixed decimals, a point, no exponent, no negative zero.
+//! Numbers as programs and files need them: fixed decimals, a point, no exponent, no negative zero.
 
-/// Appends `value` with that many decimals (at most 9). What is not finite is written as 0; callers keep such
+/// Appends `value` with this many decimals (at most 9). What is not finite is written as 0; callers keep such
 /// values out.
 pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
     const POWERS: [f64; 10] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
     debug_assert!(value.is_finite());
     let decimals = decimals.min(9);
     let scaled = if value.is_finite() { (value * POWERS[decimals]).abs() } else { 0.0 };
-    // Halves are rounded away from zero; a call of `round` costs more than all else here.
+    // Halves are rounded away from zero; a call of `round` costs more than everything else here.
     let whole = scaled as u64;
     let digits = whole.saturating_add(u64::from(scaled - whole as f64 >= 0.5));
     let mut number = Number { bytes: [b'0'; 24], start: 24, left: digits };
@@ -54,15 +54,15 @@ impl Number {
     }
 }
 
-/// `value` with that many decimals.
+/// `value` with this many decimals.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let mut text = String::with_capacity(12);
     push_fixed(&mut text, value, decimals);
     text
 }
 
-/// The nearest whole number, halves away from zero, as `f64::round` has it but for numbers that are a hair below a half;
-/// without a call into the library of mathematics.
+/// The nearest whole number, halves away from zero, as `f64::round` gives it, except for numbers a hair below a half;
+/// without a call into the mathematics library.
 pub fn rounded(value: f64) -> f64 {
     /// From here on numbers are whole.
     const WHOLE: f64 = 4_503_599_627_370_496.0;

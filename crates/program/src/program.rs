@@ -41,7 +41,7 @@ pub const MIN_MOVE_MM: f64 = 0.01;
 /// One step of a program. The arc is off until `ArcOn`, and `ArcOff` comes before the next move with the arc off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Instruction {
-    /// The first move, from wherever the machine stands to a point above the part: of the joints, not along a line.
+    /// The first move, from wherever the machine is to a point above the part: a joint move, not along a line.
     Approach {
         /// Tool point, mm.
         to: DVec3,
@@ -51,7 +51,7 @@ pub enum Instruction {
         /// Tool point, mm.
         to: DVec3,
     },
-    /// A straight move up from the end of a pass, at travel speed; ends with an exact stop. A program may be cut behind
+    /// A straight move up from the end of a pass, at travel speed; ends with an exact stop. A program may be cut after
     /// it.
     Retract {
         /// Tool point, mm.
@@ -63,7 +63,7 @@ pub enum Instruction {
         pass: usize,
         /// A point above its start to which the torch can come from anywhere, mm.
         above: DVec3,
-        /// How torch and table stand on the way to the start and there.
+        /// The attitude of torch and table on the way to the start and there.
         attitude: Attitude,
     },
     /// The torch is above the start of the pass. What came since `PassStart` led there from the pass before; a program
@@ -94,7 +94,7 @@ pub enum Instruction {
         speed: f64,
         /// Whether the pass ends here, with an exact stop.
         last: bool,
-        /// How torch and table stand at its end; they stay so until the next `Weld` or `PassStart`.
+        /// The attitude of torch and table at its end; it stays so until the next `Weld` or `PassStart`.
         attitude: Attitude,
     },
     /// The arc burns on the spot, at the end of a pass, to fill its crater.
@@ -125,7 +125,7 @@ impl Instruction {
         }
     }
 
-    /// How torch and table stand from here on; `None` where they stay as they are.
+    /// The attitude of torch and table from here on; `None` where it does not change.
     pub fn attitude(&self) -> Option<Attitude> {
         match *self {
             Self::PassStart { attitude, .. } | Self::Weld { attitude, .. } => Some(attitude),
@@ -134,7 +134,7 @@ impl Instruction {
     }
 }
 
-/// A circular arc in a plane of constant height, from where the torch stands; less than half a turn.
+/// A circular arc in a plane of constant height, from where the torch is; less than half a turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
     /// A point near the middle of the arc, mm. The circle is the one through its start, this point and its end, as
@@ -171,7 +171,7 @@ pub struct LayerProgram {
     pub instructions: Vec<Instruction>,
 }
 
-/// Turns layers into instructions, remembering where the torch stands.
+/// Turns layers into instructions, remembering where the torch is.
 #[derive(Debug, Clone)]
 pub struct Programmer {
     torch: Torch,
@@ -267,7 +267,7 @@ impl Programmer {
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
 
-    /// Takes note of a layer that another program lays; the torch leans with the walls that stand on it.
+    /// Takes note of a layer that another program lays; the torch leans with the walls built on it.
     pub fn pass_over(&mut self, layer: &Layer) {
         self.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
     }
@@ -281,7 +281,7 @@ impl Programmer {
         }
     }
 
-    /// A pass, after the wait of its layer if there is still one.
+    /// A pass, after the wait of its layer if one is still due.
     fn pass(&mut self, number: usize, pass: &Pass, pause: &mut Option<Pause>, out: &mut Vec<Instruction>) {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
@@ -341,7 +341,7 @@ impl Programmer {
         out.push(Instruction::PassEnd);
     }
 
-    /// What is run of a path: swings, pieces that fit it, or all its moves.
+    /// How a path is run: as swings, as pieces that fit it, or as all its moves.
     fn pieces(&self, moves: &[(DVec3, f64)], leans: &[DVec2]) -> Vec<Stretch> {
         let speed = |end: usize| self.torch.speed_at(moves[end].1);
         if let Some(weave) = &self.weave {
@@ -425,7 +425,7 @@ fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<(usize, Opt
     out
 }
 
-/// A point as programs have it.
+/// A point as programs write it.
 fn rounded(p: DVec3) -> DVec3 {
     DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM))
 }

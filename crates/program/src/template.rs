@@ -8,7 +8,7 @@ fn parts(template: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
     })
 }
 
-/// Replaces every placeholder by its value; one without a value becomes nothing (profiles are checked for that).
+/// Replaces every placeholder with its value; one without a value becomes nothing (profiles are checked for that).
 pub fn expand(template: &str, values: &[(&str, String)]) -> String {
     let value = |name: &str| values.iter().find(|(known, _)| *known == name).map(|(_, v)| v.as_str());
     parts(template).fold(String::new(), |mut line, (text, name)| {

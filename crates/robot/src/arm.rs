@@ -41,7 +41,7 @@ impl Branch {
     /// How many there are.
     pub const COUNT: usize = 8;
 
-    /// The branch of that number.
+    /// The branch with this number.
     pub fn new(index: usize) -> Self {
         Self((index % Self::COUNT) as u8)
     }
@@ -100,7 +100,7 @@ pub(crate) trait Model: std::fmt::Debug + Send + Sync {
     fn inverse(&self, base_from_flange: &Frame) -> Vec<Joints>;
     /// Foot, axis 2, axis 3 and wrist, mm from the foot.
     fn links(&self, joints: &Joints) -> [DVec3; 4];
-    /// The branch in which the arm stands.
+    /// The branch that the arm is in.
     fn branch(&self, joints: &Joints) -> Branch;
     /// How far the wrist and the elbow are from their singular angles, °.
     fn singular_margins(&self, joints: &Joints) -> [f64; 2];

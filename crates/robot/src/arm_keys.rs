@@ -9,7 +9,7 @@ use bead_part::text::toml::line_of_key;
 use serde::Deserialize;
 use std::sync::Arc;
 
-/// The keys of `[arm]` as they stand in a cell.
+/// The keys of `[arm]` as they are written in a cell.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ArmKeys {
@@ -127,7 +127,7 @@ fn chain(rows: &[[f64; 3]; 6]) -> Result<Chain, Wrong> {
     let far = |[a, d, alpha]: &[f64; 3]| [a, d].into_iter().any(|v| !(-5e3..=5e3).contains(v)) || !alpha.is_finite();
     if let Some(row) = rows.iter().position(far) {
         let reason =
-            format!("row {}: a and d must lie between -5000 and 5000 mm, and alpha be an angle in °.", row + 1);
+            format!("row {}: a and d must lie between -5000 and 5000 mm, and alpha must be an angle in °.", row + 1);
         return Err(Wrong::Rows(reason));
     }
     Chain::from_dh(rows).map_err(|e| Wrong::Rows(format!("{e}.")))

@@ -62,7 +62,7 @@ impl Solid {
 /// A line with a thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
-    /// What it stands for.
+    /// What it represents.
     pub solid: Solid,
     /// Its two ends, mm.
     pub ends: [DVec3; 2],

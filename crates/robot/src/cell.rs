@@ -29,13 +29,13 @@ pub const BUILT_IN: [(&str, &str); 8] = [
 pub struct Cell<A = ArmTable> {
     /// Name.
     pub name: String,
-    /// One line for people.
+    /// One line of description.
     pub description: String,
     /// The robot.
     pub arm: A,
     /// Tool frame on the flange.
     pub torch: Torch,
-    /// Frame of the part in the robot's; on a turn table, while that stands at 0°.
+    /// Frame of the part in the robot's; on a turn table, with the table at 0°.
     pub part: PartPlace,
     /// Linear axis on which the robot stands; optional.
     #[serde(default)]
@@ -43,10 +43,10 @@ pub struct Cell<A = ArmTable> {
     /// Turn table that carries the part; optional.
     #[serde(default)]
     pub table: Option<Table>,
-    /// Where programs begin and end; optional, without it the ways from and to home are not looked at.
+    /// Where programs begin and end; optional, without it the moves from and to home are not checked.
     #[serde(default)]
     pub home: Option<Home>,
-    /// How thick the arm is, and how large the table; optional, without it no collision is looked for.
+    /// How thick the arm is, and how large the table; optional, without it no collisions are checked.
     #[serde(default)]
     pub body: Option<Body>,
 }
@@ -75,9 +75,9 @@ pub struct PartPlace {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinearAxis {
-    /// The way of the robot's foot as the axis shows more, in the robot's own x, y and z; of any length.
+    /// The direction in which the robot's foot moves as the axis value grows, in the robot's own x, y and z; of any length.
     pub direction: [f64; 3],
-    /// Least and greatest position, mm. What the cell tells of part and table holds where the axis shows 0.
+    /// Least and greatest position, mm. What the cell says of part and table holds with the axis at 0.
     pub limits: [f64; 2],
 }
 
@@ -85,7 +85,7 @@ pub struct LinearAxis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Where its axis stands, seen from the foot of the robot: x and y, mm.
+    /// Where its axis is, seen from the foot of the robot: x and y, mm.
     pub axis: [f64; 2],
     /// 1 where its positive direction is counter-clockwise seen from above, −1 where not.
     pub direction: i8,
@@ -113,7 +113,7 @@ impl Cell {
             name: name.to_owned(),
             hint: match nearest(name, known) {
                 Some(near) => format!("Did you mean \"{near}\"?"),
-                None => format!("Known: {}. A path to a TOML file is taken too.", known.join(", ")),
+                None => format!("Known: {}. A path to a TOML file is accepted too.", known.join(", ")),
             },
         })
     }
@@ -200,7 +200,7 @@ impl Cell {
         }
         if let Some(axis) = &self.linear_axis {
             if axis.direction == [0.0; 3] {
-                let reason = "it must point somewhere.".to_owned();
+                let reason = "it must not be zero.".to_owned();
                 return Some(("linear_axis.direction", format!("{:?}", axis.direction), reason));
             }
             if axis.limits[0] >= axis.limits[1] {
@@ -225,7 +225,7 @@ impl PartPlace {
         Frame { position: DVec3::from(self.position), rotation: DQuat::from_rotation_z(self.rotation.to_radians()) }
     }
 
-    /// The place of the part when the table under it stands at that angle, °.
+    /// The place of the part when the table under it is at that angle, °.
     pub fn turned_about(&self, table: &Table, angle: f64) -> Self {
         let turn = f64::from(table.direction) * angle;
         let axis = DVec3::new(table.axis[0], table.axis[1], 0.0);

@@ -1,14 +1,14 @@
-//! External axes that stand still during the program: for each the one value that gives the robot the most margin.
+//! External axes that do not move during the program: for each the one value that gives the robot the most margin.
 
 use crate::cell::{Cell, PartPlace};
 use crate::linear_axis::{Station, station};
 use crate::table::{TableAngle, turn_table};
 use crate::track::Track;
 
-/// A cell with its external axes where they stand for a program.
+/// A cell with its external axes at their values for a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct External {
-    /// The cell as the robot sees it from there.
+    /// The cell as the robot then sees it.
     pub cell: Cell,
     /// Where the part lies, seen from the robot's foot.
     pub place: PartPlace,
@@ -18,7 +18,7 @@ pub struct External {
     pub table: Option<TableAngle>,
 }
 
-/// Where the external axes of a cell stand best for a part that lies at `place` while they show 0: first the linear axis
+/// The best values of a cell's external axes for a part that lies at `place` while they are at 0: first the linear axis
 /// under the robot, then the table.
 pub fn external_axes(cell: &Cell, place: PartPlace, track: &Track) -> External {
     let station = station(cell, place, track);

@@ -54,7 +54,7 @@ pub enum Trouble {
         /// Angle that was judged, °.
         judged: f64,
     },
-    /// Two solids are in each other, as capsules.
+    /// Two solids, as capsules, overlap.
     Collision {
         /// What is hit, and by what.
         solids: [Solid; 2],
@@ -103,7 +103,7 @@ impl Trouble {
 /// All troubles of one kind and joint on one leg of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReachFinding {
-    /// The first stop that has it.
+    /// The first stop where it occurs.
     pub stop: Stop,
     /// What is wrong there.
     pub trouble: Trouble,
@@ -135,20 +135,20 @@ impl ReachFinding {
         let more = self.more();
         match self.trouble {
             Trouble::OutOfReach { beyond, reach } if beyond > 0.0 => format!(
-                "{place}: out of reach; the wrist misses the place by {beyond:.0} mm (the arm is {reach:.0} mm long from \
+                "{place}: out of reach; the wrist misses the target by {beyond:.0} mm (the arm is {reach:.0} mm long from \
                  axis 2 to the wrist){more}. Move the part nearer to the robot."
             ),
             Trouble::OutOfReach { .. } => format!(
-                "{place}: out of reach; the arm cannot get there without changing over to another posture{more}. Move the \
+                "{place}: out of reach; the arm cannot get there without changing to another posture{more}. Move the \
                  part."
             ),
             Trouble::Limit { joint, angle, low, high } => format!(
-                "{place}: joint {} would have to stand at {angle:.1}°, its limits are {low:.0}° and {high:.0}°{more}. \
+                "{place}: joint {} would have to be at {angle:.1}°, but its limits are {low:.0}° and {high:.0}°{more}. \
                  Move or turn the part.",
                 joint + 1
             ),
             Trouble::Speed { joint, speed, limit, arc } => format!(
-                "{place}: joint {} would have to turn at {speed:.0} °/s, it can do {limit:.0} °/s{more}. {}",
+                "{place}: joint {} would have to turn at {speed:.0} °/s, but it can do only {limit:.0} °/s{more}. {}",
                 joint + 1,
                 if arc {
                     "The robot would slow down and the bead swell: move the part, or weld more slowly there."
@@ -158,16 +158,16 @@ impl ReachFinding {
             ),
             Trouble::Wrist { margin } if self.stop.leg != Leg::Part => format!(
                 "{place}: joint 5 is {margin:.1}° from the singularity of the wrist on a straight move{more}; joints 4 and 6 may \
-                 swing round. Go this way by a joint move (PTP, MoveJ), or take a home position with joint 5 bent."
+                 swing round. Make this a joint move (PTP, MoveJ), or choose a home position with joint 5 bent."
             ),
             Trouble::Posture { joint, angle, judged } => format!(
-                "{place}: the straight move leads joint {} to {angle:.1}°, but the program was judged with {judged:.1}°{more}. Go \
-                 this way by a joint move (PTP, MoveJ), or take a home position nearer to that posture.",
+                "{place}: the straight move leads joint {} to {angle:.1}°, but the program was judged with {judged:.1}°{more}. \
+                 Make this a joint move (PTP, MoveJ), or choose a home position nearer to that posture.",
                 joint + 1
             ),
             Trouble::Collision { solids: [a, b], depth } => format!(
-                "{place}: {} hits {}, by {depth:.0} mm as the cell's capsules have it{more}. Move or turn the part, bend the \
-                 torch in another way, or correct [body] of the cell.",
+                "{place}: {} hits {}, by {depth:.0} mm according to the cell's capsules{more}. Move or turn the part, bend the \
+                 torch differently, or correct [body] of the cell.",
                 a.name(),
                 b.name()
             ),
@@ -231,7 +231,7 @@ fn place(stop: &Stop) -> String {
     )
 }
 
-/// Troubles gathered on the way.
+/// Troubles gathered along the path.
 #[derive(Debug, Default)]
 pub(crate) struct Findings(BTreeMap<(u8, usize, Leg), ReachFinding>);
 

@@ -1,4 +1,4 @@
-//! The way from home to the first point of a program, and from its last point back.
+//! The move from home to the first point of a program, and from its last point back.
 
 use crate::arm::{Arm, Frame, Joints, turned_near};
 use crate::track::{PIECE_MM, Stop};
@@ -29,7 +29,7 @@ const JOINT_STEP: f64 = 2.0;
 /// The torch turns no farther than this between two stops of a straight move, °.
 const TURN_STEP: f64 = 2.0;
 
-/// What a way leads through.
+/// What a move passes through.
 pub(crate) struct Move<'a> {
     pub(crate) arm: &'a Arm,
     pub(crate) flange_from_tool: &'a Frame,
@@ -40,8 +40,8 @@ pub(crate) struct Move<'a> {
 }
 
 impl Move<'_> {
-    /// Stops on the way, both ends included, with the angles of the joints and the frame of the flange; `None` where the
-    /// arm cannot get there. They are told as `like` is.
+    /// Stops along the move, both ends included, with the angles of the joints and the frame of the flange; `None` where the
+    /// arm cannot get there. They are labelled as `like` is.
     pub(crate) fn stops(&self, from: Joints, to: Joints, like: Stop) -> Vec<(Stop, Option<Joints>, Frame)> {
         match self.by {
             Way::Joint => self.joint(from, to, like),
@@ -88,14 +88,14 @@ impl Move<'_> {
     }
 }
 
-/// The way to put the flange there that needs the smallest turns.
+/// The joint angles that put the flange there with the smallest turns.
 fn nearest(arm: &Arm, base_from_flange: &Frame, before: &Joints) -> Option<Joints> {
     let near = |(_, joints): (_, Joints)| -> Joints { std::array::from_fn(|j| turned_near(joints[j], before[j])) };
     let turn = |joints: &Joints| (0..6).map(|j| (joints[j] - before[j]).abs()).fold(0.0, f64::max);
     arm.inverse(base_from_flange).into_iter().map(near).min_by(|a, b| turn(a).total_cmp(&turn(b)))
 }
 
-/// How many steps; no move needs more.
+/// The number of steps; no move needs more.
 fn count(whole: f64, step: f64) -> usize {
     (whole / step).ceil().clamp(1.0, 1e4) as usize
 }

@@ -3,19 +3,19 @@
 //! A [`Cell`] is an [`Arm`] (six lengths, a [`Chain`], or a chain from a [URDF](urdf) file) with its torch and the place of the part. [`Track`] turns a plan into the path of the
 //! torch, travels included; [`reach`] walks it with the torch straight down:
 //!
-//! 1. at stations along the path, the margins of all torch angles are computed (`turn.rs`): the torch may stand at any
+//! 1. at stations along the path, the margins of all torch angles are computed (`turn.rs`): the torch may be at any
 //!    angle about its own axis, and that freedom keeps joints away from limits;
 //! 2. dynamic programming picks one branch of the arm for the whole program and, of all courses of the torch angle with
 //!    the greatest least margin, the one that turns least;
 //! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`); before and
-//!    after it the ways from and to home (`home.rs`), where the cell has one;
+//!    after it the moves from and to home (`home.rs`), where the cell has one;
 //! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and with the metal
-//!    laid so far (`room.rs`), where the cell tells how thick they are.
+//!    laid so far (`room.rs`), where the cell says how thick they are.
 //!
 //! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`external_axes`]
 //! for the place of the robot on a linear axis and for the angle of a table under the part.
 //!
-//! Not checked: cables, fixtures and anything else beside the table, and the load's dynamics.
+//! Not checked: cables, fixtures and anything else besides the table, and the dynamics of the load.
 
 pub mod arm;
 mod arm_keys;
@@ -57,7 +57,7 @@ pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;
 
-/// The tool frame when the torch stands straight down over a point of the part, turned by `angle` (°) about its own
+/// The tool frame when the torch points straight down over a point of the part, turned by `angle` (°) about its own
 /// axis; at 0 its x axis is the part's.
 pub fn part_from_tool(at: glam::DVec3, angle: f64) -> Frame {
     let rotation = DQuat::from_rotation_z(angle.to_radians()) * DQuat::from_rotation_x(std::f64::consts::PI);

@@ -1,7 +1,7 @@
 //! A linear axis under the robot (track, carriage): the one place on it, for the whole program, that gives the robot the most
 //! margin.
 //!
-//! The controller counts the axis into its kinematics, so the positions in the program stay as they are.
+//! The controller includes the axis in its kinematics, so the positions in the program stay as they are.
 
 use crate::cell::{Cell, LinearAxis, PartPlace};
 use crate::suggest::best;
@@ -9,10 +9,10 @@ use crate::track::Track;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Most places that are tried …
+/// The greatest number of places that are tried …
 const MOST: f64 = 200.0;
 
-/// … at least so far apart, mm.
+/// … at least this far apart, mm.
 const STEP: f64 = 50.0;
 
 /// A robot at one place of its linear axis.
@@ -43,7 +43,7 @@ impl Station {
 }
 
 impl LinearAxis {
-    /// How far the robot's foot has moved where the axis shows a position, mm.
+    /// How far the robot's foot has moved when the axis shows `position`, mm.
     fn way(&self, position: f64) -> DVec3 {
         position * DVec3::from(self.direction).normalize_or_zero()
     }
@@ -55,7 +55,7 @@ impl LinearAxis {
 }
 
 /// The best place of the robot on its linear axis for a part that lies at `place` while the axis shows 0; `None` without such
-/// an axis, or where all points are within reach from no place.
+/// an axis, or where no place has all points within reach.
 pub(crate) fn station(cell: &Cell, place: PartPlace, track: &Track) -> Option<Station> {
     let axis = cell.linear_axis.as_ref()?;
     let [low, high] = axis.limits;

@@ -49,7 +49,7 @@ impl std::fmt::Debug for Opw {
     }
 }
 
-/// What joint 3 of a parallelogram shows, so that it is the forearm's angle to the floor, per degree of joint 2.
+/// What joint 3 of a parallelogram arm shows per degree of joint 2, so that it is the forearm's angle to the floor.
 fn coupling(signs: [i8; 6]) -> f64 {
     f64::from(signs[1] * signs[2])
 }

@@ -1,7 +1,7 @@
-//! Arm and torch among the table and the metal that stands on it: who comes too near to whom.
+//! Arm and torch among the table and the metal on it: what comes too near to what.
 //!
-//! Capsules are coarse, and their radii are the cell's: a finding tells where to look, a silent walk proves nothing about
-//! cables, wire feeders and fixtures.
+//! Capsules are coarse, and their radii are the cell's: a finding says where to look; a walk without findings proves nothing
+//! about cables, wire feeders and fixtures.
 
 use crate::arm::{Arm, Frame, Joints};
 use crate::body::{Body, Capsule, Solid, capsules};
@@ -13,11 +13,11 @@ use std::collections::HashMap;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Contact {
     pub(crate) solids: [Solid; 2],
-    /// How deep they would be in each other, mm.
+    /// How deep they would overlap, mm.
     pub(crate) depth: f64,
 }
 
-/// Cells in which the standing metal is kept, mm.
+/// Size of the cells in which the metal is recorded, mm.
 const CELL_MM: f64 = 10.0;
 /// Capsules are compared with table and part at places this far apart, mm.
 const STEP_MM: f64 = 10.0;
@@ -35,7 +35,7 @@ pub(crate) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
-    /// A room without metal; none where the cell tells no body.
+    /// A room without metal; none where the cell has no body.
     pub(crate) fn new(cell: &'a Cell, arm: &'a Arm, base_from_part: &Frame) -> Option<Self> {
         let body = cell.body.as_ref()?;
         Some(Self {
@@ -58,7 +58,7 @@ impl<'a> Room<'a> {
         (self.low, self.high) = (self.low.min(from.min(to)), self.high.max(from.max(to)));
     }
 
-    /// The deepest contact of each pair of solids, with a table turned like this.
+    /// The deepest contact of each pair of solids, with the table turned like this.
     pub(crate) fn contacts(&self, joints: &Joints, turned_table: &Frame) -> Vec<Contact> {
         let part_from_base = turned_table.inverse().then(&self.part_from_base);
         let capsules = capsules(self.arm, self.body, &self.flange_from_tool, joints, &part_from_base);
@@ -77,7 +77,7 @@ impl<'a> Room<'a> {
                     note([a.solid, b.solid], between(a.ends, b.ends) - a.radius - b.radius);
                 }
             }
-            // The base stands on the floor beside the table, and does not move.
+            // The base stands on the floor next to the table, and does not move.
             if a.solid != Solid::Base {
                 note([a.solid, Solid::Table], self.above_table(a));
                 note([a.solid, Solid::Part], self.above_part(a));
@@ -86,7 +86,7 @@ impl<'a> Room<'a> {
         found
     }
 
-    /// How far a capsule stays from the table, mm; below 0 where it is in it.
+    /// How far a capsule is from the table, mm; below 0 where it is inside.
     fn above_table(&self, capsule: &Capsule) -> f64 {
         let [x, y] = self.body.table;
         let half = DVec2::new(x, y) / 2.0;
@@ -97,7 +97,7 @@ impl<'a> Room<'a> {
         places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
     }
 
-    /// How far a capsule stays from the metal that stands, mm.
+    /// How far a capsule is from the metal laid so far, mm.
     fn above_part(&self, capsule: &Capsule) -> f64 {
         let reach = (capsule.radius / CELL_MM).ceil() as i64 + 1;
         let gap = |place: DVec3| {
@@ -134,7 +134,7 @@ fn cell_of(place: DVec3) -> [i64; 2] {
     (place.truncate() / CELL_MM).floor().as_i64vec2().to_array()
 }
 
-/// Places on a straight way, ends included.
+/// Places on a straight line, ends included.
 fn places(from: DVec3, to: DVec3) -> Vec<DVec3> {
     // No arm or part needs more.
     let steps = (from.distance(to) / STEP_MM).ceil().clamp(1.0, 1e4) as usize;

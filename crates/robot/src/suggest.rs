@@ -19,9 +19,9 @@ const DIRECTIONS: usize = 8;
 const COARSE: usize = 12;
 /// Number of torch angles tried after that: those of the walk.
 const FINE: usize = crate::turn::ANGLES;
-/// Least gain in margin that is worth moving a part, °.
+/// Least gain in margin that makes moving a part worthwhile, °.
 pub(crate) const WORTH_MOVING: f64 = 5.0;
-/// What a part is moved, mm, or turned, °, must gain a degree of margin: of places alike the nearest one is taken.
+/// A move of this many mm, or a turn of this many °, must gain a degree of margin: of equal places the nearest is taken.
 const MM_PER_DEGREE: f64 = 100.0;
 const TURN_PER_DEGREE: f64 = 45.0;
 /// Steps of the refinement, mm and °; the last ones are the resolution of the answer.
@@ -36,7 +36,7 @@ pub struct Suggestion {
     pub margin: f64,
     /// The torch angle that gives it, °.
     pub torch_angle: f64,
-    /// Least margin of these points where the part lies now, °; none where some are out of reach.
+    /// Least margin of these points with the part where it is now, °; none where some are out of reach.
     pub now: Option<f64>,
 }
 
@@ -46,15 +46,15 @@ impl Suggestion {
         let Self { place, margin, torch_angle, now } = self;
         if let Some(now) = now.filter(|now| margin - now < WORTH_MOVING) {
             return format!(
-                "The part lies well: its outermost points keep {now:.1}° from all limits and singularities with the torch at \
-                 one angle; the best place found, {}, would give {margin:.1}°.",
+                "The part is well placed: its outermost points keep {now:.1}° from all limits and singularities with the torch \
+                 at one angle; the best place found, {}, would give {margin:.1}°.",
                 place.sentence()
             );
         }
         let now = now.map_or("some are out of reach now".to_owned(), |now| format!("it is {now:.1}° now"));
         format!(
             "Put the part's origin at {}: its outermost points then keep {margin:.1}° from all limits and singularities with \
-             the torch at {torch_angle:.0}° ({now}). Make sure that arm and torch have room there.",
+             the torch at {torch_angle:.0}° ({now}). Make sure that the arm and the torch have room there.",
             place.sentence()
         )
     }
@@ -86,7 +86,7 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     Some(Suggestion { now: here.map(|s| s.margin), ..best })
 }
 
-/// The margin of a place, less what it takes to bring the part there, °.
+/// The margin of a place, less the cost of bringing the part there, °.
 fn worth(found: &Suggestion, start: PartPlace) -> f64 {
     let moved = DVec3::from(found.place.position).distance(DVec3::from(start.position));
     let turned = turned_near(found.place.rotation - start.rotation, 0.0).abs();
@@ -195,7 +195,7 @@ pub(crate) fn outermost(track: &Track) -> Vec<DVec3> {
 
 /// The best of some values for an axis that brings the part to a place, its margin (°), and that of the value 0, `None` where
 /// some points are out of reach there. They are judged by the outermost points of a few layers. 0 is kept unless another
-/// value gains enough, and the smallest wins among equals. `None` where no value brings all points within reach.
+/// value gains enough, and the smallest of equals wins. `None` where no value brings all points within reach.
 pub(crate) fn best(
     cell: &Cell,
     track: &Track,

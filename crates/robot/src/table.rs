@@ -24,8 +24,8 @@ pub struct TableAngle {
     pub unturned: Option<f64>,
 }
 
-/// The best angle of the cell's table for a part that lies at `place` while the table stands at 0°; `None` without a
-/// table, or where no angle brings all points within reach. Turning the table must gain enough to be worth it.
+/// The best angle of the cell's table for a part that lies at `place` while the table is at 0°; `None` without a
+/// table, or where no angle brings all points within reach. Turning the table must gain enough to be worthwhile.
 pub fn turn_table(cell: &Cell, place: PartPlace, track: &Track) -> Option<TableAngle> {
     let table = cell.table.as_ref()?;
     let [low, high] = table.limits;

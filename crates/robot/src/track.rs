@@ -15,9 +15,9 @@ pub const PIECE_MM: f64 = 20.0;
 pub struct Stop {
     /// Layer, from 0.
     pub layer: usize,
-    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to, the way up to the pass that it leaves.
+    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to, the move up to the pass that it leaves.
     pub pass: usize,
-    /// Point of the pass as the program has it, from 0; on the way to a point, that point.
+    /// Point of the pass as in the program, from 0; on the way to a point, that point.
     pub point: usize,
     /// Tool point in the part's space, mm.
     pub at: DVec3,
@@ -25,23 +25,23 @@ pub struct Stop {
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
-    /// How torch and table stand there.
+    /// The attitude of torch and table there.
     #[serde(skip)]
     pub attitude: Attitude,
-    /// Whether it lies on the part, or on the way from or to home.
+    /// Whether it lies on the part, or on the move from or to home.
     pub leg: Leg,
 }
 
 impl Stop {
     /// The tool here, turned by `angle` (°) about the torch's axis, in the part's space as it lies while a table that turns
-    /// during the program stands at 0.
+    /// during the program is at 0.
     pub fn tool(&self, angle: f64) -> Frame {
         let upright = part_from_tool(self.at, angle);
         let leaning = Frame { rotation: self.attitude.rotation() * upright.rotation, ..upright };
         self.turned_table().then(&leaning)
     }
 
-    /// Where the part lies while the table stands as it does here.
+    /// Where the part lies with the table as it is here.
     pub fn turned_table(&self) -> Frame {
         let angle = self.attitude.table.unwrap_or(0.0).to_radians();
         Frame { position: DVec3::ZERO, rotation: DQuat::from_rotation_z(angle) }

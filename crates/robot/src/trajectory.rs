@@ -10,10 +10,10 @@ use crate::{Joints, Stop};
 use bead_program::number::push_fixed;
 use serde_json::{Value, json};
 
-/// Points follow each other by no less, s: ROS takes no two points at one time.
+/// Points are at least this far apart in time, s: ROS accepts no two points at the same time.
 const SHORTEST_S: f64 = 1e-6;
 
-/// The way of the joints.
+/// The path of the joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// The cell.
@@ -22,7 +22,7 @@ pub struct Trajectory {
     pub points: Vec<Point>,
 }
 
-/// A point of the way.
+/// A point of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Time since the first point, s.
@@ -39,7 +39,7 @@ const HEAD: &str =
     "time (s),layer,pass,arc,x (mm),y (mm),z (mm),torch angle (°),J1 (°),J2 (°),J3 (°),J4 (°),J5 (°),J6 (°)\n";
 
 impl Trajectory {
-    /// The way of the joints in a cell; `None` where a stop is out of reach.
+    /// The path of the joints in a cell; `None` where a stop is out of reach.
     pub fn of(cell: &Cell, reach: &Reach) -> Option<Self> {
         let (mut points, mut now): (Vec<Point>, f64) = (Vec::with_capacity(reach.poses.len()), 0.0);
         for (stop, pose) in &reach.poses {

@@ -25,10 +25,10 @@ const SAME: f32 = 1e-2;
 /// What a station beyond a limit costs, in turns.
 const BAD: u64 = 1 << 12;
 
-/// So many stations have margins of their own; where there are more, neighbours that stand alike share theirs.
+/// Up to this many stations have margins of their own; where there are more, neighbours with like attitudes share theirs.
 const EXACT: usize = 10_000;
 /// Stations no farther apart than about this share their margins, mm: those of arms of 1 to 2 m differ by 0.1° on average, and
-/// by a few degrees only beside a singularity. The walk along the chosen course computes every stop by itself.
+/// by a few degrees only near a singularity. The walk along the chosen course computes every stop by itself.
 const SHARED_MM: f64 = 5.0;
 /// And those whose tools are turned by less than about this, as the sine of half the angle: 0.3°.
 const SHARED_TURN: f64 = 0.0025;
@@ -69,7 +69,7 @@ pub(crate) fn course(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame
     } else if least[greatest] >= 0.0 {
         (greatest, steps(greatest).fewest_turns(least[greatest] - SAME).1)
     } else {
-        // No branch reaches every station: the one that reaches most.
+        // No branch reaches every station: the one that reaches the most.
         let tried = (0..Branch::COUNT).map(|b| (b, steps(b).fewest_turns(0.0)));
         tried.min_by_key(|(b, (cost, _))| (*cost, *b)).map_or((0, Vec::new()), |(b, (_, path))| (b, path))
     };
@@ -132,7 +132,7 @@ impl Rows {
     }
 }
 
-/// The first station of each group of neighbours that stand alike, and the group of each station.
+/// The first station of each group of neighbours with like attitudes, and the group of each station.
 fn neighbours(stops: &[Stop], stations: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let (mut first, mut groups) = (Vec::new(), HashMap::new());
     let mut group = |&station: &usize| {
@@ -279,7 +279,7 @@ mod tests {
         (0..500).flat_map(ring).collect()
     }
 
-    /// Margins that neighbours share are those that each has for itself, within what the constants promise.
+    /// Margins that neighbours share equal those that each has of its own, within what the constants promise.
     #[test]
     fn shared_margins_are_near_ones_own() -> Result<(), Box<dyn std::error::Error>> {
         let stops = vase();

@@ -11,13 +11,13 @@ use std::sync::Arc;
 const MM_PER_M: f64 = 1e3;
 /// A joint that turns without end gets these limits, °.
 const ENDLESS: f64 = 7200.0;
-/// Elements, attributes and texts of a file; meshes are not in it.
+/// Maximum number of elements, attributes and texts of a file; meshes are not in it.
 const MOST_NODES: u32 = 200_000;
 /// Joints between two links.
 const MOST_JOINTS: usize = 100;
-/// No origin lies farther from the one before it, m.
+/// No origin lies farther than this from the one before it, m.
 const FARTHEST_M: f64 = 100.0;
-/// The link that ROS-Industrial puts on the flange as the maker has it, z outwards (REP 199).
+/// The link that ROS-Industrial puts on the flange as its maker defines it, z outwards (REP 199).
 const MAKERS_FLANGE: &str = "tool0";
 
 /// Why a URDF file was refused.
@@ -27,7 +27,7 @@ pub enum UrdfError {
     #[error("it is not a URDF file: {0}.")]
     Text(String),
     /// A template that has to be expanded first.
-    #[error("it is a xacro template. Make a URDF file of it: xacro robot.urdf.xacro > robot.urdf")]
+    #[error("it is a xacro template. Make a URDF file from it: xacro robot.urdf.xacro > robot.urdf")]
     Xacro,
     /// A joint lacks something, or has something impossible.
     #[error("line {line}, joint \"{joint}\": {reason}.")]
@@ -42,21 +42,21 @@ pub enum UrdfError {
     /// The joints do not form one arm of six.
     #[error("{0}.")]
     Tree(String),
-    /// The axes lie so that no closed form fits.
+    /// The axes are arranged so that no closed form fits.
     #[error("{0}.")]
     Axes(#[from] ChainError),
 }
 
-/// The links between which the arm lies; without them they are found.
+/// The links between which the arm lies; where not given they are found.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ends {
-    /// The foot; otherwise the link that hangs on no other.
+    /// The foot; otherwise the link that has no parent.
     pub base: Option<String>,
-    /// The flange; otherwise `tool0`, or the only link that carries no other.
+    /// The flange; otherwise `tool0`, or the only link without a child.
     pub tip: Option<String>,
 }
 
-/// A joint as it stands in the file.
+/// A joint as it is written in the file.
 #[derive(Clone)]
 struct Joint<'a> {
     node: Node<'a, 'a>,
@@ -99,7 +99,7 @@ fn joint<'a>(node: Node<'a, 'a>) -> Result<Joint<'a>, UrdfError> {
 fn way<'a>(joints: &[Joint<'a>], ends: &Ends) -> Result<Vec<Joint<'a>>, UrdfError> {
     let known = |link: &str| joints.iter().any(|j| j.parent == link || j.child == link);
     if let Some(link) = [&ends.base, &ends.tip].into_iter().flatten().find(|link| !known(link)) {
-        return Err(UrdfError::Tree(format!("no joint holds the link \"{link}\"")));
+        return Err(UrdfError::Tree(format!("no joint connects the link \"{link}\"")));
     }
     let mut link = match &ends.tip {
         Some(tip) => tip,
@@ -110,19 +110,19 @@ fn way<'a>(joints: &[Joint<'a>], ends: &Ends) -> Result<Vec<Joint<'a>>, UrdfErro
     while ends.base.as_deref() != Some(link) {
         let Some(joint) = joints.iter().find(|j| j.child == link) else { break };
         if way.len() == MOST_JOINTS {
-            return Err(UrdfError::Tree(format!("the joints run in a circle, or there are more than {MOST_JOINTS}")));
+            return Err(UrdfError::Tree(format!("the joints form a loop, or there are more than {MOST_JOINTS}")));
         }
         way.push(joint.clone());
         link = joint.parent;
     }
     if let Some(base) = ends.base.as_deref().filter(|base| *base != link) {
-        return Err(UrdfError::Tree(format!("the flange does not hang on the link \"{base}\"")));
+        return Err(UrdfError::Tree(format!("the flange is not connected to the link \"{base}\"")));
     }
     way.reverse();
     Ok(way)
 }
 
-/// The only link that carries no other.
+/// The only link without a child.
 fn last_link<'a>(joints: &[Joint<'a>]) -> Result<&'a str, UrdfError> {
     let carries = |link: &str| joints.iter().any(|j| j.parent == link);
     let last: Vec<&str> = joints.iter().map(|j| j.child).filter(|link| !carries(link)).collect();
@@ -130,13 +130,13 @@ fn last_link<'a>(joints: &[Joint<'a>]) -> Result<&'a str, UrdfError> {
         [link] => Ok(link),
         [] => Err(UrdfError::Tree("it has no joints that end at a flange".to_owned())),
         _ => Err(UrdfError::Tree(format!(
-            "several links carry no other: {}. Name the flange as arm.tip in a cell",
+            "several links have no link after them: {}. Name the flange as arm.tip in a cell",
             last.join(", ")
         ))),
     }
 }
 
-/// The arm of the joints on the way; fixed ones are added to the next.
+/// The arm of the joints in the chain; fixed ones are added to the next.
 fn arm(way: &[Joint<'_>]) -> Result<ArmTable, UrdfError> {
     let still = Frame { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
     let (mut before, mut turning) = (still, Vec::new());
@@ -151,7 +151,7 @@ fn arm(way: &[Joint<'_>]) -> Result<ArmTable, UrdfError> {
     let turning: [_; 6] = turning.try_into().map_err(|_| {
         let names: Vec<&str> = way.iter().filter(|j| j.kind != "fixed").map(|j| j.name).collect();
         let told = if count == 0 { "none".to_owned() } else { format!("{count}: {}", names.join(", ")) };
-        UrdfError::Tree(format!("six turning joints are needed from foot to flange, here are {told}"))
+        UrdfError::Tree(format!("six turning joints are needed from foot to flange, but there are {told}"))
     })?;
     let chain = Chain::new(&turning.map(|(frame, axis, _)| (frame, axis)), &before)?;
     let speeds = turning.map(|(_, _, (_, speed))| speed);
@@ -172,7 +172,7 @@ fn origin(joint: &Joint<'_>) -> Result<Frame, UrdfError> {
     Ok(Frame { position: position * MM_PER_M, rotation })
 }
 
-/// The direction of the axis, x where the file tells none.
+/// The direction of the axis, x where the file gives none.
 fn axis(joint: &Joint<'_>) -> Result<DVec3, UrdfError> {
     let Some(text) = child(joint.node, "axis").and_then(|node| node.attribute("xyz")) else { return Ok(DVec3::X) };
     let axis = three(joint, "xyz", text)?.try_normalize();
@@ -191,7 +191,7 @@ fn limits(joint: &Joint<'_>) -> Result<([f64; 2], f64), UrdfError> {
     let value = |name: &str| {
         let value = child(*node, "limit").and_then(|limit| limit.attribute(name)).and_then(number);
         let value = value.filter(|v| v.to_degrees().abs() <= 1e5).map(f64::to_degrees);
-        value.ok_or_else(|| wrong(*node, format!("<limit {name}=\"…\"/> is missing or no number")))
+        value.ok_or_else(|| wrong(*node, format!("<limit {name}=\"…\"/> is missing or not a number")))
     };
     let speed = value("velocity")?;
     if speed <= 0.0 {

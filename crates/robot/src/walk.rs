@@ -12,7 +12,7 @@ use serde::Serialize;
 
 /// A finding is reported where joint 5 is closer than this to its singular angle, °: |sin J5| = 0.087.
 pub(crate) const WRIST_MARGIN: f64 = 5.0;
-/// Joint angles that differ by less belong to one posture, °.
+/// Joint angles that differ by less than this belong to one posture, °.
 const SAME_POSTURE: f64 = 1.0;
 
 /// The arm at one stop.
@@ -40,7 +40,7 @@ pub struct Turning {
 }
 
 impl Turning {
-    /// The torch angle to plan with, `program.torch_angle`, -180 to 180°; none where no single angle reaches all.
+    /// The torch angle to plan with, `program.torch_angle`, -180 to 180°; none where no single angle reaches every point.
     pub fn program_angle(&self) -> Option<f64> {
         (self.single_margin >= 0.0).then(|| turned_near(self.single, 0.0))
     }
@@ -63,7 +63,7 @@ pub struct Reach {
     pub computed: usize,
 }
 
-/// Walks a track with the part at a place of the cell, from home and back to it.
+/// Walks a track with the part at a place of the cell, from home and back.
 pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let arm = cell.arm();
     let (base_from_part, tool_from_flange) = (place.base_from_part(), cell.flange_from_tool().inverse());
@@ -113,13 +113,13 @@ fn solve(arm: &Arm, base_from_flange: &Frame, branch: Branch) -> Option<Joints> 
 struct Walk<'a> {
     arm: &'a Arm,
     before: Option<Joints>,
-    /// What takes up room; none where the cell does not tell.
+    /// What takes up room; none where the cell does not say.
     room: Option<Room<'a>>,
     findings: Findings,
 }
 
 impl Walk<'_> {
-    /// Goes between home and an end of the program.
+    /// Moves between home and an end of the program.
     fn home(&mut self, way: &Move<'_>, from: Joints, to: Joints, like: Stop) {
         self.before = None;
         for (stop, joints, flange) in way.stops(from, to, like) {
@@ -132,7 +132,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Goes to one stop.
+    /// Moves to one stop.
     fn step(
         &mut self,
         stop: &Stop,

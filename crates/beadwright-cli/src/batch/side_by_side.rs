@@ -27,14 +27,14 @@ pub(super) fn map<T: Sync, R: Send>(
     };
     let mut done: Vec<(usize, R)> = thread::scope(|scope| {
         let working: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(work))).collect();
-        // A panic goes on here.
+        // A panic continues here.
         working.into_iter().flat_map(|worker| worker.join().unwrap_or_else(|e| std::panic::resume_unwind(e))).collect()
     });
     done.sort_by_key(|(i, _)| *i);
     Ok(done.into_iter().map(|(_, result)| result).collect())
 }
 
-/// The next item that nobody has.
+/// The next item that nobody has taken.
 fn take<'a, T>(items: &'a [T], next: &AtomicUsize) -> Option<(usize, &'a T)> {
     let i = next.fetch_add(1, Ordering::Relaxed);
     items.get(i).map(|item| (i, item))

@@ -15,7 +15,7 @@ pub(crate) enum Format {
     Html,
 }
 
-/// Pages of more rows than this have no pictures of layers: browsers would take long to open them.
+/// Pages with more rows than this have no pictures of layers: browsers would take long to open them.
 const MOST_PICTURES: usize = 60;
 
 /// A file name and the format of its ending.
@@ -54,14 +54,14 @@ fn percent(value: Option<f64>) -> String {
     value.map_or(String::new(), |value| format!("{value:.2}"))
 }
 
-/// The rows, with the heads of their swept keys.
+/// The rows, with the headings of their swept keys.
 pub(super) struct Table {
     rows: Vec<Row>,
     swept: Vec<String>,
 }
 
 impl Planned {
-    /// What `metrics.json` of the same plan holds, but for notes on programs, which are not written.
+    /// What `metrics.json` of the same plan holds, except notes on programs, which are not written.
     fn metrics(&self) -> Value {
         self.summary.json(self.figures.as_ref())
     }
@@ -135,7 +135,7 @@ impl Table {
         })
     }
 
-    /// Heads of the words that tell what was planned.
+    /// Headings of the words that say what was planned.
     fn names(&self) -> Vec<String> {
         ["file", "profile", "strategy"].map(str::to_owned).into_iter().chain(self.swept.iter().cloned()).collect()
     }
@@ -152,7 +152,7 @@ impl Table {
         text
     }
 
-    /// Heads and cells as people read them.
+    /// Headings and cells as people read them.
     fn cells(&self) -> (Vec<String>, Vec<Vec<String>>) {
         let head = self.names().into_iter().chain(COLUMNS.iter().map(|column| column.name.to_owned())).collect();
         let figure = |row: &Row, column: &Column| row.planned.as_ref().map_or(String::new(), column.text);
@@ -160,7 +160,7 @@ impl Table {
         (head, self.rows.iter().map(cells).collect())
     }
 
-    /// The table with even columns; what speaks against a plan stands below it.
+    /// The table with even columns; what speaks against a plan is listed below it.
     pub(super) fn terminal(&self) -> String {
         let (head, rows) = self.cells();
         let width = |column: usize| {
@@ -193,7 +193,7 @@ impl Table {
         head.push("problem".to_owned());
         let (plans, failed, unfit) = self.counts();
         let lead = format!(
-            "{plans} plans, {failed} of them failed, {unfit} should not be welded. A click on a head sorts the table."
+            "{plans} plans, {failed} of them failed, {unfit} should not be welded. A click on a heading sorts the table."
         );
         let mut sheet = Sheet::new("Batch", &lead);
         let marked = |(cells, row): (Vec<String>, &Row)| {
@@ -208,7 +208,7 @@ impl Table {
     /// The layer in the middle of every plan.
     fn pictures(&self, sheet: &mut Sheet) {
         if self.rows.len() > MOST_PICTURES {
-            sheet.text(&format!("Pages of more than {MOST_PICTURES} plans have no pictures of layers."));
+            sheet.text(&format!("Pages with more than {MOST_PICTURES} plans have no pictures of layers."));
             return;
         }
         let picture = |row: &Row| Some((row.names().join(", "), row.planned.as_ref().ok()?.picture.clone()?));

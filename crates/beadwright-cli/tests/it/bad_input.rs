@@ -172,7 +172,10 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
     fs::write(folder.path().join("one.json"), one).unwrap();
     let asked = beadwright(folder.path(), &["check", "one.json"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();
-    assert!(asked.status.code() == Some(1) && said.contains("of version 1") && said.contains("--profile"), "{said}");
+    assert!(
+        asked.status.code() == Some(1) && said.contains("plan.json version 1") && said.contains("--profile"),
+        "{said}"
+    );
     ok(&["inspect", "one.json", "-p", "cmt-al2319-kuka"]);
     // Printers' programs of ours name their profile; others are asked about.
     ok(&[

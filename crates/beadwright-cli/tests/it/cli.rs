@@ -199,7 +199,7 @@ fn profiles_are_listed_shown_checked_and_described() {
     let line = broken.lines().position(|l| l.starts_with("deposition_sped")).unwrap() + 1;
     fs::write(folder.path().join("own.toml"), &text).unwrap();
     fs::write(folder.path().join("broken.toml"), broken).unwrap();
-    assert!(ok(folder.path(), &["profile", "check", "own.toml"]).contains("every value is possible"));
+    assert!(ok(folder.path(), &["profile", "check", "own.toml"]).contains("every value is valid"));
     let said = refused(folder.path(), &["profile", "check", "broken.toml"], 1);
     assert!(said.contains(&format!("line {line} ")) && said.contains("\"deposition_speed\""), "{said}");
     let schema: serde_json::Value = serde_json::from_str(&ok(folder.path(), &["profile", "schema"])).unwrap();
@@ -333,7 +333,7 @@ fn strategies_are_compared_and_papers_reproduced() {
 }
 
 #[test]
-fn beads_are_fitted_foretold_and_found() {
+fn beads_are_fitted_predicted_and_found() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     assert!(ok(path, &["bead", "example"]).contains("SYNTHETIC"));
@@ -349,7 +349,7 @@ fn beads_are_fitted_foretold_and_found() {
     for (arguments, part) in [
         (&["predict", "lib.toml", "current=300", "deposition_speed=8"][..], "above the measured range of 60 to 250 A"),
         (&["predict", "lib.toml", "current=100"], "a value for deposition_speed is missing"),
-        (&["predict", "bead-example.csv", "current=100"], "bead-example.csv: this is no bead library"),
+        (&["predict", "bead-example.csv", "current=100"], "bead-example.csv: this is not a bead library"),
         (
             &["solve", "lib.toml", "--width", "30", "--layer-height", "5"],
             "out of reach: current would have to be above",
@@ -370,9 +370,9 @@ fn beads_are_fitted_foretold_and_found() {
 fn curves_are_inspected_and_welded_as_walls() {
     let folder = TempDir::new().unwrap();
     ok(folder.path(), &["example", "tian", "-o", "tian.igs"]);
-    assert!(ok(folder.path(), &["inspect", "tian.igs"]).contains("6 curves, 6 of them stand for themselves"));
+    assert!(ok(folder.path(), &["inspect", "tian.igs"]).contains("6 curves, 6 of them independent"));
     let said = refused(folder.path(), &["plan", "tian.igs"], 1);
-    assert!(said.contains("say how high the part grows") && said.contains("--height"), "{said}");
+    assert!(said.contains("say how high the part is") && said.contains("--height"), "{said}");
     let said = ok(folder.path(), &["plan", "tian.igs", "-p", "cmt-steel-abb", "--height", "26", "-o", "out"]);
     assert!(said.contains("6 centre-lines") && said.contains("strategy wall"), "{said}");
     assert!(files(&folder.path().join("out")).contains_key("tian.mod"));
@@ -386,7 +386,7 @@ fn reach_tells_margins_and_refuses_what_is_too_far() {
     ok(folder.path(), &["plan", "cross.stl", "-o", "out", "--no-deposit"]);
     let reach = ["reach", "out/plan.json", "--cell", "kuka-kr20-r1810"];
     let said = ok(folder.path(), &[&reach[..], &["-o", "reach.html", "--suggest"]].concat());
-    assert!(said.contains("least margin") && said.contains("The part lies well"), "{said}");
+    assert!(said.contains("least margin") && said.contains("The part is well placed"), "{said}");
     assert!(files(folder.path())["reach.html"].len() > 10_000);
     let json = ok(folder.path(), &[&reach[..], &["--json"]].concat());
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -460,7 +460,7 @@ fn plans_are_checked() {
     assert!(
         output.status.code() == Some(3)
             && said.contains("wire-balance (1)")
-            && said.contains("Take the deposition speed"),
+            && said.contains("Use the deposition speed"),
         "{said}"
     );
     // A cell with the part far away.

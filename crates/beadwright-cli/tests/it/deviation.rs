@@ -36,7 +36,7 @@ fn a_scan_is_compared_with_the_part_as_it_is_planned() {
     let folder = folder(250.0, 1.0);
     let placed = ["cross.stl", "scan.csv", "--shift", "250,0", "--set", "fill.machining_allowance=1"];
     let text = said(folder.path(), &placed);
-    for line in ["scan.csv beside cross.stl: table of points of 3465 points", "+0.500 mm", "100.0 %"] {
+    for line in ["scan.csv against cross.stl: table of points of 3465 points", "+0.500 mm", "100.0 %"] {
         assert!(text.contains(line), "{text}");
     }
     assert!(!text.contains("warning"), "{text}");
@@ -52,7 +52,7 @@ fn a_scan_is_compared_with_the_part_as_it_is_planned() {
 fn a_wrong_unit_is_told_with_its_remedy() {
     let folder = folder(0.0, 1.0 / 25.4);
     let text = said(folder.path(), &["cross.stl", "scan.csv"]);
-    assert!(text.starts_with("warning: the scan has about 1/25.4 of the size"), "{text}");
+    assert!(text.starts_with("warning: the scan has about 1/25.4 the size"), "{text}");
     let text = said(folder.path(), &["cross.stl", "scan.csv", "--scan-units", "in"]);
     assert!(!text.contains("warning") && text.contains("+0.500 mm"), "{text}");
 }

@@ -32,7 +32,7 @@ fn a_scan_becomes_the_programs_that_follow() {
     let said =
         ok(folder.path(), &["adapt", "plan/plan.json", "--scan", "scan.csv", "--after-layer", "20", "-o", "next"]);
     assert!(
-        said.contains("Scan: table of points of 1071 points") && said.contains("30 layers follow, 30 were planned"),
+        said.contains("Scan: table of points of 1071 points") && said.contains("30 layers follow (30 were planned)"),
         "{said}"
     );
     let out = folder.path().join("next");
@@ -43,7 +43,7 @@ fn a_scan_becomes_the_programs_that_follow() {
     assert!(
         !out.join("wall_L020.mod").exists() && out.join("wall_L021.mod").exists() && out.join("wall_L050.mod").exists()
     );
-    assert!(fs::read_to_string(out.join("adapt.html")).unwrap().contains("measured less predicted"));
+    assert!(fs::read_to_string(out.join("adapt.html")).unwrap().contains("measured minus predicted"));
     // More metal on the left, where it is low; the torch follows the metal below.
     let pass = &adapted[20]["passes"][0];
     let points: Vec<[f64; 3]> = serde_json::from_value(pass["points"].clone()).unwrap();
@@ -74,11 +74,11 @@ fn scans_and_plans_that_do_not_fit_are_told() {
     };
     let said = adapt("scan.csv", "40");
     assert!(said.contains("The plan is that high after layer 20.") && said.contains("--align plate"), "{said}");
-    assert!(adapt("scan.csv", "99").contains("the plan has the layers 1 to 50; layer 99 is none of them."));
+    assert!(adapt("scan.csv", "99").contains("the plan has the layers 1 to 50; layer 99 is not one of them."));
     assert!(adapt("wall.stl", "20").contains("wall.stl"));
     assert!(adapt("nothing.csv", "20").contains("nothing.csv"));
     fs::write(folder.path().join("far.csv"), "500,0,29\n510,0,29\n520,0,29\n").unwrap();
-    assert!(adapt("far.csv", "20").contains("--align fit lays the scan on the part."));
+    assert!(adapt("far.csv", "20").contains("--align fit aligns the scan with the part."));
     assert!(!folder.path().join("beadwright-adapted").exists());
     let said = refused(folder.path(), &["adapt", "wall.stl", "--scan", "scan.csv", "--after-layer", "2"], 1);
     assert!(said.contains("give the plan.json of the build"), "{said}");

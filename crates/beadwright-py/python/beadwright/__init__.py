@@ -1,10 +1,10 @@
-"""Plans weld deposition: a part becomes a robot program, and what it would build is told beforehand.
+"""Plans weld deposition: a part becomes a robot program, and what it would build is predicted.
 
 >>> import beadwright
 >>> plan = beadwright.plan(beadwright.Part.read("propeller.stl"), "cmt-al2319-kuka")  # doctest: +SKIP
 >>> plan.save("out")  # doctest: +SKIP
 
-Lengths are in mm, times in s, areas in mm², unless a name says otherwise. What goes wrong is a :class:`BeadwrightError`.
+Lengths are in mm, times in s, areas in mm², unless a name says otherwise. What goes wrong raises a :class:`BeadwrightError`.
 """
 
 from beadwright._core import VERSION as __version__

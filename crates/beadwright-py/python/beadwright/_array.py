@@ -1,4 +1,4 @@
-"""The core's arrays as NumPy's. NumPy is loaded with the first one, so that ``import beadwright`` is quick."""
+"""The core's arrays as NumPy's. NumPy is loaded with the first one, so that ``import beadwright`` is fast."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def floats(array: _core.Array) -> Floats:
-    """The array's own memory, which cannot be written; it stays as long as a view of it does."""
+    """The array's own memory, which cannot be written to; it lives as long as a view of it does."""
     import numpy as np
 
     return np.asarray(array, dtype=np.float64)

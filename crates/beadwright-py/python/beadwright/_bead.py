@@ -14,7 +14,7 @@ from beadwright._errors import BeadwrightError
 
 @dataclass(frozen=True)
 class Bead:
-    """A bead that is foretold."""
+    """A predicted bead."""
 
     width: float
     """mm."""
@@ -60,8 +60,8 @@ class BeadLibrary:
         width: str = "width",
         height: str = "height",
     ) -> BeadLibrary:
-        """Fits measured single beads: a CSV file or its text, with one bead a line and a head that names columns with units,
-        such as ``current_a, width_mm``. ``inputs`` are the columns of parameters, all but width and height if left out.
+        """Fits measured single beads: a CSV file or its text, with one bead per line and a header that names columns with
+        units, such as ``current_a, width_mm``. ``inputs`` are the columns of parameters, all but width and height if left out.
 
         Raises :class:`BeadwrightError` with line and column.
         """
@@ -88,7 +88,7 @@ class BeadLibrary:
     ) -> Bead:
         """The bead for parameters such as ``predict(current=120, deposition_speed=8)``.
 
-        ``overlap`` (``"tangent"``, ``"inclined-flat-top"`` or a stepover in mm) tells the layer height of closed layers;
+        ``overlap`` (``"tangent"``, ``"inclined-flat-top"`` or a stepover in mm) gives the layer height of closed layers;
         without it, a layer is a single bead.
 
         Raises :class:`BeadwrightError` outside the measured range.
@@ -106,7 +106,7 @@ class BeadLibrary:
         limits: Mapping[str, tuple[float, float]] | None = None,
         tolerance: float = 0.005,
     ) -> Bead:
-        """Parameters for a bead of a ``width`` and ``layer_height`` (mm) within the measured range and the ``limits``, met
+        """Parameters for a bead with this ``width`` and ``layer_height`` (mm) within the measured range and the ``limits``, met
         within the relative ``tolerance``.
 
         Raises :class:`BeadwrightError` that names the nearest bead.
@@ -132,5 +132,5 @@ def _opened(source: str | os.PathLike[str]) -> tuple[str, str | None]:
     try:
         return path.read_text(encoding="utf-8-sig"), str(path)
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8; save it so"
+        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text; save it as UTF-8"
         raise BeadwrightError(f"{path} cannot be read: {reason}.", str(path)) from error

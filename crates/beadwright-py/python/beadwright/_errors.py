@@ -4,7 +4,7 @@
 class BeadwrightError(Exception):
     """Why something cannot be done.
 
-    ``place`` tells where (a path, a line, a key), ``remedy`` what helps; either may be ``None``.
+    ``place`` says where (a path, a line, a key), ``remedy`` what helps; either may be ``None``.
     """
 
     def __init__(self, message: str, place: str | None = None, remedy: str | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Who works: processes of this machine, or whatever speaks the language of ``concurrent.futures``."""
+"""Who works: processes of this machine, or anything with the interface of ``concurrent.futures``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class LocalExecutor(Executor):
         return ProcessPoolExecutor(self._workers, mp_context=multiprocessing.get_context("spawn"))
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As of ``concurrent.futures``."""
+        """As in ``concurrent.futures``."""
         try:
             return self._pool.submit(fn, *args, **kwargs)
         except BrokenExecutor:
@@ -31,7 +31,7 @@ class LocalExecutor(Executor):
             return self._pool.submit(fn, *args, **kwargs)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """As of ``concurrent.futures``."""
+        """As in ``concurrent.futures``."""
         self._pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
@@ -46,7 +46,7 @@ class RayExecutor(Executor):
         self._run: Any = ray.remote(max_retries=retries)(_call)
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """As of ``concurrent.futures``."""
+        """As in ``concurrent.futures``."""
         future: Future[T] = self._run.remote(fn, args, kwargs).future()
         return future
 
@@ -56,7 +56,7 @@ def _call(function: Callable[..., T], arguments: tuple[Any, ...], named: dict[st
 
 
 def executor_of(given: Any) -> Executor:
-    """What was brought as an executor: a ``distributed.Client`` has one."""
+    """What was passed as an executor: a ``distributed.Client`` has one."""
     if hasattr(given, "get_executor"):
         executor: Executor = given.get_executor()
         return executor

@@ -33,7 +33,7 @@ class Judged:
 
     @property
     def totals(self) -> dict[str, Any]:
-        """Arc starts, lengths, times and metal; the names tell the units."""
+        """Arc starts, lengths, times and metal; the names give the units."""
         totals: dict[str, Any] = self.values["totals"]
         return totals
 
@@ -55,7 +55,7 @@ class Judged:
 
     @property
     def row(self) -> dict[str, float]:
-        """Its row of a comparison; the headings tell the units."""
+        """Its row of a comparison; the headings give the units."""
         return dict(self._inner.columns)
 
     def html(self) -> str:
@@ -81,11 +81,11 @@ class Comparison(Sequence[Judged]):
 
     @property
     def best(self) -> Judged:
-        """That with the least score."""
+        """The one with the lowest score."""
         return min(self._entries, key=lambda entry: entry.row["score"])
 
     def table(self) -> dict[str, list[Any]]:
-        """Columns by their heading: for ``pandas.DataFrame`` or ``pyarrow.table``."""
+        """The columns by their headings: for ``pandas.DataFrame`` or ``pyarrow.table``."""
         rows = [{"name": entry.name, **entry.row} for entry in self._entries]
         return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
 
@@ -124,7 +124,7 @@ def compare(
 ) -> Comparison:
     """Plans a solid with each strategy (all of them if left out) and judges the chosen ``layers``, by index from 0.
 
-    ``grid`` is the distance of the deposit model's points, mm; a twentieth of the bead width if left out.
+    ``grid`` is the distance between the deposit model's points, mm; a twentieth of the bead width if left out.
 
     Raises :class:`BeadwrightError`.
     """
@@ -155,8 +155,8 @@ def simulate(
     gives them), in G-code, KRL, RAPID, FANUC TP, INFORM or URScript. With the ``part`` it was made for, voids and overfill
     are reported, too. Left out, the ``profile`` is the one that the program names, or ``cmt-al2319-kuka``; a printer's
     program that names none needs one. ``arc_on`` and
-    ``arc_off`` are codes that light and end the arc, ``bead_width`` (mm) takes the place of the profile's, ``grid`` is the
-    distance of the deposit model's points, mm.
+    ``arc_off`` are codes that strike and end the arc, ``bead_width`` (mm) replaces the profile's, ``grid`` is the distance
+    between the deposit model's points, mm.
 
     Raises :class:`BeadwrightError`.
     """
@@ -200,7 +200,7 @@ def _source(
     suffix, language = path.suffix.lower(), _core.language(text)
 
     def module(name: str) -> str | None:
-        # Where the same part lies beside it in several languages, the program's own comes first.
+        # If the same part is next to it in several languages, the program's own comes first.
         files = sorted(path.parent.iterdir(), key=lambda file: (file.suffix.lower() != suffix, file))
         texts = ((file, _text(file)) for file in files if file.is_file() and _fits(name, file))
         return _named(name, ((file, text) for file, text in texts if _core.language(text) in (None, language)))

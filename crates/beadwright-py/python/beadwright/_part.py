@@ -24,7 +24,7 @@ Shift: TypeAlias = tuple[float, float]
 
 
 class Part:
-    """A solid, or a wall given by curves, in mm and set onto z = 0. Made by :meth:`read` and its siblings."""
+    """A solid, or a wall given by curves, in mm and set on z = 0. Made by :meth:`read` and its siblings."""
 
     __slots__ = ("_inner", "_maker")
     _inner: _core.Part
@@ -59,9 +59,9 @@ class Part:
         """Reads STL, 3MF, OBJ, PLY, AMF, IGES (centre-lines of walls), DXF or SVG (outlines); the content decides.
 
         ``units`` of the file are guessed where they are left out; ``scale`` enlarges the part, ``turn`` turns it about x,
-        then y, then z (°), ``centre`` brings its middle to x = y = 0, and ``shift`` then moves it along x and y (mm).
+        then y, then z (°), ``centre`` moves its middle to x = y = 0, and ``shift`` then moves it along x and y (mm).
         ``stand="flat"`` lays it onto its largest flat face, ``"orient"`` onto that with the least overhang. Curves and
-        outlines grow up to ``height`` (mm). Of a file that ends too early, ``accept_damaged`` takes what there is.
+        outlines grow up to ``height`` (mm). From a file that ends too early, ``accept_damaged`` uses what there is.
 
         Raises :class:`BeadwrightError` with the path, the line where there is one, and what helps.
         """
@@ -96,16 +96,16 @@ class Part:
         """A solid from ``vertices`` (n × 3, in ``units``) and ``faces`` (m × 3, indices from 0, counter-clockwise seen from
         outside). It is mended as a file would be.
 
-        Raises :class:`BeadwrightError` for other shapes, and indices or coordinates that cannot be.
+        Raises :class:`BeadwrightError` for other shapes, and for indices or coordinates that are impossible.
         """
         import numpy as np
 
         corners, triangles = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
         for what, array in [("vertices", corners), ("faces", triangles)]:
             if array.ndim != 2 or array.shape[1] != 3:
-                raise BeadwrightError(f"{what} have the shape {array.shape}; expected are rows of three.", what)
+                raise BeadwrightError(f"{what} have the shape {array.shape}; rows of three are expected.", what)
         if not np.issubdtype(triangles.dtype, np.integer) or triangles.min(initial=0) < 0:
-            raise BeadwrightError("faces are indices of vertices: whole numbers from 0 on.", "faces")
+            raise BeadwrightError("faces are indices of vertices: whole numbers from 0 up.", "faces")
         if triangles.max(initial=0) >= len(corners):
             raise BeadwrightError(f"a face names vertex {triangles.max()}; there are {len(corners)}.", "faces")
         placing = _placing(units, scale, turn, centre, shift, stand, None)
@@ -127,7 +127,7 @@ class Part:
         return cls.from_triangles(surface.points, surface.faces.reshape(-1, 4)[:, 1:], name=name, units=units)
 
     def above(self, z: float) -> Part:
-        """What lies above the height ``z`` (mm), set onto z = 0."""
+        """What lies above the height ``z`` (mm), set on z = 0."""
         part = object.__new__(Part)
         part._inner = self._inner.above(z)
         part._maker = ("above", self._maker, z)
@@ -140,7 +140,7 @@ class Part:
 
     @property
     def is_solid(self) -> bool:
-        """Whether it is a solid; a wall given by curves is none."""
+        """Whether it is a solid; a wall given by curves is not."""
         return self._inner.is_solid
 
     @property
@@ -209,7 +209,7 @@ def _placing(
     height: float | None,
 ) -> tuple[Any, ...]:
     if not 1e-6 <= scale <= 1e6:
-        raise BeadwrightError(f"scale = {scale} is impossible: 1e-6 to 1e6 are.", "scale")
+        raise BeadwrightError(f"scale = {scale} is impossible; 1e-6 to 1e6 is possible.", "scale")
     if len(turn) != 3 or not all(abs(angle) < 1e6 for angle in turn):
         raise BeadwrightError(f"turn = {turn} is impossible: three angles in ° are expected, such as (90, 0, 0).", "turn")
     if len(shift) != 2 or not all(abs(length) <= 20_000 for length in shift):
@@ -219,7 +219,7 @@ def _placing(
     if stand not in (None, "flat", "orient"):
         raise BeadwrightError(f'stand = "{stand}" is unknown: "flat" and "orient" are known.', "stand")
     if height is not None and not 0.1 <= height <= 20_000:
-        raise BeadwrightError(f"height = {height} is impossible: 0.1 to 20000 mm are.", "height")
+        raise BeadwrightError(f"height = {height} is impossible; 0.1 to 20000 mm is possible.", "height")
     turned, shifted = tuple(float(angle) for angle in turn), tuple(float(length) for length in shift)
     return units, float(scale), turned, centre, shifted, stand, height
 

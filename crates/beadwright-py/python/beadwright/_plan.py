@@ -40,8 +40,8 @@ def plan(
 ) -> Plan:
     """Plans a part with a profile.
 
-    ``strategy`` takes the place of the profile's. The result does not depend on the number of ``threads`` (all of the
-    machine's if left out). Other Python threads go on meanwhile, and Ctrl-C ends the call. ``progress`` is called with the
+    ``strategy`` replaces the profile's. The result does not depend on the number of ``threads`` (all of the
+    machine's if left out). Other Python threads continue meanwhile, and Ctrl-C ends the call. ``progress`` is called with the
     stage and a fraction from 0 to 1; ``True`` draws a bar.
 
     Raises :class:`BeadwrightError`.
@@ -86,7 +86,7 @@ class Plan:
 
     @cached_property
     def metrics(self) -> dict[str, Any]:
-        """The totals, as in metrics.json: the names tell the units."""
+        """The totals, as in metrics.json: the names give the units."""
         return self._inner.metrics
 
     @cached_property
@@ -96,12 +96,13 @@ class Plan:
 
     @property
     def notes(self) -> list[str]:
-        """What does not fit in the profile, as sentences."""
+        """What does not fit together in the profile, as sentences."""
         return self._inner.notes
 
     def findings(self, *, threads: int | None = None, progress: Progress = None) -> list[Finding]:
-        """All that is to be said of the plan, the worst first: what the checks find, what was lost or mended, and what does
-        not fit in the profile. The same list as in ``metrics.json`` and in the report; the deposit model takes a while.
+        """Everything to report about the plan, the worst first: what the checks find, what was lost or mended, and what
+        does not fit together in the profile. The same list as in ``metrics.json`` and in the report; the deposit model takes a
+        while.
         """
         with steps(progress) as step:
             return [Finding._of(value, sentence) for value, sentence in self._inner.findings(threads, step)]
@@ -143,13 +144,13 @@ class Plan:
         return [Path(folder) / name for name in names]
 
     def export(self, path: str | os.PathLike[str]) -> None:
-        """Writes the beads for other programs; the ending tells the format: .csv, .parquet, .vtp, .3mf, .stl or .glb."""
+        """Writes the beads for other programs; the extension gives the format: .csv, .parquet, .vtp, .3mf, .stl or .glb."""
         path = Path(path)
         path.write_bytes(self._inner.export(path.suffix.removeprefix(".")))
 
     def table(self) -> Any:
         """All straight pieces of the beads as they are welded, as a ``pyarrow.Table``: the columns of ``export(".parquet")``,
-        whose names tell the units.
+        whose names give the units.
         """
         import pyarrow as pa
         import pyarrow.parquet as pq

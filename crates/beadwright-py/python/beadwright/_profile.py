@@ -15,7 +15,7 @@ Value: TypeAlias = bool | int | float | str | list[Any] | dict[str, Any]
 
 
 class Profile:
-    """A profile, from the name of a built-in one, of one's own (``BEADWRIGHT_PROFILES``), a path, or TOML text.
+    """A profile, from the name of a built-in one or of one of your own (``BEADWRIGHT_PROFILES``), a path, or TOML text.
 
     >>> Profile("cmt-al2319-kuka").set({"bead.width": 5.0, "fill.strategy": "contour"})["bead.width"]
     5.0
@@ -64,7 +64,7 @@ class Profile:
 
     @property
     def notes(self) -> list[str]:
-        """What does not fit in it, as sentences."""
+        """What does not fit together in it, as sentences."""
         return self._inner.notes
 
     @property
@@ -154,7 +154,7 @@ def _base(folder: Path) -> Callable[[str], str | None]:
 def _toml(key: str, value: Value) -> str:
     """A value in TOML, whose strings are written as in JSON."""
     if hasattr(value, "item"):
-        # A number of NumPy, some of which are Python's floats, too.
+        # A NumPy number, some of which are also Python floats.
         value = value.item()
     if isinstance(value, bool | str):
         return json.dumps(value)
@@ -164,4 +164,4 @@ def _toml(key: str, value: Value) -> str:
         return f"[{', '.join(_toml(key, item) for item in value)}]"
     if isinstance(value, dict):
         return f"{{ {', '.join(f'{json.dumps(name)} = {_toml(key, item)}' for name, item in value.items())} }}"
-    raise BeadwrightError(f"{key}: a {type(value).__name__} cannot stand in a profile.", key)
+    raise BeadwrightError(f"{key}: a {type(value).__name__} cannot be a value in a profile.", key)

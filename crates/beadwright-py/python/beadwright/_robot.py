@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ReachFinding(NamedTuple):
-    """What stands in the way of the robot, or nearly does."""
+    """What is in the way of the robot, or nearly is."""
 
     fatal: bool
     sentence: str
@@ -28,7 +28,7 @@ class ReachFinding(NamedTuple):
 
 
 class Trajectory(NamedTuple):
-    """The way of the joints."""
+    """The path of the joints."""
 
     seconds: Floats
     """Time of each point, s; without waits and acceleration."""
@@ -37,7 +37,7 @@ class Trajectory(NamedTuple):
 
 
 class Reach:
-    """The way of a robot along a plan. Made by :func:`reach`."""
+    """The path of a robot along a plan. Made by :func:`reach`."""
 
     def __init__(self, core: _core.Reach) -> None:
         self._inner = core
@@ -51,7 +51,7 @@ class Reach:
 
     @property
     def least_margin(self) -> float | None:
-        """Least margin to limits and singularities, °; ``None`` where nothing is reached."""
+        """Least margin to limits and singularities, °; ``None`` if nothing is reached."""
         margin: float | None = self.values["least_margin"]
         return margin
 
@@ -62,7 +62,7 @@ class Reach:
 
     @property
     def trajectory(self) -> Trajectory | None:
-        """The way of the joints; ``None`` where a point is out of reach."""
+        """The path of the joints; ``None`` where a point is out of reach."""
         arrays = self._inner.trajectory
         return None if arrays is None else Trajectory(floats(arrays[0]), floats(arrays[1]))
 

@@ -1,4 +1,4 @@
-"""Many plans, on one machine or on many: a table that goes on where it was stopped."""
+"""Many plans, on one machine or on many: a table that continues where it was stopped."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from beadwright._plan import Model, Plan, Process, part_of, plan, profile_of
 from beadwright._profile import Profile, Value
 from beadwright._progress import Progress, steps
 
-#: A number of ``plan.metrics``; one of the deposit model, as ``deposit.void_percent``; or a function of the plan.
+#: A number of ``plan.metrics``; one of the deposit model, such as ``deposit.void_percent``; or a function of the plan.
 Measure: TypeAlias = str | Callable[[Plan], float]
 Sample: TypeAlias = Mapping[str, Value]
 
-#: What is measured where nothing is asked for.
+#: What is measured if nothing is asked for.
 USUAL = ("arc_starts", "deposited_length_mm", "total_time_s", "wire_mass_kg", "coverage")
 
 JOURNAL, TABLE = "done.jsonl", "study.parquet"
@@ -36,7 +36,7 @@ JOURNAL, TABLE = "done.jsonl", "study.parquet"
 
 @dataclass(frozen=True)
 class _Job:
-    """One plan: what is changed in the profile, and the key that tells whether it was done before."""
+    """One plan: what is changed in the profile, and the key that shows whether it was done before."""
 
     part: Part
     sample: dict[str, Value]
@@ -59,10 +59,10 @@ def study(
     """Plans every part with every sample of profile keys, and measures the plans.
 
     ``grid`` gives the values of each key, all combinations of which are planned; ``samples`` gives them one by one. The
-    results stand in ``folder``: study.parquet, whose bytes depend on the parts, samples and measures only, and a journal.
-    Started again, a study goes on: what was done with the same part, profile, measures and version is not done again.
+    results are in ``folder``: study.parquet, whose bytes depend on the parts, samples and measures only, and a journal.
+    Started again, a study continues: what was done with the same part, profile, measures and version is not done again.
 
-    ``executor`` is anything with ``submit``, such as of ``concurrent.futures``, a ``distributed.Client``, or
+    ``executor`` is anything with ``submit``, such as one of ``concurrent.futures``, a ``distributed.Client``, or
     :class:`RayExecutor`; processes of this machine if left out. Plans of one part are handed out ``chunk`` at a time, each
     planned with one thread. What fails because a worker was lost is done again, ``retries`` times. What Beadwright refuses
     has its sentence in the column ``error``.
@@ -74,7 +74,7 @@ def study(
     jobs = list(_jobs([part_of(part) for part in models], list(_samples(grid, samples)), base, wanted))
     journal = _Journal(Path(folder))
     left = {job.key: job for job in jobs if job.key not in journal.done}
-    # An executor that was brought goes on after the study.
+    # An executor that was passed in lives on after the study.
     own: AbstractContextManager[Executor] = LocalExecutor() if executor is None else nullcontext(executor_of(executor))
     with steps(progress) as step, own as workers:
         came = _outcomes(workers, _chunks(left.values(), chunk), base, wanted, retries)
@@ -117,7 +117,7 @@ class Study:
         beside.replace(self.path)
 
     def pareto(self, *measures: str, greater: Collection[str] = ()) -> list[dict[str, Any]]:
-        """The rows that no other beats in these measures. Less is better, except in those that are named ``greater``."""
+        """The rows that no other beats in these measures. Less is better, except in those named in ``greater``."""
         return _pareto.front(self.rows, measures, greater)
 
     def plot(self, x: str, y: str, *, greater: Collection[str] = ()) -> Any:
@@ -174,7 +174,7 @@ def _samples(grid: Mapping[str, Iterable[Value]] | None, samples: Iterable[Sampl
 
 
 def _plain(value: Any) -> Any:
-    """A number of NumPy as Python's."""
+    """A NumPy number as a Python number."""
     return value.item() if hasattr(value, "item") else value
 
 
@@ -264,7 +264,7 @@ def _value(made: Plan, deposit: dict[str, Any], measure: Measure) -> float | Non
         return float(measure(made))
     values, name = (deposit, measure.removeprefix("deposit.")) if _of_deposit(measure) else (made.metrics, measure)
     if name not in values:
-        raise BeadwrightError(f'there is no measure "{measure}": {", ".join(sorted(values))} are.', "measures")
+        raise BeadwrightError(f'there is no measure "{measure}"; use {", ".join(sorted(values))}.', "measures")
     value = values[name]
     return None if value is None else float(value)
 

@@ -47,7 +47,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, String> {
     }
 }
 
-/// Which of the files handed over under this name is the last.
+/// The number of the last file handed over under this name.
 pub fn stamp(path: &Path) -> Option<Stamp> {
     files().1.get(path).map(|(stamp, _)| *stamp)
 }

@@ -61,7 +61,7 @@ fn in_layers(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
 /// All layers of both, with one camera.
 fn in_solid(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
     let [own, theirs] = ["view-3d-label", "view-3d-other"].map(|key| studio.t(key));
-    // A bead of one plan is none of the other's.
+    // A bead of one plan is not one of the other's.
     let style = studio.style();
     let plain = Style { segments_of_last: None, highlight: None, torch: None, arm: Vec::new(), ..style.clone() };
     solid::view(studio, left, &style, own);
@@ -100,7 +100,7 @@ pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
     let Some(other) = &studio.plans.other else { return };
     let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
     let names = [studio.plans.own.header.as_ref().map_or("", |header| &header.strategy), &other.strategy];
-    // As many tables side by side as there is room for leave more of it for the views.
+    // As many tables side by side as fit leave more room for the views.
     const WIDTH: f32 = 400.0;
     let tables = ((ui.available_width() / WIDTH) as usize).clamp(1, own.len().max(1));
     let rows = own.len().div_ceil(tables).max(1);

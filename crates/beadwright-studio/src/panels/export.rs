@@ -19,7 +19,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
         });
         combo.response.labelled_by(label.id);
     });
-    // A browser asks itself where downloads go.
+    // A browser itself asks where downloads go.
     if cfg!(not(target_arch = "wasm32")) {
         let label = ui.label(studio.t("folder"));
         let hint = studio.t("folder-hint");

@@ -23,7 +23,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     };
     let (warnings, close) = (warnings(studio), studio.t("close"));
     let nothing = (!any(studio)).then(|| studio.t("no-messages"));
-    // A bar that is always there tells that there is more below.
+    // A bar that is always there shows that there is more below.
     ui.spacing_mut().scroll = ScrollStyle::solid();
     // A list that claims more than the panel has would let the panel above cover its beginning.
     ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink(false).show(ui, |ui| {

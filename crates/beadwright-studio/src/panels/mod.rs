@@ -44,7 +44,7 @@ pub(crate) fn show(studio: &mut Studio, ui: &mut Ui) {
     questions::show(studio, ui);
 }
 
-/// What stands around the view of a part.
+/// What is around the view of a part.
 fn around(studio: &mut Studio, ui: &mut Ui) {
     if studio.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(studio, ui));
@@ -62,7 +62,7 @@ fn around(studio: &mut Studio, ui: &mut Ui) {
     Panel::right("side").default_size(330.0).show(ui, |ui| side(studio, ui));
 }
 
-/// The size of a button with this text, so that the buttons beside it stay where they are when its own text changes.
+/// The size of a button with this text, so that the buttons next to it stay where they are when its own text changes.
 fn room(ui: &Ui, text: String) -> Vec2 {
     let ink = ui.visuals().text_color();
     let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), ink);

@@ -94,7 +94,7 @@ impl Form<'_> {
         texts.into_iter().chain(Language::ALL.map(name)).any(|text| text.to_lowercase().contains(search))
     }
 
-    /// A button that takes the values of a section out of the profile which have a default.
+    /// A button that removes from the profile the values of a section that have a default.
     fn reset(&mut self, ui: &mut Ui, section: &Section) {
         let own = |field: &&Field| field.optional && form::value(self.values, &field.key).is_some();
         let keys: Vec<String> = section.fields.iter().filter(own).map(|field| field.key.clone()).collect();

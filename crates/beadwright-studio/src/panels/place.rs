@@ -143,7 +143,7 @@ fn place(studio: &mut Studio, moved: Moved, foot: DVec2) {
     studio.request(Action::Place(placement));
 }
 
-/// The extent of the part on its plate, where it would come to stand.
+/// The extent of the part on its plate, where it would end up.
 fn extent(painter: &Painter, sight: &Sight<'_>, (low, high): (DVec3, DVec3), gizmo: &Gizmo, shown: &Gizmo) {
     let turn = DVec2::from_angle(shown.turn.to_radians());
     let placed = |x: f64, y: f64| shown.foot + turn.rotate(DVec2::new(x, y) - gizmo.foot.truncate()).extend(0.0);
@@ -153,7 +153,7 @@ fn extent(painter: &Painter, sight: &Sight<'_>, (low, high): (DVec3, DVec3), giz
     painter.add(Shape::closed_line(line, Stroke::new(1.5, Color32::from_rgb(r, g, b))));
 }
 
-/// A text beside a handle.
+/// A text next to a handle.
 fn figure(painter: &Painter, at: Pos2, ink: Color32, text: String) {
     let place = at + vec2(2.0 * HANDLE, -HANDLE);
     let galley = painter.layout_no_wrap(text, FontId::proportional(14.0), ink);

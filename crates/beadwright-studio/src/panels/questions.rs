@@ -1,4 +1,4 @@
-//! Questions that must be answered before work goes on, and the list of keys.
+//! Questions that must be answered before work continues, and the list of keys.
 
 use crate::actions::{Action, ENTRIES};
 use crate::planner::Failure;

@@ -19,7 +19,7 @@ pub(super) fn switch(studio: &mut Studio, ui: &mut Ui) {
     }
 }
 
-/// The cell, and the joints of its arm as it stands.
+/// The cell, and the joints of its arm in its present pose.
 pub(super) fn joints(studio: &mut Studio, ui: &mut Ui) {
     if !studio.view.robot {
         return;

@@ -1,4 +1,4 @@
-//! What the words of the figures mean: a hint on each, with the page of the book that tells more.
+//! What the words of the figures mean: a hint on each, with the page of the book that says more.
 
 use crate::studio::Studio;
 use eframe::egui::Response;

@@ -17,7 +17,7 @@ thread_local! {
     static KEPT: RefCell<(Cache, Arc<Mutex<Packer>>)> = RefCell::default();
 }
 
-/// Takes the model file that the orders which follow are about.
+/// Takes the model file for the orders that follow.
 #[wasm_bindgen]
 pub fn take_file(name: &str, bytes: Vec<u8>) {
     disk::hand_over(name.as_ref(), Ok(bytes));

@@ -1,4 +1,4 @@
-//! Planning on a thread beside the window.
+//! Planning on a thread other than the window's.
 
 use super::work::{Cache, carry_out};
 use super::{Event, Notify, Order, Urgency};

@@ -1,7 +1,7 @@
 //! Orders and events as bytes (MessagePack), which is what passes between a browser's page and its worker.
 //!
-//! Only what the page cannot make itself is sent: a part when it has changed, of the profile the strategy that was
-//! chosen, and no segments to be drawn.
+//! Only what the page cannot make itself is sent: a part when it has changed, only the chosen strategy of the profile, and
+//! no segments to be drawn.
 
 use super::{Event, Failure, Order};
 use crate::project::Project;

@@ -13,7 +13,7 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::*;
 use web_sys::{Event as PageEvent, MessageEvent, WorkerOptions, WorkerType};
 
-/// The file that starts a worker, beside the page.
+/// The file that starts a worker, next to the page.
 const SCRIPT: &str = "worker.js";
 
 /// What has come from the worker, and whether it is at work.

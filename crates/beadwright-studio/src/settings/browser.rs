@@ -21,8 +21,7 @@ impl Store {
         web_sys::window()?.local_storage().ok()?
     }
 
-    /// The settings; the defaults if there are none or they cannot be read. Files of earlier visits are none that can be
-    /// opened again.
+    /// The settings; the defaults if there are none or they cannot be read. Files of earlier visits cannot be opened again.
     pub fn settings(&self) -> Settings {
         let text = Self::storage().and_then(|storage| storage.get_item(KEY).ok()?);
         let settings: Settings = text.and_then(|text| toml::from_str(&text).ok()).unwrap_or_default();

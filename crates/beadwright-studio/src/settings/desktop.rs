@@ -61,7 +61,7 @@ impl Store {
     /// A sentence for the window.
     pub fn keep_project(&self, project: &Project) -> Result<(), String> {
         let text = project.write(None)?;
-        self.keep(&self.project_file(), &text).map_err(|error| format!("The project cannot be kept aside: {error}."))
+        self.keep(&self.project_file(), &text).map_err(|error| format!("The project cannot be autosaved: {error}."))
     }
 
     /// The project of a run that crashed.

@@ -63,7 +63,7 @@ impl Default for Show {
 pub struct Drawing<'a> {
     /// The layer.
     pub layer: &'a Layer,
-    /// What the deposit model says of it.
+    /// What the deposit model says about it.
     pub judgement: Option<&'a Arc<Judgement>>,
     /// The steps of the strategy, island by island, and what their colours mean.
     pub steps: (&'a [Steps], Named),

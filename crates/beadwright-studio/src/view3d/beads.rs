@@ -77,13 +77,13 @@ pub struct PassSpan {
     pub segments: Range<usize>,
     /// When the travel to it begins.
     pub travel_start: f64,
-    /// When the torch stands at its start.
+    /// When the torch is at its start.
     pub arrival: f64,
     /// When the torch begins to move with the arc on.
     pub arc_start: f64,
     /// When the torch may leave.
     pub end: f64,
-    /// The travel to it: from where the torch stood, up, across, down; empty before the very first pass.
+    /// The travel to it: from where the torch was, up, across, down; empty before the very first pass.
     pub travel: Vec<DVec3>,
 }
 

@@ -1,4 +1,4 @@
-//! Handles at the foot of the part, that move it on its plate and turn it about the upright.
+//! Handles at the foot of the part that move it on its plate and turn it about the vertical.
 
 use super::camera::Camera;
 use glam::{DVec2, DVec3};
@@ -25,7 +25,7 @@ pub enum Handle {
 pub struct Moved {
     /// Along x and y, mm.
     pub shift: DVec2,
-    /// About the upright through the foot, °, counterclockwise from above.
+    /// About the vertical through the foot, °, counterclockwise from above.
     pub turn: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct Gizmo {
 pub struct Grip {
     /// The handle.
     pub handle: Handle,
-    /// Where it was taken hold of in the picture, points.
+    /// Where it was grabbed in the picture, points.
     pub from: DVec2,
     /// What it has done so far.
     pub moved: Moved,
@@ -74,7 +74,7 @@ impl Handle {
 }
 
 impl Gizmo {
-    /// The handles of a part with this extent, mm: just outside of it.
+    /// The handles of a part with this extent, mm: just outside it.
     pub fn around((low, high): (DVec3, DVec3)) -> Self {
         let foot = ((low + high) / 2.0).with_z(low.z);
         Self { foot, reach: 1.15 * (high - low).truncate().length() / 2.0, turn: 0.0 }
@@ -101,7 +101,7 @@ impl Gizmo {
         angles.map(|angle| self.foot + (DVec2::from_angle(angle) * self.reach).extend(0.0))
     }
 
-    /// Whether a handle can be dragged as the camera stands.
+    /// Whether a handle can be dragged from where the camera is.
     pub fn can(&self, handle: Handle, camera: &Camera) -> bool {
         let tip = self.tip(handle);
         let way = if camera.orthographic { camera.back() } else { (camera.eye() - tip).normalize_or(camera.back()) };
@@ -111,8 +111,8 @@ impl Gizmo {
         }
     }
 
-    /// What a handle does when it is dragged from one line of sight to another (origin and direction); none where they
-    /// tell nothing.
+    /// What a handle does when it is dragged from one line of sight to another (origin and direction); none where they say
+    /// nothing.
     pub fn dragged(&self, handle: Handle, from: (DVec3, DVec3), to: (DVec3, DVec3)) -> Option<Moved> {
         let amount = match handle {
             Handle::Turn => {

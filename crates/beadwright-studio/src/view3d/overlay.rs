@@ -10,7 +10,7 @@ const AXIS: f32 = 26.0;
 /// Greatest length of the scale bar, points.
 const LONGEST_BAR: f64 = 140.0;
 
-/// Paints axes at the lower left, a caption beside them, and a scale bar at the lower right.
+/// Paints axes at the lower left, a caption next to them, and a scale bar at the lower right.
 pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, caption: &str, dark: bool) {
     if rect.width() < 160.0 || rect.height() < 120.0 {
         return;
@@ -41,7 +41,7 @@ fn axes(painter: &Painter, origin: Pos2, camera: &Camera, ink: Color32) {
         let tip = origin + seen * AXIS;
         painter.line_segment([origin, tip], Stroke::new(2.0, colour));
         painter.circle_filled(tip, 2.5, colour);
-        // The name of an axis that points at the viewer is placed beside it.
+        // The name of an axis that points at the viewer is placed next to it.
         let beside = if seen.length() > 0.3 { seen.normalized() * 10.0 } else { vec2(9.0, -9.0) };
         painter.text(tip + beside, Align2::CENTER_CENTER, name, FontId::proportional(12.0), ink);
     }

@@ -20,7 +20,7 @@ pub const END: Rgb = [222, 62, 54];
 /// The kinds of passes, in the order of their colours; dots look like walls.
 pub const KINDS: [PassKind; 4] = [PassKind::Contour, PassKind::Infill, PassKind::Skeleton, PassKind::Wall];
 
-/// The colour of a kind of pass. Those without red, green or blue cones tell them apart too (`tests/it/colours.rs`).
+/// The colour of a kind of pass. People without red, green or blue cones can tell them apart, too (`tests/it/colours.rs`).
 pub fn kind(kind: PassKind) -> Rgb {
     match kind {
         PassKind::Contour => [52, 100, 230],

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Part of the points whose deviation the colours tell; those beyond have the colour of the end, so that a few spatters do
-/// not take the colours away from the rest.
+/// Part of the points whose deviation the colours show; those beyond have the colour of the end, so that a little spatter
+/// does not take the colours away from the rest.
 const TOLD: f64 = 0.99;
 
 /// The least deviation at an end of the colours, mm.

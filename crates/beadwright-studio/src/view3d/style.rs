@@ -44,7 +44,7 @@ pub struct Style {
     pub colour: Colour,
     /// Whether the model is shown: solid by itself, translucent around beads.
     pub mesh: bool,
-    /// Whether the scan is shown, coloured by its deviation; of the model, its edges are then.
+    /// Whether the scan is shown, coloured by its deviation; then only the edges of the model are.
     pub scan: bool,
     /// Whether travels (moves with the arc off) are shown.
     pub travels: bool,

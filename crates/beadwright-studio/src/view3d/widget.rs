@@ -21,10 +21,10 @@ const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
 /// Rough segments that are drawn in a twentieth of a second: with a graphics card, without one.
 const IN_TIME: [usize; 2] = [1_500_000, 20_000];
 
-/// Of a part, at least that many layers are drawn while it moves.
+/// At least this many layers of a part are drawn while it moves.
 const LEAST_LAYERS: usize = 8;
 
-/// Scenes with fewer segments get four samples per pixel even without a graphics card, once they stand still.
+/// Scenes with fewer segments get four samples per pixel even without a graphics card, once they are still.
 const SMOOTH_BELOW: usize = 60_000;
 
 /// From this many segments on, a bead under the pointer is only identified when it is clicked.

@@ -1,7 +1,7 @@
-//! Lays a scan on the part: by the plate, and by the outline of the part.
+//! Aligns a scan with the part: by the plate, and by the outline of the part.
 //!
-//! The height comes from the plate alone: a fit of the top would take away the very error that is looked for. In the plane,
-//! points that stand up belong inside the outline of the layers above half the height, points of the plate outside that of
+//! The height comes from the plate alone: a fit of the top would remove the very error that is sought. In the plane,
+//! raised points belong inside the outline of the layers above half the height, points of the plate outside that of
 //! all layers. Least squares over the distances of those that do not (Gauss and Newton's steps, damped), from several
 //! starts, give shift and turn.
 
@@ -9,19 +9,19 @@ use crate::layer::Layer;
 use glam::{DMat3, DVec2, DVec3};
 use planar::{Region, polyline};
 
-/// How a scan is laid on the part.
+/// How a scan is aligned with the part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Align {
     /// Its coordinates are those of the part.
     #[default]
     AsIs,
-    /// The plate tells the height.
+    /// The plate gives the height.
     Plate,
-    /// The plate tells the height, the outline of the part shift and turn.
+    /// The plate gives the height, the outline of the part shift and turn.
     Fit,
 }
 
-/// A scan on the part.
+/// A scan aligned with the part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aligned {
     /// The points, mm, in the coordinates of the part.
@@ -36,13 +36,13 @@ pub struct Aligned {
     pub astray: f64,
 }
 
-/// Why a scan cannot be laid on the part.
+/// Why a scan cannot be aligned with the part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AlignError {
-    /// No plate is seen.
+    /// The scan shows no plate.
     #[error(
-        "the scan does not show the plate, which must tell its height: its points lie {range:.2} mm apart in z, the build is \
-         {height:.2} mm high. Scan a strip of the plate beside the part as well, or give z as above the plate."
+        "the scan does not show the plate, which its height is taken from: its points span {range:.2} mm in z, but the build is \
+         {height:.2} mm high. Scan a strip of the plate next to the part as well, or give z as the height above the plate."
     )]
     NoPlate {
         /// Distance of its lowest from its highest points, mm.
@@ -52,8 +52,8 @@ pub enum AlignError {
     },
     /// The shape does not fit.
     #[error(
-        "the scan does not fit the outline of the part: {percent:.0} % of its points stay more than half a bead on the wrong \
-         side of it, at most {most:.0} % may. Is it of this part?"
+        "the scan does not fit the outline of the part: {percent:.0} % of its points are more than half a bead on the wrong \
+         side of it; at most {most:.0} % may be. Is it a scan of this part?"
     )]
     NoFit {
         /// Part of the points, %.
@@ -67,11 +67,11 @@ pub enum AlignError {
 const ASTRAY: f64 = 0.1;
 /// Points keep this distance from the outline, in bead widths: it centres a scan that has room to move.
 const MARGIN: f64 = 0.125;
-/// Once a scan lies nearly right, points within so many margins of the outline are looked at.
+/// Once a scan is nearly aligned, points within this many margins of the outline are considered.
 const NEAR: f64 = 16.0;
 /// Parts of the points that may lie below the plate and above the top, as noise.
 const NOISE: f64 = 0.02;
-/// Points up to this part of the range above the lowest show the plate.
+/// Points up to this part of the range above the lowest one show the plate.
 const PLATE: f64 = 0.1;
 /// A scan whose points range over less than this part of the height shows no plate.
 const SEES_PLATE: f64 = 0.5;
@@ -79,17 +79,17 @@ const SEES_PLATE: f64 = 0.5;
 const POINTS: (usize, usize) = (300, 3000);
 /// Turns from which a fit begins, °.
 const TURNS: [f64; 7] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0];
-/// Farther turned, a symmetric part would lie as well another way round, radians (45°).
+/// Turned farther, a symmetric part would fit as well another way round, radians (45°).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 /// Another start must leave less than this part of what an earlier one leaves.
 const BETTER: f64 = 0.8;
-/// Most steps of a fit, and the step that ends it, mm.
+/// Maximum number of steps of a fit, and the step that ends it, mm.
 const STEPS: usize = 100;
 const LAST_STEP: f64 = 1e-4;
 /// Outlines are simplified by this much, mm.
 const SIMPLIFY: f64 = 0.02;
 
-/// Lays `points` (mm) on a build of these layers with beads of `width` (mm).
+/// Aligns `points` (mm) with a build of these layers with beads of `width` (mm).
 ///
 /// # Errors
 /// [`AlignError`].
@@ -124,7 +124,7 @@ impl Aligned {
 
     fn fit(&mut self, built: &[Layer], floor: f64, height: f64, width: f64) {
         let middle = floor + height / 2.0;
-        // Without a plate the height is not known: all points stand up. Points of the sides belong nowhere.
+        // Without a plate the height is not known: all points count as raised. Points of the sides belong nowhere.
         let stands = |p: &&DVec3| !self.plate || p.z > middle;
         let lies = |p: &&DVec3| self.plate && p.z < floor + PLATE * height;
         let points =

@@ -1,10 +1,10 @@
-//! The points of a grid at which heights are compared: inside the outlines, less the rounded edge of the outermost beads.
+//! The points of a grid at which heights are compared: inside the outlines, without the rounded edge of the outermost beads.
 
 use crate::deposit::RIM;
 use crate::deposit::field::Grid;
 use planar::{Join, Polygon, Region};
 
-/// The points inside the outlines less a rim of a quarter of a bead `width` (mm); without one, where nothing else is left.
+/// The points inside the outlines less a rim of a quarter of a bead `width` (mm); all of them where nothing would be left.
 pub fn core(grid: &Grid, islands: &[Polygon], width: f64) -> Vec<usize> {
     let whole = Region::from_normalised(islands.to_vec());
     let core = inside(grid, &whole.offset(-RIM * width, Join::ROUND));

@@ -23,7 +23,7 @@ pub enum Feedback {
 pub struct Rules {
     /// Least and greatest metal per length, as multiples of the planned one.
     pub window: (f64, f64),
-    /// Metal and height change at points so far apart, mm.
+    /// Metal and height change at points this far apart, mm.
     pub spacing: f64,
 }
 
@@ -38,7 +38,7 @@ pub struct Next {
     pub metal: (f64, f64),
     /// Pieces of its passes.
     pub pieces: usize,
-    /// Those that want more or less metal than the window allows.
+    /// Those that need more or less metal than the window allows.
     pub clipped: usize,
 }
 
@@ -104,7 +104,7 @@ impl Correction<'_> {
         pass
     }
 
-    /// Metal at a place as a multiple of the planned, within the window.
+    /// Metal at a place as a multiple of the planned metal, within the window.
     fn metal(&mut self, at: DVec3, width: f64) -> f64 {
         let wanted = (self.rung.height - self.error(at, width)) / self.planned;
         self.pieces += 1;

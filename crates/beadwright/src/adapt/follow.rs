@@ -1,4 +1,4 @@
-//! All layers that follow a scan, as nothing else is measured until the end.
+//! All layers that follow a scan, if nothing else is measured until the end.
 
 use super::area::core;
 use super::correct::{Feedback, Rules, next};
@@ -16,15 +16,15 @@ pub struct Followed {
     pub planned: usize,
     /// Pieces of their passes.
     pub pieces: usize,
-    /// Those that want more or less metal than the window allows.
+    /// Those that need more or less metal than the window allows.
     pub clipped: usize,
     /// Least and greatest metal of the first of them, as multiples of the planned one.
     pub metal: (f64, f64),
-    /// Expected height of the last one above the end of the plan, mm; of the scan, where no layer follows.
+    /// Expected height of the last one above the end of the plan, mm; that of the scan where no layer follows.
     pub end: Spread,
 }
 
-/// Plans the layers after the scanned one, whose number counts from 1.
+/// Plans the layers after the scanned one, whose number is counted from 1.
 pub fn follow(planned: &[Layer], number: usize, seen: &Seen, width: f64, rules: &Rules) -> Followed {
     let mut surface = seen.surface.clone();
     let (left, mut core_points) = (planned.len().saturating_sub(number), seen.core.clone());
@@ -37,7 +37,7 @@ pub fn follow(planned: &[Layer], number: usize, seen: &Seen, width: f64, rules: 
         end: Spread::default(),
     };
     let Some(levels) = Levels::of(planned) else { return followed };
-    // Each layer is a layer nearer to the end but for what the window holds back.
+    // Each layer is a layer nearer to the end, except for what the window holds back.
     for index in number..2 * planned.len() {
         surface.settle(surface.spread(&core_points).mean);
         let Some(next) = next(planned, &levels, &surface, index, Feedback::Place, rules) else { break };

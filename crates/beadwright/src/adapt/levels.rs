@@ -1,4 +1,4 @@
-//! Where the layers that follow lie: so many that the last one ends at the height of the part.
+//! Where the layers that follow lie: as many as end the last one at the height of the part.
 
 use crate::layer::Layer;
 
@@ -33,7 +33,7 @@ impl Levels {
         self.tops[self.tops.len() - 1]
     }
 
-    /// The next of the layers that lead from the height `built` (mm) to the end, alike in their part of the planned ones;
+    /// The next of the layers that lead from the height `built` (mm) to the end, each the same part of the planned ones;
     /// `None` where less than half a layer is missing. Their number is the one that changes their thickness least.
     pub fn next(&self, built: f64) -> Option<Rung> {
         let (from, planned) = (self.number_at(built), self.tops.len() - 1);
@@ -55,7 +55,7 @@ impl Levels {
         (k - 1) as f64 + (z - self.tops[k - 1]) / (self.tops[k] - self.tops[k - 1])
     }
 
-    /// The height at which so many planned layers end, mm.
+    /// The height at which this many planned layers end, mm.
     fn height_at(&self, number: f64) -> f64 {
         let k = (number.max(0.0) as usize).min(self.tops.len() - 2);
         self.tops[k] + (number - k as f64) * (self.tops[k + 1] - self.tops[k])

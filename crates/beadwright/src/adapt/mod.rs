@@ -3,8 +3,8 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | [`scan`] | reads scans: PLY, tables of points, height maps |
-//! | [`align`](mod@align) | lays a scan on the part |
-//! | [`see`](mod@see) | compares it with what the plan promises, and refuses what cannot be |
+//! | [`align`](mod@align) | aligns a scan with the part |
+//! | [`see`](mod@see) | compares it with what the plan promises, and refuses what cannot be true |
 //! | [`surface`] | how far a build is from what is promised, and what a layer changes of it |
 //! | [`area`] | where heights are compared |
 //! | [`levels`] | how many layers follow, and where they lie |

@@ -7,7 +7,7 @@ use crate::deposit::picture::{EMPTY, FIRST_HEIGHT};
 use crate::number::fixed;
 use crate::report::sheet::{Row, Sheet};
 
-/// Pictures have at most about so many pixels along a side.
+/// Pictures have at most about this many pixels along a side.
 const PIXELS: usize = 400;
 
 /// Heights of a grid as a picture: 0 in the middle of the scale, ±`most` (mm) at its ends; nothing where there is none.
@@ -50,14 +50,14 @@ pub fn page(part: &str, number: usize, z: f64, seen: &Seen, sentences: &[String]
         sheet.text(sentence);
     });
     let head = ["mean mm", "RMS mm", "lowest mm", "highest mm"];
-    sheet.heading("Measured less predicted").table(&head, &[cells(&seen.error)]);
+    sheet.heading("Measured minus predicted").table(&head, &[cells(&seen.error)]);
     let error = |i: usize| seen.surface.error(i);
     let measured = |i: usize| Some(seen.predicted[i]? + error(i)?);
     let most = [seen.error.low, seen.error.high].into_iter().fold(0.1, |most: f64, error| most.max(error.abs()));
     let pictures = [
         ("predicted, above the planned top", relief(&seen.surface, most, |i| seen.predicted[i])),
         ("measured, above the planned top", relief(&seen.surface, most, measured)),
-        ("measured less predicted", relief(&seen.surface, most, error)),
+        ("measured minus predicted", relief(&seen.surface, most, error)),
     ];
     let columns: Vec<_> = pictures.iter().map(|(name, picture)| ((*name).to_owned(), vec![Some(picture)])).collect();
     sheet.heading("Pictures").heights(&key(most), &[format!("layer {number}")], &columns);

@@ -1,10 +1,10 @@
-//! What a scan says of a build: how far each place is from what the plan promises.
+//! What a scan says about a build: how far each place is from what the plan promises.
 //!
-//! After layer N the plan promises its top z on the mean, with the shape that the deposit model gives the layer's beads, as
-//! levelled as the surface is. Points inside the outline, less its rim, are compared with that, but for places where the
-//! model itself foretells a hollow or a hump, as at the ends of beads: it is no measure there. The middle one of those in a
-//! cell of the grid counts, so that spatter does not. Where nothing was measured, the nearest measured cells stand in,
-//! weighted by 1/d².
+//! After layer N the plan promises its top z on average, with the shape that the deposit model gives the layer's beads, as
+//! levelled as the surface is. Points inside the outline, without its rim, are compared with that, except at places where
+//! the model itself predicts a hollow or a hump, such as at the ends of beads: it is no measure there. The middle one of
+//! those in a cell of the grid counts, so that spatter does not. Where nothing was measured, the nearest measured cells
+//! stand in, weighted by 1/d².
 
 use super::area::{core, near};
 use super::surface::{Spread, Surface};
@@ -14,24 +14,24 @@ use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Fewer points over a layer tell nothing.
+/// Fewer points over a layer say nothing.
 pub const FEWEST: usize = 3;
 /// A build is not farther from its plan than this part of its height, …
 pub const FARTHEST: f64 = 0.35;
-/// … or than so many layers, where that is more.
+/// … or than this many layers, where that is more.
 pub const FARTHEST_LAYERS: f64 = 2.0;
 /// A build whose heights deviate by more layers than this from their mean is another build.
 pub const UNEVEN: f64 = 2.0;
-/// Of the points above half the height, at most this part may lie beside the part by more than a bead width.
+/// Of the points above half the height, at most this part may lie outside the part by more than a bead width.
 pub const BESIDE: f64 = 0.2;
 
-/// Where the shape of a layer is foretold to be this part of its thickness above or below its top, nothing is compared.
+/// Where the shape of a layer is predicted to be this part of its thickness above or below its top, nothing is compared.
 const DOUBTFUL: f64 = 0.3;
 
 /// Cells that stand in where nothing was measured.
 const STAND_IN: usize = 8;
 
-/// A scan beside its plan.
+/// A scan compared with its plan.
 #[derive(Debug, Clone)]
 pub struct Seen {
     /// The build as it was measured.
@@ -40,7 +40,7 @@ pub struct Seen {
     pub core: Vec<usize>,
     /// Predicted height of each point of the grid above the layer's planned top, mm; `None` where there is no metal.
     pub predicted: Vec<Option<f64>>,
-    /// Measured less predicted heights inside the outline less its rim, mm.
+    /// Measured minus predicted heights inside the outline without its rim, mm.
     pub error: Spread,
     /// Points of the scan that were compared.
     pub points: usize,
@@ -52,7 +52,7 @@ pub struct Seen {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SeeError {
     /// No such layer.
-    #[error("the plan has the layers 1 to {layers}; layer {number} is none of them.")]
+    #[error("the plan has the layers 1 to {layers}; layer {number} is not one of them.")]
     NoLayer {
         /// The number that was asked for.
         number: usize,
@@ -72,9 +72,9 @@ pub enum SeeError {
         /// Number of the layer, from 1.
         number: usize,
     },
-    /// Much of what the scan shows lies beside the part.
+    /// Much of what the scan shows lies outside the part.
     #[error(
-        "{percent:.0} % of the scan's points above half the height of layer {number} lie beside the part by more than a bead \
+        "{percent:.0} % of the scan's points above half the height of layer {number} lie outside the part by more than a bead \
          width: the scan has other coordinates, or it is of another part."
     )]
     Beside {
@@ -83,9 +83,9 @@ pub enum SeeError {
         /// Number of the layer, from 1.
         number: usize,
     },
-    /// Another height than possible.
+    /// An impossible height.
     #[error(
-        "the scan is {measured:.2} mm high on the mean, but the plan {planned:.2} mm after layer {number}: more than {bound:.2} \
+        "the scan is {measured:.2} mm high on average, but the plan {planned:.2} mm after layer {number}: more than {bound:.2} \
          mm apart. The plan is that high after layer {nearest}. Check the number of the layer, and that z is 0 on the plate."
     )]
     Height {
@@ -103,7 +103,7 @@ pub enum SeeError {
     /// Not the shape of the layer.
     #[error(
         "the scan's heights over layer {number} deviate by {deviation:.2} mm from their mean, more than {bound:.2} mm: the \
-         scan is turned or shifted against the part, or it is of another part."
+         scan is turned or shifted relative to the part, or it is of another part."
     )]
     Uneven {
         /// Standard deviation, mm.
@@ -139,7 +139,7 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     Ok(Seen { surface, core, predicted, error, points: inside, covered })
 }
 
-/// The height that is foretold of each point with metal, above the layer's top, mm; and the points at which it is a measure.
+/// The height predicted for each point with metal, above the layer's top, mm; and the points at which it is a measure.
 fn predicted(surface: &Surface, layer: &Layer, width: f64) -> (Vec<Option<f64>>, Vec<usize>) {
     let mut shape = surface.clone();
     shape.lay(&Layer::default(), layer);
@@ -153,7 +153,7 @@ fn predicted(surface: &Surface, layer: &Layer, width: f64) -> (Vec<Option<f64>>,
     ((0..surface.grid().points()).map(above).collect(), core)
 }
 
-/// Refuses a scan that shows much beside the part.
+/// Refuses a scan that shows much outside the part.
 fn beside(built: &[Layer], points: &[DVec3], surface: &Surface, nominal: Nominal) -> Result<(), SeeError> {
     let grid = surface.grid();
     let mut allowed = vec![false; grid.points()];
@@ -170,7 +170,7 @@ fn beside(built: &[Layer], points: &[DVec3], surface: &Surface, nominal: Nominal
 /// A point of the grid near which the scan has points.
 struct Cell {
     at: usize,
-    /// The middle one of their heights, measured less predicted, mm.
+    /// The middle one of their heights, measured minus predicted, mm.
     error: f64,
     points: usize,
 }

@@ -2,9 +2,9 @@
 //!
 //! A layer lays its beads as the deposit model does, and the pools level what they melt: where a layer laid metal, the error
 //! of the height spreads by conduction, 2 D t = (w/3)² a layer, as far as the layer's metal reaches and not beyond. Both are
-//! linear, so the error after a layer is that before it, plus the metal laid, less the metal promised, levelled; its sum
+//! linear, so the error after a layer is that before it, plus the metal laid, minus the metal promised, levelled; its sum
 //! changes by exactly the metal that was too much or too little. A bead that hangs out over the layer below begins at the
-//! height of the metal beside it.
+//! height of the metal next to it.
 //!
 //! The model knows no flow along the path beyond a bead's width, no heat, no arc that lengthens where it is low, and no
 //! metal that drips.
@@ -16,7 +16,7 @@ use crate::layer::Layer;
 use glam::DVec2;
 use planar::Bounds;
 
-/// Grid points across a bead, unless that were more than [`MOST_POINTS`]. Odd, so that a bead along a row of points covers
+/// Grid points across a bead, unless that would be more than [`MOST_POINTS`]. Odd, so that a bead along a row of points covers
 /// as many rows as it is wide, and none lies on its edges.
 const POINTS_ACROSS: f64 = 7.0;
 /// No surface has more points.
@@ -25,9 +25,9 @@ const MOST_POINTS: f64 = 4e6;
 const LEVELLED: f64 = 1.0 / 3.0;
 /// Greatest part of a difference that flows to a neighbouring point in one step: above 0.25 the steps would not be stable.
 const FLOW: f64 = 0.2;
-/// A point that no metal reached for so many layers lies beside the wall: a bead that comes back hangs.
+/// A point that no metal has reached for this many layers lies next to the wall: a bead that comes back overhangs.
 const RECENT: usize = 3;
-/// Thinner metal is none, mm.
+/// Thinner metal counts as none, mm.
 const NO_METAL: f64 = 1e-9;
 
 /// The error of the height of a build after some of its layers.
@@ -140,7 +140,7 @@ impl Surface {
         }
     }
 
-    /// From here on the build should be `by` (mm) higher than it should so far.
+    /// From here on the build should be `by` (mm) higher than it should have been so far.
     pub fn settle(&mut self, by: f64) {
         self.level += by;
         self.error.iter_mut().for_each(|error| *error -= by);
@@ -163,7 +163,7 @@ impl Surface {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// The errors at some points of the grid, those without metal aside.
+    /// The errors at some points of the grid, except those without metal.
     pub fn spread(&self, points: &[usize]) -> Spread {
         Spread::of(points.iter().filter_map(|&i| self.error(i)))
     }
@@ -197,7 +197,7 @@ impl Surface {
         [point - 1, point + 1, point - columns, point + columns]
     }
 
-    /// Marks the points that a layer touches. Those that no metal lies under take the height of what is beside them, wave
+    /// Marks the points that a layer touches. Those that no metal lies under take the height of what is next to them, wave
     /// after wave from there.
     fn hang(&mut self, touched: &[usize]) {
         let now = self.layers;
@@ -209,7 +209,7 @@ impl Surface {
             let borders = |i: &usize| self.around(*i).iter().any(|&j| self.error(j).is_some());
             let (wave, rest): (Vec<usize>, Vec<usize>) = hanging.iter().partition(|&i| borders(i));
             let heights: Vec<f64> = wave.iter().map(|i| beside(i).mean).collect();
-            // Nothing beside: it begins where it should.
+            // Nothing next to it: it begins where it should.
             let (wave, heights) = if wave.is_empty() { (rest.clone(), vec![0.0; rest.len()]) } else { (wave, heights) };
             hanging = if wave.len() == hanging.len() { Vec::new() } else { rest };
             for (i, height) in wave.into_iter().zip(heights) {

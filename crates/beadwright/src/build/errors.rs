@@ -28,7 +28,7 @@ pub struct Errors {
 const METAL: (f64, f64) = (0.2, 2.0);
 /// Metal of a lost pass: none that counts, but its path is known.
 const LOST: f64 = 1e-6;
-/// Pieces along which the error stays the same: so many for a length of correlation.
+/// Number of pieces per correlation length; along each the error stays the same.
 const PIECES: f64 = 8.0;
 
 impl Errors {

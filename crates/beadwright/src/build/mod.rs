@@ -1,8 +1,8 @@
-//! A plan welded in the model of height (`adapt::surface`), with errors and with what a scanner corrects after each layer.
+//! A plan welded in the height model (`adapt::surface`), with errors and with corrections by a scan after each layer.
 //!
 //! Every bead comes out with more or less metal than commanded ([`Errors`]); the surface takes it; after each layer a scan
-//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). Where beads depend on heat, the metal warms up as it is
-//! laid, and walls grow less. All numbers are seeded.
+//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). Where beads depend on
+//! heat, the metal warms up as it is laid, and walls grow less. All numbers are seeded.
 
 mod errors;
 pub mod page;
@@ -29,7 +29,7 @@ pub struct Settings {
     pub errors: Errors,
     /// How far corrections may go.
     pub rules: Rules,
-    /// Heat that the plan does not know of; `None` where it does, or beads do not depend on it.
+    /// Heat that the plan does not account for; `None` where it does, or beads do not depend on it.
     pub heat: Option<Heat>,
 }
 
@@ -45,8 +45,8 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// Welds a layer. What warm metal lets flow to the sides of a wall adds nothing to its height; between beads side by
-    /// side it stays where it is.
+    /// Welds a layer. Metal that flows to the sides of a warm wall adds nothing to its height; between beads side by side it
+    /// stays where it is.
     fn spread(&mut self, laid: &mut Layer) {
         let (warm, Self { plate, law, rise }) = (self.plate.layer(laid), &*self);
         for (pass, warm) in laid.passes.iter_mut().zip(&warm.passes).filter(|(pass, _)| pass.kind == PassKind::Wall) {
@@ -55,7 +55,7 @@ impl Heat {
     }
 }
 
-/// A build that was welded in the model.
+/// A build welded in the model.
 #[derive(Debug, Clone)]
 pub struct Built {
     /// How its layers were corrected.
@@ -68,18 +68,18 @@ pub struct Built {
     pub layer_height: f64,
     /// Pieces of passes that were laid.
     pub pieces: usize,
-    /// Those that wanted more or less metal than the window allows.
+    /// Those that needed more or less metal than the window allows.
     pub clipped: usize,
 }
 
 /// A layer after it was welded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuiltLayer {
-    /// Top that it should have, mm.
+    /// The top that it should have, mm.
     pub z: f64,
     /// Its height above that, mm, inside the outline less its rim.
     pub error: Spread,
-    /// The same from above, ± a layer height, of some layers.
+    /// The same seen from above, ± a layer height, for some layers.
     pub picture: Option<Picture>,
 }
 
@@ -90,9 +90,9 @@ impl Built {
     }
 }
 
-/// Most layers of a build, as a multiple of the planned ones: where metal is lost again and again, it never ends.
+/// Maximum number of layers of a build, as a multiple of the planned ones: if metal is lost again and again, it never ends.
 const MOST_LAYERS: usize = 2;
-/// About so many layers have a picture.
+/// About this many layers have a picture.
 const PICTURES: usize = 50;
 
 /// Welds a plan. `None` for a plan without layers, or whose tops do not rise.

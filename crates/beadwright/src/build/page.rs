@@ -9,7 +9,7 @@ use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
 use glam::DVec2;
 
-/// What people call a kind of feedback.
+/// The name of a kind of feedback, for people.
 pub fn name(by: Feedback) -> &'static str {
     match by {
         Feedback::None => "open loop",
@@ -18,12 +18,12 @@ pub fn name(by: Feedback) -> &'static str {
     }
 }
 
-/// The page of a part that was built in several ways.
+/// The page of a part that was built in different ways.
 pub fn page(part: &str, builds: &[Built], settings: &Settings) -> Sheet {
     let errors = &settings.errors;
     let lost = errors.lost.map_or("no pass lost".to_owned(), |pass| format!("pass {pass} lost"));
     let lead = format!(
-        "Welded in the model of height: ±{} % from pass to pass, ±{} % along them over {} mm, {:+} % over the build, {lost}; \
+        "Welded in the height model: ±{} % from pass to pass, ±{} % along them over {} mm, {:+} % over the build, {lost}; \
          scans with ±{} mm; seed {}.",
         100.0 * errors.pass,
         100.0 * errors.along,
@@ -43,10 +43,12 @@ pub fn page(part: &str, builds: &[Built], settings: &Settings) -> Sheet {
         begin.into_iter().chain(cells(&built.end)).chain([rms]).collect()
     };
     sheet
-        .heading("The top in the end, against the end of the plan")
+        .heading("The final top, against the end of the plan")
         .table(&head, &builds.iter().map(row).collect::<Vec<_>>());
     sheet.heading("Layer by layer");
-    sheet.text("Height of the top against what it should be: without feedback the plan, with it the height aimed at after the scan below.");
+    sheet.text(
+        "Height of the top against its target: the plan, or with feedback the height aimed at after the scan below.",
+    );
     sheet.svg(
         &plot("Error of the height (RMS)", builds, |built, i| built.layers[i].error.rms / built.layer_height).svg(),
     );
@@ -71,7 +73,7 @@ fn plot(title: &str, builds: &[Built], value: impl Fn(&Built, usize) -> f64) -> 
     }
 }
 
-/// The tops after layers, against what they should be.
+/// The tops after layers, against their targets.
 fn pictures(sheet: &mut Sheet, builds: &[Built]) {
     let count = builds.iter().map(|built| built.layers.len()).max().unwrap_or_default();
     let shown: Vec<usize> = (0..count).filter(|&i| builds.iter().any(|built| picture(built, i).is_some())).collect();
@@ -81,7 +83,7 @@ fn pictures(sheet: &mut Sheet, builds: &[Built]) {
         .map(|built| (name(built.by).to_owned(), shown.iter().map(|&i| picture(built, i)).collect()))
         .collect();
     let most = builds.first().map_or(1.0, |built| built.layer_height);
-    sheet.heading("The top after a layer, above what it should be").heights(&key(most), &labels, &columns);
+    sheet.heading("The top after a layer, against its target").heights(&key(most), &labels, &columns);
 }
 
 fn picture(built: &Built, layer: usize) -> Option<&Picture> {

@@ -7,7 +7,7 @@ use planar::{Join, Region};
 pub(super) const CHECK: Check = Check {
     name: "air",
     what: "the arc on where the layer has no metal to lay",
-    why: "a bead is welded across an opening or beside the part, as if a travel were made with the arc on",
+    why: "a bead is welded across an opening or next to the part, as if a travel were made with the arc on",
     example: "layer 2, pass 5, x 10.0 y 4.0 z 4.00 mm: the arc is on outside the part for 12.3 mm.",
     remedy: "split the pass there, so that the torch travels with the arc off",
     find,

@@ -6,10 +6,10 @@ use glam::DVec2;
 
 pub(super) const CHECK: Check = Check {
     name: "alternating-ends",
-    what: "places where starts and ends of passes meet in twice check.stacked_starts layers, one after another",
+    what: "places where starts and ends of passes meet on twice check.stacked_starts consecutive layers",
     why: "every arc is struck on a crater: pores and cracks gather in one line up the part",
-    example: "layer 25, pass 1, x 0.0 y 3.0 z 50.00 mm: starts and ends of passes meet at this place on 24 layers, one after another.",
-    remedy: "move the ends from layer to layer by more than a bead width, or lay passes that close",
+    example: "layer 25, pass 1, x 0.0 y 3.0 z 50.00 mm: starts and ends of passes meet at this place on 24 consecutive layers.",
+    remedy: "move the ends from layer to layer by more than a bead width, or lay closed passes",
     find,
 };
 
@@ -36,11 +36,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let on = |end: &&End| end.at.distance(at) < near;
             let meets = |end: &&End| on(end) && end.starts != starts;
             let under = below.iter().filter(on).map(|end| end.met).max().unwrap_or(0);
-            // A start in this layer, before this end was laid, is no crater.
+            // A start in this layer, before this end was laid, is not a crater.
             let met = below.iter().any(|end| meets(&end)) || (starts && here.iter().any(|end| meets(&end)));
             let met = if met { under + 1 } else { 0 };
             if met == most {
-                let text = format!("starts and ends of passes meet at this place on {met} layers, one after another.");
+                let text = format!("starts and ends of passes meet at this place on {met} consecutive layers.");
                 findings.push(CHECK.of_pass(layer, pass, Some(at.extend(layer.z)), text));
             }
             here.push(End { at, starts, met });

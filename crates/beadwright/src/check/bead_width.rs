@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "bead widths far from bead.width",
     why: "a bead follows its speed only within a window; beyond it the arc wanders or the pool runs off",
     example: "layer 5, pass 2: the bead is 12.0 mm wide; 3.8 to 11.3 mm are possible.",
-    remedy: "keep widths within hybrid.min_width and max_width, or take another bead",
+    remedy: "keep widths between hybrid.min_width and max_width, or use another bead",
     find,
 };
 

@@ -4,12 +4,13 @@ use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
     name: "built-height",
-    what: "parts whose metal, bead laid on bead, ends more than a layer above or below the plan over a quarter of the area or more",
+    what: "parts whose metal, bead laid on bead, ends more than a layer above or below the plan over a quarter of the area \
+           or more",
     why: "the torch stays at the planned heights: its stick-out grows or shrinks with every layer, until the arc fails",
     example: "after the last layer 35 % of the area lies within one layer height (2 mm) of the plan, on average 13.95 mm \
               below it, at most 0.31 mm above and 23.78 mm below.",
-    remedy: "let layers be as high as their metal (layers.level = true) where they are not yet, or measure the layers as they \
-             are built and correct the rest (beadwright adapt)",
+    remedy: "set layers.level = true so that layers are as high as their metal, if it is not set, or measure the layers as \
+             they are built and correct the rest (beadwright adapt)",
     find,
 };
 
@@ -23,8 +24,8 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     };
     let side = if built.mean < 0.0 { "below" } else { "above" };
     let text = format!(
-        "after the last layer {:.0} % of the area lies within one layer height ({:.2} mm) of the plan, on average {:.2} mm {side} \
-         it, at most {:.2} mm above and {:.2} mm below.",
+        "after the last layer {:.0} % of the area lies within one layer height ({:.2} mm) of the plan, on average {:.2} mm \
+         {side} it, at most {:.2} mm above and {:.2} mm below.",
         100.0 * built.within,
         last.height,
         built.mean.abs(),

@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "a torch (process.ctwd above 0) with a travel.clearance of 0",
     why: "the wire is dragged over the beads that were just laid",
     example: "travel.clearance = 0: the wire would be dragged over fresh beads.",
-    remedy: "set travel.clearance to some millimetres more than a bead is high",
+    remedy: "set travel.clearance to a few millimetres more than the height of a bead",
     find,
 };
 

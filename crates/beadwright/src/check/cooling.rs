@@ -4,17 +4,18 @@ use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
     name: "cooling",
-    what: "layers over in less than check.cooling_time, where the program waits nowhere (a torch only)",
+    what: "layers over in less than check.cooling_time, where the program has no waits (welding torches only)",
     why: "the next layer is welded onto metal that still glows: beads spread and walls sag",
-    example: "layer 30: it takes 8 s, and nothing waits before the next layer; 12 layers take less than 15 s.",
-    remedy: "set start_stop.interpass_time or start_stop.min_layer_time, weld several parts in turn, or lower check.cooling_time if you cool in another way",
+    example: "layer 30: it takes 8 s, and there is no wait before the next layer; 12 layers take less than 15 s.",
+    remedy: "set start_stop.interpass_time or start_stop.min_layer_time, weld several parts alternately, or lower \
+             check.cooling_time if you cool in another way",
     find,
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (profile, limits) = (subject.profile, &subject.profile.check);
     let waits = profile.start_stop.interpass_time > 0.0 || profile.start_stop.min_layer_time > 0.0;
-    // Printers weld nothing; a limit of its own tells more.
+    // Printers weld nothing; a separate limit says more.
     if waits || profile.process.ctwd <= 0.0 || limits.min_layer_time.is_some() {
         return Vec::new();
     }
@@ -26,6 +27,6 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         1 => String::new(),
         count => format!("; {count} layers take less than {least} s"),
     };
-    let text = format!("it takes {seconds:.0} s, and nothing waits before the next layer{more}.");
+    let text = format!("it takes {seconds:.0} s, and there is no wait before the next layer{more}.");
     vec![CHECK.of_layer(layer, None, text)]
 }

@@ -5,10 +5,10 @@ use crate::process::Process;
 
 pub(super) const CHECK: Check = Check {
     name: "heat-input",
-    what: "heat per length of bead above check.max_heat_input; and layers done before check.min_layer_time is over",
+    what: "heat per length of bead above check.max_heat_input, and layers finished before check.min_layer_time is over",
     why: "the layer below is still too hot, so beads spread, walls sag and the structure coarsens",
     example: "layer 30: it takes 8 s; at least 30 s are needed to cool.",
-    remedy: "weld faster or with less current, weld several parts in turn, or wait (start_stop.min_layer_time)",
+    remedy: "weld faster or with less current, weld several parts alternately, or wait (start_stop.min_layer_time)",
     find,
 };
 

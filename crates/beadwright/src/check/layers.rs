@@ -4,10 +4,10 @@ use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
     name: "layers",
-    what: "layers without passes though the part goes on, layers out of order, and gaps between them",
+    what: "layers without passes although the part continues, layers out of order, and gaps between them",
     why: "the next layer is welded into the air, or the torch runs into the part",
-    example: "layer 7: it begins 2.00 mm above the layer below.",
-    remedy: "plan with beads that fit the part, and keep the layers in their order",
+    example: "layer 7: it begins 2.00 mm above the top of the layer below.",
+    remedy: "plan with beads that fit the part, and keep the layers in order",
     find,
 };
 
@@ -21,11 +21,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let end = subject.layers.iter().rposition(|layer| !layer.passes.is_empty()).map_or(0, |last| last + 1);
     for layer in &subject.layers[..end] {
         let bottom = layer.z - layer.height;
-        // On the plate another part may begin.
+        // Another part may begin on the plate.
         let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - below };
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
             let way = if gap < 0.0 { "inside" } else { "above" };
-            let text = format!("it begins {:.2} mm {way} the layer below.", gap.abs());
+            let text = format!("it begins {:.2} mm {way} the top of the layer below.", gap.abs());
             findings.push(CHECK.of_layer(layer, None, text).sized(gap.abs()));
         }
         if layer.passes.is_empty() {

@@ -1,4 +1,4 @@
-//! Travels through what stands.
+//! Travels through metal that is already there.
 
 use super::{Check, Finding, Subject};
 use crate::layer::Layer;
@@ -8,20 +8,20 @@ use std::collections::HashMap;
 
 pub(super) const CHECK: Check = Check {
     name: "low-travel",
-    what: "travels that pass metal laid before at less than half of travel.clearance above it",
-    why: "a travel rises above its own two ends only; what stands higher on the way is hit by the nozzle",
-    example: "layer 4, pass 1, x 5.0 y 0.0 z 12.00 mm: the travel to it runs 6.0 mm below metal that already stands there.",
-    remedy: "keep the layers in their order, build tall parts last, or raise travel.clearance",
+    what: "travels that pass less than half of travel.clearance above metal laid before",
+    why: "a travel rises above its own two ends only; the nozzle hits anything higher on the way",
+    example: "layer 4, pass 1, x 5.0 y 0.0 z 12.00 mm: the travel to it runs 6.0 mm below metal that is already there.",
+    remedy: "keep the layers in order, build tall parts last, or raise travel.clearance",
     find,
 };
 
-/// A travel this close to what stands, as a share of the clearance, is too low.
+/// A travel this close to the metal below, as a share of the clearance, is too low.
 const TOO_CLOSE: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (clearance, mut standing) = (subject.profile.travel.clearance, Standing::new(subject.profile.bead.width));
     let sound = |layer: &Layer| layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
-    // Without clearance all travels are too low, which a check of its own tells.
+    // Without clearance all travels are too low, which a separate check reports.
     if clearance <= 0.0 {
         return Vec::new();
     }
@@ -59,10 +59,10 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 
 fn sentence(gap: f64) -> String {
     let how = if gap < 0.0 { format!("{:.1} mm below", -gap) } else { format!("only {gap:.1} mm above") };
-    format!("the travel to it runs {how} metal that already stands there.")
+    format!("the travel to it runs {how} metal that is already there.")
 }
 
-/// How high the metal stands, in cells of a bead width.
+/// How high the metal is, in cells of a bead width.
 struct Standing {
     width: f64,
     tops: HashMap<[i64; 2], f64>,

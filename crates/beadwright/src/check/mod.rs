@@ -108,19 +108,19 @@ pub struct Check {
     find: fn(&Subject<'_>) -> Vec<Finding>,
 }
 
-/// The plan to be checked, with what the deposit model says of it.
+/// The plan to be checked, with what the deposit model says about it.
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
     profile: &'a Profile,
-    /// What the deposit model says of each layer.
+    /// What the deposit model says about each layer.
     figures: Vec<Figures>,
     /// How the part grows from layer to layer.
     growth: Vec<Growth>,
-    /// What stands in the end.
+    /// What is there at the end.
     built: Option<Growth>,
 }
 
-/// What the deposit model says of a plan.
+/// What the deposit model says about a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LayerFigures {
     /// The figures of each layer.
@@ -136,7 +136,7 @@ pub struct LayerFigures {
 pub struct Grown {
     /// After each layer, where that layer lies.
     pub layers: Vec<Growth>,
-    /// In the end, everywhere; `None` where nothing is laid.
+    /// At the end, everywhere; `None` where nothing is laid.
     pub built: Option<Growth>,
 }
 
@@ -187,7 +187,7 @@ fn extent<L: Borrow<Layer>>(layers: &[L]) -> Option<Bounds> {
     Bounds::of(points.filter(|p| p.is_finite()).map(|p| p.truncate()))
 }
 
-/// Points that are not finite numbers are found by a check of their own; the deposit model cannot handle them.
+/// Points that are not finite numbers are found by a separate check; the deposit model cannot handle them.
 fn is_finite(layer: &Layer) -> bool {
     layer.passes.iter().flat_map(|pass| &pass.points).all(|p| p.is_finite())
 }
@@ -214,7 +214,7 @@ pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: 
     CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
 }
 
-/// The check of a name.
+/// The check with this name.
 pub fn by_name(name: &str) -> Option<&'static Check> {
     CHECKS.iter().find(|check| check.name == name)
 }
@@ -230,7 +230,7 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
     CHECKS.iter().filter_map(of).collect()
 }
 
-/// All that is to be said of a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
+/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
 /// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are in the `words` of the
 /// program that people use.
 pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding], words: Words) -> Vec<Finding> {
@@ -287,7 +287,7 @@ impl Subject<'_> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
     }
 
-    /// Those that are beads: of dots the profile says how long they take and how high they are.
+    /// Those that are beads: for dots, the profile says how long they take and how high they are.
     fn beads(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.passes().filter(|(_, _, pass)| pass.kind != PassKind::Spot)
     }
@@ -297,8 +297,8 @@ impl Subject<'_> {
         layer.passes.iter().map(|pass| pass.seconds(&self.profile.process)).sum()
     }
 
-    /// A finding for each layer whose figure is above the limit; turns of a helix are no flat layers, so these figures say nothing
-    /// of them.
+    /// A finding for each layer whose figure is above the limit; turns of a helix are not flat layers, so these figures say
+    /// nothing about them.
     fn above(&self, check: &Check, value: fn(&Figures) -> f64, limit: f64, words: &str) -> Vec<Finding> {
         let flat = self.layers.iter().zip(&self.figures).filter(|(layer, _)| !layer.lit.is_turn());
         let over = flat.filter(|(_, figures)| value(figures) > limit);

@@ -5,9 +5,9 @@ use super::{Check, Finding, Subject};
 pub(super) const CHECK: Check = Check {
     name: "outside",
     what: "layers with more metal outside the outline in the deposit model than check.max_outside",
-    why: "the part is too large there, and a wall beside it is not upright",
+    why: "the part is too large there, and a wall next to it is not upright",
     example: "layer 6: 5.00 % of the area is laid outside the outline; the limit is 3 %.",
-    remedy: "keep passes half a bead inside the outline, or allow for it by fill.machining_allowance",
+    remedy: "keep passes half a bead inside the outline, or allow for it with fill.machining_allowance",
     find,
 };
 

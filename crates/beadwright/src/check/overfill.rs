@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "layers with more overfill in the deposit model than check.max_overfill",
     why: "humps grow from layer to layer until the torch hits them",
     example: "layer 2: 14.00 % of the area is laid too high; the limit is 12 %.",
-    remedy: "take a larger stepover or contour gap, or another strategy",
+    remedy: "use a larger stepover or contour gap, or another strategy",
     find,
 };
 

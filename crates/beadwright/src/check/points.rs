@@ -1,4 +1,4 @@
-//! Points that no controller can take.
+//! Points that no controller can handle.
 
 use super::{Check, Finding, Subject};
 use crate::layer::Layer;
@@ -7,10 +7,10 @@ use crate::program::MIN_MOVE_MM;
 
 pub(super) const CHECK: Check = Check {
     name: "points",
-    what: "coordinates that are no numbers, passes of a single spot, and points off the height of their layer",
+    what: "coordinates that are not numbers, passes of a single spot, and points off the height of their layer",
     why: "a controller stops at such a point with the arc on, or burns through",
     example: "layer 3, pass 2: the coordinate of point 17 is not a number.",
-    remedy: "plan the part again; if the plan was edited, mend the point",
+    remedy: "plan the part again; if the plan was edited, correct the point",
     find,
 };
 
@@ -36,5 +36,5 @@ fn fault(layer: &Layer, pass: &Pass) -> Option<String> {
     // The turn of a helix rises from the layer below.
     let lowest = layer.z - if layer.lit.is_turn() { 1.0 + OFF_HEIGHT } else { OFF_HEIGHT } * layer.height;
     let off = pass.points.iter().find(|p| p.z < lowest || p.z > layer.z + OFF_HEIGHT * layer.height);
-    off.map(|p| format!("a point lies at z {:.2} mm, but the layer at {:.2} mm.", p.z, layer.z))
+    off.map(|p| format!("a point lies at z {:.2} mm, but the layer is at {:.2} mm.", p.z, layer.z))
 }

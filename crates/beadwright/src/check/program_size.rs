@@ -7,8 +7,8 @@ pub(super) const CHECK: Check = Check {
     name: "program-size",
     what: "layers with more points than check.max_points, plans with more than check.max_plan_points",
     why: "the module of the layer does not load, or the controller's memory is full before the part is done",
-    example: "layer 3: it has 61000 points; 20000 are the most for one layer.",
-    remedy: "raise slice.simplify, let arcs be fitted, or load layer by layer",
+    example: "layer 3: it has 61000 points; the limit for one layer is 20000.",
+    remedy: "raise slice.simplify, fit arcs, or load layer by layer",
     find,
 };
 
@@ -16,11 +16,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (limits, sizes) = (&subject.profile.check, subject.layers.iter().map(|layer| (*layer, points(layer))));
     let most = limits.max_points as usize;
     let large = sizes.clone().filter(|(_, size)| *size > most);
-    let text = |count: usize| format!("it has {count} points; {most} are the most for one layer.");
+    let text = |count: usize| format!("it has {count} points; the limit for one layer is {most}.");
     let layers = large.map(|(layer, count)| CHECK.of_layer(layer, None, text(count)));
     let all: usize = sizes.map(|(_, size)| size).sum();
     let plan = limits.max_plan_points.filter(|most| all > *most as usize);
-    let plan = plan.map(|most| CHECK.of_plan(format!("The plan has {all} points; {most} are the most.")));
+    let plan = plan.map(|most| CHECK.of_plan(format!("The plan has {all} points; the limit is {most}.")));
     layers.chain(plan).collect()
 }
 

@@ -16,8 +16,8 @@ const PART: &str = "rehearsal";
 /// Moves of a circle.
 const MOVES: usize = 72;
 
-/// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs, and dialects of one's own,
-/// are not read for them; what a profile cannot write at all is refused elsewhere.
+/// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs, and dialects of your
+/// own, are not read for them; what a profile cannot write at all is refused elsewhere.
 pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
     let posts = profile.posts.iter().filter(|post| !own::is_folder(post) && *post != "marlin");
     posts.flat_map(|post| faults(profile, post).into_iter().map(|fault| (post.clone(), fault))).collect()

@@ -10,14 +10,14 @@ pub(super) const CHECK: Check = Check {
     what: "passes that run over themselves: out and back along the same line, less than a quarter of a bead apart",
     why: "metal is laid twice there; the ridge grows from layer to layer until the torch hits it",
     example: "layer 3, pass 2, x 10.0 y 4.0 z 6.00 mm: it runs over itself for 21.5 mm.",
-    remedy: "end the pass at the tip, or let it come back a whole bead beside its way out",
+    remedy: "end the pass at the tip, or bring it back a full bead away from its way out",
     find,
 };
 
-/// Samples along a pass, a bead width.
+/// Samples along a pass, per bead width.
 const SAMPLES: f64 = 4.0;
 /// Nearer than this share of the narrower bead, one lies on the other. In sharp corners beads of good fills lie half a
-/// width apart, over up to two widths; a quarter they keep everywhere.
+/// width apart, over up to two widths; they keep a quarter everywhere.
 const NEAR: f64 = 0.25;
 /// Places on a pass are compared if this many bead widths of it lie between them: beads at a corner always touch.
 const APART: f64 = 1.0;

@@ -7,7 +7,8 @@ pub(super) const CHECK: Check = Check {
     what: "passes shorter than fill.min_pass_length",
     why: "the arc is not stable before the pass is over; what is left is a blob",
     example: "layer 4, pass 9: it is 1.2 mm long; the shortest that welds is 5 mm.",
-    remedy: "raise fill.min_pass_length, so that planning leaves it out and reports it (except the only pass of an island), or join it to its neighbour",
+    remedy: "raise fill.min_pass_length, so that planning leaves it out and reports it (unless it is the island's \
+             only pass), or join it to its neighbour",
     find,
 };
 

@@ -4,7 +4,7 @@ use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
     name: "speed-window",
-    what: "deposition speeds below check.min_speed or above check.max_speed, or that are no speeds",
+    what: "deposition speeds below check.min_speed or above check.max_speed, or that are not valid speeds",
     why: "too slow burns through and sags, too fast leaves a bead that does not hold",
     example: "layer 1, pass 1: the deposition speed is 31.0 mm/s; the window is 4 to 20 mm/s.",
     remedy: "change process.deposition_speed, or the limits of bead width that make the speed follow",

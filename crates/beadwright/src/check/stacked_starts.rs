@@ -6,9 +6,9 @@ use crate::pass::{Pass, PassKind};
 
 pub(super) const CHECK: Check = Check {
     name: "stacked-starts",
-    what: "arc starts that lie above each other in check.stacked_starts layers, one after another",
+    what: "arc starts that lie above each other on check.stacked_starts consecutive layers",
     why: "every start is a little high and every end a little low: stacked, they become a tower and a hole",
-    example: "layer 9, pass 1: arcs start within 1.0 bead width of this place on 8 layers, one after another.",
+    example: "layer 9, pass 1: arcs start within 1.0 bead width of this place on 8 consecutive layers.",
     remedy: "move the seam from layer to layer, or alternate the direction",
     find,
 };
@@ -28,7 +28,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let under = below.iter().filter(|(at, _)| at.distance(start.truncate()) < NEAR * width);
             let count = 1 + under.map(|(_, count)| *count).max().unwrap_or(0);
             if count == most {
-                let text = format!("arcs start at this place on {count} layers, one after another.");
+                let text = format!("arcs start at this place on {count} consecutive layers.");
                 findings.push(CHECK.of_pass(layer, i, Some(start), text));
             }
             here.push((start.truncate(), count));

@@ -4,9 +4,9 @@ use super::{Check, Finding, Subject};
 
 pub(super) const CHECK: Check = Check {
     name: "towers",
-    what: "places where the metal, bead laid on bead, stands higher above the layer than travels pass (travel.clearance)",
+    what: "places where the metal, bead laid on bead, rises higher above the layer than the travels (travel.clearance)",
     why: "the torch runs into them on its way",
-    example: "layer 40, x 12.0 y 3.5 z 80.00 mm: the highest point stands 11.2 mm above the layer; travels pass 10 mm above it.",
+    example: "layer 40, x 12.0 y 3.5 z 80.00 mm: the highest point is 11.2 mm above the layer; travels pass 10 mm above it.",
     remedy: "alternate directions and start points from layer to layer, or raise travel.clearance",
     find,
 };
@@ -17,9 +17,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let Some((growth, layer)) = layers.find(|(growth, _)| clearance > 0.0 && growth.peak > clearance) else {
         return Vec::new();
     };
-    let text = format!(
-        "the highest point stands {:.1} mm above the layer; travels pass {clearance} mm above it.",
-        growth.peak
-    );
+    let text =
+        format!("the highest point is {:.1} mm above the layer; travels pass {clearance} mm above it.", growth.peak);
     vec![CHECK.of_layer(layer, Some(growth.peak_place.extend(layer.z)), text).sized(growth.peak)]
 }

@@ -5,9 +5,9 @@ use super::{Check, Finding, Subject};
 pub(super) const CHECK: Check = Check {
     name: "void",
     what: "layers with more void in the deposit model than check.max_void",
-    why: "voids stay in the part as pores and lacks of fusion",
+    why: "voids stay in the part as pores and lack of fusion",
     example: "layer 12: 4.10 % of the area stays empty; the limit is 3 %.",
-    remedy: "compare what other strategies leave, or take a smaller stepover or contour gap",
+    remedy: "compare what other strategies leave, or use a smaller stepover or contour gap",
     find,
 };
 

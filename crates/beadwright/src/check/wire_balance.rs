@@ -8,10 +8,10 @@ use crate::process::Follow;
 
 pub(super) const CHECK: Check = Check {
     name: "wire-balance",
-    what: "wire feed against bead, for the profile and along every pass",
+    what: "wire feed that does not match the bead, for the profile and along every pass",
     why: "too much wire makes the part grow into the torch, too little leaves it hollow and low",
     example: "the wire brings 113.1 mm³/s, but the bead takes 215.6 mm³/s at this deposition speed (−48 %).",
-    remedy: "take the deposition speed that the sentence names, or another wire feed",
+    remedy: "use the deposition speed named in the message, or a different wire feed",
     find,
 };
 
@@ -35,11 +35,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         let text = match process.follow {
             Follow::Speed => {
                 let speed = process.speed_at(s.pace);
-                format!("a bead {width:.2} mm wide is laid at {speed:.2} mm/s; the wire fits {fitting:.2} mm/s.")
+                format!("a bead {width:.2} mm wide is laid at {speed:.2} mm/s; the wire feed fits {fitting:.2} mm/s.")
             }
             Follow::WireFeed => {
                 let [feed, fitting] = [s.pace, fitting].map(|pace| 100.0 * process.feed_at(pace));
-                format!("a bead {width:.2} mm wide is laid with {feed:.0} % of the wire feed; it takes {fitting:.0} %.")
+                format!("a bead {width:.2} mm wide is laid with {feed:.0} % of the wire feed; it needs {fitting:.0} %.")
             }
         };
         Some(CHECK.of_pass(layer, i, Some(s.from).filter(|p| p.is_finite()), text))

@@ -1,4 +1,4 @@
-//! Beads as a table: one line a piece, units in the head.
+//! Beads as a table: one line per piece, units in the header.
 
 use super::table::{COUNTS, KIND, measures};
 use super::{Beads, ExportError, Format};

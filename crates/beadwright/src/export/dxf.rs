@@ -72,7 +72,7 @@ impl Drawing {
         }
     }
 
-    /// A polyline; `width` (mm) tells how wide it is from each point on.
+    /// A polyline; `width` (mm) gives its width from each point on.
     fn polyline(&mut self, layer: &str, points: &[DVec3], closed: bool, width: impl Fn(usize) -> f64) {
         let height = points.first().map_or(0.0, |p| p.z);
         let flat = points.iter().all(|p| (p.z - height).abs() < FLAT_MM);

@@ -40,13 +40,13 @@ pub struct Beads<'a> {
     pub layers: &'a [Layer],
     /// How they are welded.
     pub profile: &'a Profile,
-    /// How warm the metal is meanwhile, where that was computed.
+    /// How warm the metal is during welding, where that was computed.
     pub heat: Option<&'a History>,
 }
 
 /// A format for beads.
 pub struct Format {
-    /// The ending of its files.
+    /// The extension of its files.
     pub extension: &'static str,
     /// What it is for.
     pub purpose: &'static str,
@@ -68,7 +68,7 @@ pub enum ExportError {
     #[error("the table cannot be written: {0}")]
     Table(#[from] ::parquet::errors::ParquetError),
     /// More than the format can hold.
-    #[error("the file would have {gigabytes:.1} GB, and this format holds 4 GB; export it as STL")]
+    #[error("the file would be {gigabytes:.1} GB, but this format holds at most 4 GB; export it as STL")]
     TooLarge {
         /// Its size, GB.
         gigabytes: f64,
@@ -93,14 +93,14 @@ pub const FORMATS: &[Format] = &[
     glb::FORMAT,
 ];
 
-/// The format of files with this ending.
+/// The format of files with this extension.
 pub fn format(extension: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
 }
 
 /// A format for single layers.
 pub struct LayerFormat {
-    /// The ending of its files.
+    /// The extension of its files.
     pub extension: &'static str,
     /// What it is for.
     pub purpose: &'static str,
@@ -116,7 +116,7 @@ pub const LAYER_FORMATS: &[LayerFormat] = &[
     png::FORMAT,
 ];
 
-/// The format of layers in files with this ending.
+/// The format of layers in files with this extension.
 pub fn layer_format(extension: &str) -> Option<&'static LayerFormat> {
     LAYER_FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
 }

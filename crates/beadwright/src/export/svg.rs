@@ -73,7 +73,7 @@ fn bead(svg: &mut String, pass: &Pass) {
     svg.push_str("</g>\n");
 }
 
-/// The way of the torch along a pass.
+/// The path of the torch along a pass.
 fn middle(svg: &mut String, pass: &Pass) {
     svg.push_str(&format!("<path stroke=\"{}\" d=\"", colour(pass.kind)));
     line(svg, pass.line().into_iter());

@@ -1,6 +1,5 @@
 //! The shape as built: every bead a closed body, its cross-section swept along the path.
-//!
-//! The section stands upright across the path, on the bottom of its layer; its area is the metal that is laid there, and
+//! The section is upright across the path, on the bottom of its layer; its area is the metal that is laid there, and
 //! its shape the profile's. At a bend the body turns in the plane halfway between both directions, so that what the inside
 //! loses the outside gains, and the volume is the metal's exactly. Where the path turns by more than 90° a new body begins.
 //! Bodies of neighbouring beads overlap, as the formulas of single beads do; metal that fills craters has no shape here.
@@ -16,7 +15,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 /// Corners of a cross-section; a divisor of the accuracy of its shape, not of its area.
 const CORNERS: usize = 10;
 
-/// Pieces with a shorter way in the plane have no direction, mm.
+/// Pieces shorter than this in the plane have no direction, mm.
 const SHORTEST_MM: f64 = 1e-6;
 
 /// A bead, or the part of one between two sharp turns.
@@ -47,7 +46,7 @@ impl Stretch {
         let along = piece.to - piece.from;
         let level = along.truncate().length();
         (level > SHORTEST_MM).then(|| {
-            // The section stands upright also where the path climbs, and is then higher.
+            // The section is upright even where the path climbs, and is then higher.
             let area = metal / piece.pace * (along.length() / level);
             let down = DVec3::Z * piece.height;
             let section = section(shape, piece.width, area);
@@ -118,7 +117,7 @@ fn swept(chain: &[Stretch], closed: bool) -> Solid {
             _ if closed => across(count - 1, 0),
             _ => stretch.way.perp(),
         };
-        // The section of the piece before ends in the same plane; what differs is a step there.
+        // The section of the piece before ends in the same plane; any difference is a step there.
         for (at, across) in [(stretch.from, begin), (stretch.to, end)] {
             let corner = |c: &DVec2| at + (across * c.x).extend(c.y);
             solid.vertices.extend(stretch.section.iter().map(corner));

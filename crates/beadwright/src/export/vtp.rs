@@ -1,4 +1,4 @@
-//! Beads as VTK's XML poly data: one line a piece, with its values; numbers as base64 of little-endian bytes.
+//! Beads as VTK's XML poly data: one line per piece, with its values; numbers as base64 of little-endian bytes.
 //!
 //! In ParaView, the filter Tube with the radius by `width` shows the beads.
 

@@ -1,9 +1,9 @@
-//! Files that are complete or absent as a set: written beside their folder, which is exchanged for theirs in one step.
+//! Files that are complete or absent as a set: written next to their folder, which is exchanged for the new one in one step.
 //!
 //! A run that is killed, stopped or out of disk space leaves the folder as it was, and no controller ever finds layers of
-//! two plans in it. Files that Beadwright has not written stay. Where the file system cannot exchange folders, or the
+//! two plans in it. Files that Beadwright did not write stay. Where the file system cannot exchange folders, or the
 //! folder is the current one of this process (which a shell would go on seeing under its old name), the older set is moved
-//! out file by file and then the new one in.
+//! out file by file, and then the new one in.
 
 use super::stage::{self, Stage};
 use crate::dialect::Chunk;
@@ -18,11 +18,11 @@ use std::path::{Component, Path, PathBuf};
 pub struct FolderError {
     /// Where.
     pub path: PathBuf,
-    /// The error of the operating system; not a `source`, which would be said once more.
+    /// The error of the operating system; not a `source`, which would be reported twice.
     pub reason: io::Error,
 }
 
-/// Folders with more entries of others are not exchanged.
+/// Folders with more entries by others are not exchanged.
 const MOST_ENTRIES: usize = 10_000;
 
 /// The files of one run. Dropped without [`commit`](Self::commit) it leaves nothing behind.
@@ -42,7 +42,7 @@ pub struct Folder {
 pub struct Written {
     /// Its files, in order.
     pub files: Vec<String>,
-    /// Files of an earlier run that gave way and have no successor of that name.
+    /// Files of an earlier run that were removed and have no successor of that name.
     pub removed: Vec<String>,
 }
 
@@ -50,7 +50,7 @@ impl Folder {
     /// Files for `folder`, which is made at the end if it is missing.
     ///
     /// # Errors
-    /// [`FolderError`] where nothing can be written beside it or into it.
+    /// [`FolderError`] where nothing can be written next to it or into it.
     pub fn new(folder: &Path) -> Result<Self, FolderError> {
         let error = named(folder);
         let (named, folder) = (folder.to_owned(), real(folder).map_err(&error)?);
@@ -105,7 +105,7 @@ impl Folder {
     pub fn commit(mut self) -> Result<Written, FolderError> {
         let error = named(&self.named);
         self.close().map_err(&error)?;
-        // Two runs into one folder take turns; where folders cannot be locked, they are alone.
+        // Two runs into one folder take turns; where folders cannot be locked, they do not know of each other.
         let parent = self.folder.parent().and_then(|parent| File::open(parent).ok());
         parent.iter().for_each(|parent| _ = parent.lock());
         let earlier = earlier(&self.folder);
@@ -144,7 +144,7 @@ impl Folder {
             return Err(io::ErrorKind::PermissionDenied.into());
         }
         swap(&new, &self.folder)?;
-        // What somebody has put there meanwhile stays, too. From here on nothing fails: the exchange is done.
+        // What somebody has put there in the meantime stays, too. From here on nothing fails: the exchange is done.
         for entry in fs::read_dir(&new).into_iter().flatten().filter_map(Result::ok) {
             let place = self.folder.join(entry.file_name());
             if others(&entry.file_name().to_string_lossy()) && fs::symlink_metadata(&place).is_err() {
@@ -188,7 +188,7 @@ fn earlier(folder: &Path) -> BTreeSet<String> {
     let listing = fs::read(folder.join(super::METRICS)).ok().and_then(|text| serde_json::from_slice(&text).ok());
     let files = listing.map_or(Vec::new(), |listing: Listing| listing.files);
     let files = files.into_iter().chain([super::REFUSED.to_owned()]);
-    // A list that somebody has edited names no place elsewhere.
+    // Even an edited list must not name a place elsewhere.
     let plain = |name: &str| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
     files.filter(|name| plain(name) && folder.join(name).is_file()).collect()
 }
@@ -202,7 +202,7 @@ fn link_all(from: &Path, to: &Path, wanted: &dyn Fn(&str) -> bool, linked: &mut 
             continue;
         }
         *linked += 1;
-        // Stages of other runs cannot be linked, and folders that are read only could not be cleared afterwards.
+        // Stages of other runs cannot be linked, and read-only folders could not be cleared afterwards.
         let (is_dir, about) = (entry.file_type()?.is_dir(), entry.metadata()?);
         let is_stage = stage::is_stage(&entry.file_name().to_string_lossy());
         if *linked > MOST_ENTRIES || is_stage || (is_dir && about.permissions().readonly()) {
@@ -244,7 +244,7 @@ fn swap(_: &Path, _: &Path) -> io::Result<()> {
 }
 
 /// Writes one file completely or not at all. What is not a plain file, such as `/dev/stdout`, is written to; links to files
-/// are refused, since what they lead to may not be meant.
+/// are refused, since what they lead to may not be intended.
 ///
 /// # Errors
 /// [`FolderError`].
@@ -289,7 +289,7 @@ fn usual() -> Option<Permissions> {
 
 fn named(path: &Path) -> impl Fn(io::Error) -> FolderError + use<> {
     let path = path.to_owned();
-    // Errors of temporary files name a place that nobody knows: their kind is enough. Sentences of our own stay.
+    // Errors of temporary files name a place that nobody knows: their kind is enough. Our own sentences stay.
     let plain = |error: io::Error| match error.get_ref() {
         Some(inner) if inner.downcast_ref::<io::Error>().is_some() || inner.to_string().contains(".beadwright-") => {
             error.kind().into()

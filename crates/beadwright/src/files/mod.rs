@@ -1,7 +1,7 @@
 //! The files of a plan: programs, `plan.json`, `metrics.json` and `report.html`.
 //!
 //! [`PlanFiles`] makes their text layer by layer, so the command and the desktop program write the same bytes.
-//! [`Folder`] exchanges the files of a folder, all of them or none, and [`posts`] fetches dialects of one's own; nothing else
+//! [`Folder`] exchanges the files of a folder, all of them or none, and [`posts`] fetches dialects of your own; nothing else
 //! in the library touches the disk, and these only with the feature `files`.
 
 #[cfg(feature = "files")]
@@ -47,7 +47,7 @@ pub const REFUSED: &str = "refused.html";
 pub enum Post {
     /// A dialect of the library, by its name.
     Named(String),
-    /// A dialect of one's own.
+    /// A dialect of your own.
     Own(Box<Own>),
 }
 
@@ -91,7 +91,7 @@ impl Programs {
     pub fn of(posts: &[Post], job: &Job<'_>) -> Result<Self, DialectError> {
         let (mut writers, mut taken) = (Vec::new(), BTreeMap::new());
         for post in posts {
-            // Asked of a writer of its own: the one that writes begins when the number of layers is known.
+            // A separate writer is asked: the one that writes begins when the number of layers is known.
             let files: BTreeSet<String> =
                 post.writer(job)?.begin(&Extent::default()).into_iter().map(|chunk| chunk.file).collect();
             for file in files {
@@ -105,7 +105,7 @@ impl Programs {
         Ok(Self { writers, programmers: [true, false].map(|weaves| job.programmer(weaves)), turns: Turns::default() })
     }
 
-    /// Why a program is not complete; nothing may then be kept.
+    /// Why a program is not complete; then nothing may be kept.
     pub fn failure(&self) -> Option<DialectError> {
         self.writers.iter().find_map(|writer| writer.failure())
     }
@@ -137,7 +137,7 @@ impl Programs {
         chunks
     }
 
-    /// Takes note of a layer that no program has.
+    /// Takes note of a layer that is in no program.
     fn pass_over(&mut self, layer: &Layer) {
         self.programmers.iter_mut().for_each(|programmer| programmer.pass_over(layer));
     }
@@ -149,10 +149,10 @@ impl Programs {
     }
 }
 
-/// What programs weld: all of a plan, or less where a build goes on that was stopped.
+/// What programs weld: all of a plan, or less where a stopped build is continued.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Selection {
-    /// Indices of the layers, from 0; `None` for all from the first one on.
+    /// Indices of the layers, from 0; `None` for all from the first one onwards.
     pub layers: Option<BTreeSet<usize>>,
     /// Index of the first layer, from 0.
     pub from: usize,
@@ -173,7 +173,7 @@ impl Selection {
     }
 }
 
-/// Larger plans are not checked as they are written, which needs all their layers at once, points.
+/// Plans with more points are not checked as they are written, which needs all their layers at once.
 const MOST_CHECKED: usize = 2_000_000;
 
 /// Makes the text of all files of a plan as its layers come.
@@ -242,7 +242,7 @@ impl PlanFiles {
         Self { words, ..self }
     }
 
-    /// Takes the next layer, and what the deposit model says of it; returns their text.
+    /// Takes the next layer, and what the deposit model says about it; returns their text.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) -> Vec<Chunk> {
         self.report.layer(layer, judgement);
         self.points += layer.passes.iter().map(|pass| pass.points.len()).sum::<usize>();
@@ -281,7 +281,7 @@ impl PlanFiles {
     /// What people must know about the programs, once all layers are written: sentences.
     pub fn notes(&self) -> Vec<String> {
         let unchecked = (self.points > MOST_CHECKED).then(|| {
-            format!("The plan has {} points, so its checks were left out. They can be run on plan.json.", self.points)
+            format!("The plan has {} points, so its checks were skipped. They can be run on plan.json.", self.points)
         });
         self.programs.writers.iter().flat_map(|writer| writer.notes()).chain(unchecked).collect()
     }
@@ -306,17 +306,17 @@ impl PlanFiles {
         Ok(self.found.as_deref().unwrap_or_default())
     }
 
-    /// The last text of all files; `total` is what the deposit model says of all layers.
+    /// The last text of all files; `total` is what the deposit model says about all layers.
     ///
     /// # Errors
-    /// [`DialectError`] of a program that is not complete; nothing may then be kept.
+    /// [`DialectError`] of a program that is not complete; then nothing may be kept.
     pub fn end(
         mut self,
         summary: &Summary,
         repair: &RepairReport,
         total: Option<&Figures>,
     ) -> Result<Vec<Chunk>, DialectError> {
-        // Nobody stops a task of its own.
+        // Nobody cancels a task of our own.
         let found = self.check(&Task::new()).map(<[Finding]>::to_vec).unwrap_or_default();
         let totals = self.totals().cloned();
         let mut chunks = self.programs.end();
@@ -340,7 +340,7 @@ impl PlanFiles {
         Ok(chunks)
     }
 
-    /// The report on a plan whose programs are not written, in which the places are seen why.
+    /// The report on a plan whose programs are not written, which shows the places that are to blame.
     pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
         let findings = check::all_findings(summary, &repair.sentences(), &[], self.words);
         Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &findings))

@@ -1,4 +1,4 @@
-//! Fetches the texts of a dialect of one's own.
+//! Fetches the texts of a dialect of your own.
 
 use super::Post;
 use crate::dialect::own::{self, Own, OwnError};
@@ -7,16 +7,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Greatest size of a file of templates, bytes.
+/// Maximum size of a file of templates, bytes.
 const LARGEST: u64 = 1 << 20;
-/// Most files in a folder of templates.
+/// Maximum number of files in a folder of templates.
 const MOST: usize = 100;
 
-/// The posts of these names: dialects of the library, and folders of templates. Paths that do not begin at the root
-/// begin at `base`.
+/// The posts of these names: dialects of the library, and folders of templates. Relative paths begin at `base`.
 ///
 /// # Errors
-/// [`OwnError`] for a folder that cannot be read, or that holds no dialect.
+/// [`OwnError`] for a folder that cannot be read or holds no dialect.
 pub fn posts<S: AsRef<str>>(names: &[S], base: &Path) -> Result<Vec<Post>, OwnError> {
     let post = |name: &S| match name.as_ref() {
         name if own::is_folder(name) => Ok(Post::Own(Box::new(Own::new(name, texts(name, &base.join(name))?)?))),

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 const PREFIX: &str = ".beadwright-";
-/// While files are moved one by one: the names of those that give way.
+/// While files are moved one by one: the names of those that are replaced.
 const JOURNAL: &str = "moving";
 /// The journal while it is written.
 const DRAFT: &str = "draft";
-/// Whatever else is in a folder, it is none of ours.
+/// Whatever else is in a folder is not ours.
 const OURS: [&str; 5] = ["new", "old", "lock", JOURNAL, DRAFT];
 
 /// Files on their way into a folder. Dropped, it leaves nothing behind.
@@ -20,7 +20,7 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// A stage in `place`, after those of dead runs there were cleared away.
+    /// A stage in `place`, once those that dead runs left there are cleared away.
     pub(super) fn new(place: &Path) -> io::Result<Self> {
         clear(place);
         // Another run may take the folder for a dead one's before it is locked.
@@ -42,7 +42,7 @@ impl Stage {
     }
 
     /// Moves files of a stage that lies in `target`, one by one: the `old` ones out of it, then the `new` ones into it. If
-    /// one cannot be moved, nothing changes; what a killed run has not moved, the next one moves.
+    /// one cannot be moved, nothing changes; what a killed run did not move, the next one moves.
     pub(super) fn move_into(mut self, target: &Path, old: &[&str], new: &[&str]) -> io::Result<()> {
         let (journal, draft) = (self.folder.path().join(JOURNAL), self.folder.path().join(DRAFT));
         // Whole or not there: half a list would leave old files among the new ones.
@@ -105,7 +105,7 @@ fn complete(stage: &Path, target: &Path) -> io::Result<()> {
     let new: Vec<&str> = new.iter().map(String::as_str).collect();
     for (from, to) in moves(stage, target, &old, &new) {
         match fs::rename(from, to) {
-            // Somebody has taken it away meanwhile.
+            // Somebody has taken it away in the meantime.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             done => done?,
         }
@@ -119,7 +119,7 @@ pub(super) fn is_stage(name: &str) -> bool {
     name.starts_with(PREFIX)
 }
 
-/// Names in a folder; names that are not text are none of ours.
+/// Names in a folder; names that are not text are not ours.
 fn names(folder: &Path) -> io::Result<Vec<String>> {
     fs::read_dir(folder)?.map(|entry| entry.map(|e| e.file_name().into_string().unwrap_or_default())).collect()
 }

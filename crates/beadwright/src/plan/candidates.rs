@@ -13,12 +13,12 @@ use crate::layer::Layer;
 use crate::profile::Profile;
 use planar::Polygon;
 
-/// Strategies that are tried; the first of equals is taken. Scan lines are not: they leave outlines ragged.
+/// Strategies that are tried; of equals, the first is taken. Scan lines are not tried: they leave outlines ragged.
 const TRIED: [&dyn Strategy; 6] = [&OneLoop, &Spiral, &Fermat, &Mat, &Hybrid, &Contour];
 /// An arc start counts as much as a void or a hump of this area, in squared bead widths.
 const START: f64 = 0.5;
 
-/// Low area counts as so much of a void.
+/// Low area counts as this much of a void.
 const LOW: f64 = 0.5;
 
 /// The first simpler fill by the strategy itself that can be welded, as `is_sound` says.
@@ -47,7 +47,7 @@ pub(super) fn best(
     rated.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, fill)| fill)
 }
 
-/// Voids, low area, humps and metal outside, and what arc starts count, mm².
+/// Voids, low area, humps and metal outside, plus what arc starts count for, mm².
 fn cost(fill: &Fill, island: &Polygon, settings: &FillSettings, profile: &Profile) -> f64 {
     let (z, height, index) = (profile.layers.height, profile.layers.height, settings.layer);
     let passes = emitter::passes(vec![fill.clone()], index, (z, height), profile, &mut None);

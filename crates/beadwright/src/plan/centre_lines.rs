@@ -23,12 +23,13 @@ pub(super) fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profi
 pub(super) fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile: &Profile) -> Filled {
     let sections = curves.at(slab.z - slab.height / 2.0, profile.fill_settings(index).wall.chord_error);
     let leans = levels::leans(curves, slab);
-    // A layer cuts a leaning wall aslant: it is wider there.
+    // A layer cuts a leaning wall at a slant: it is wider there.
     let half = |at: DVec2| profile.bead.width / 2.0 / levels::lean_at(&leans, at).cos();
     weld_sections(&sections, half, index, slab, profile)
 }
 
-/// Centre-lines of walls, half as wide as `half` says of a place (mm), as passes; the area they cover stands in for the slice.
+/// Centre-lines of walls as passes, where `half` gives half the width at a place (mm); the area they cover stands in for the
+/// slice.
 fn weld_sections(
     sections: &[Section],
     half: impl Fn(DVec2) -> f64,
@@ -61,7 +62,7 @@ fn weld_sections(
     Filled { slice, fills: vec![fill], planned_area, known: 0, shared: false }
 }
 
-/// What is left bare of curves is told from this area on, in squared bead widths.
+/// What is left bare of curves is reported if it is this area or more, in squared bead widths.
 const BARE_CURVE: f64 = 0.5;
 
 /// Accuracy of the round ends of the area that a curve covers, mm.

@@ -3,7 +3,7 @@
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
-use crate::profile::{Foretell, Profile};
+use crate::profile::{Predict, Profile};
 use crate::slice::{Slab, Slice, Slicer, Surface};
 use crate::task::{Cancelled, Task};
 use planar::{Join, Polygon, Region};
@@ -17,18 +17,18 @@ pub struct Choice {
     pub note: Option<String>,
 }
 
-/// Number of heights at which a part is looked at.
+/// Number of heights at which a part is examined.
 const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
-/// A wall is thicker than the bead from this many of its widths on.
+/// A wall counts as thicker than the bead if it is this many bead widths thick or more.
 const THICKER: f64 = 1.1;
 /// Walls count as thicker than the bead if this fraction of their area is.
 const MOSTLY: f64 = 0.8;
 
-/// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. A solid is too, if the
-/// profile says `loop` and the whole part is walls for one bead, unless the strategy is to be `kept`; their layers are as high as
-/// their metal if they are thicker than the bead.
+/// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. So is a solid, if the
+/// profile says `loop` and the whole part is walls for one bead, unless the strategy is to be `kept`; their layers are as
+/// high as their metal if they are thicker than the bead.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -41,11 +41,12 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
         Part::Mesh(import) if !kept && profile.fill.strategy == "loop" => {
             if let Some(walls) = walls(&import.mesh, &profile, task)? {
                 "wall".clone_into(&mut profile.fill.strategy);
-                if walls == Walls::Thick && profile.layers.foretell == Foretell::Auto {
-                    profile.layers.foretell = Foretell::Never;
+                if walls == Walls::Thick && profile.layers.predict == Predict::Auto {
+                    profile.layers.predict = Predict::Never;
                 }
                 note = Some(
-                    "Strategy wall instead of loop: the part is all walls for one bead; asked for by name, loop is kept."
+                    "Strategy wall instead of loop: all of the part is walls for one bead; if you ask for loop by name, it is \
+                     kept."
                         .to_owned(),
                 );
             }
@@ -70,7 +71,8 @@ enum Walls {
     Thick,
 }
 
-/// The kind of walls if a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its middle.
+/// The kind of walls if a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its
+/// middle.
 fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, Cancelled> {
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
@@ -90,7 +92,7 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
     if all == 0.0 || holding(settings.double()) > JUNCTIONS * all {
         return Ok(None);
     }
-    // Teeth and ribs that are thin in some place make no wall.
+    // Teeth and ribs that are thin in places do not make a wall.
     let is_wall = |island: &Polygon| {
         let fill = Wall.fill(island, &settings);
         let paths: Vec<&Path> = fill.stages.iter().flatten().collect();

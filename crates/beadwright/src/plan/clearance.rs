@@ -1,4 +1,4 @@
-//! Whether the torch has room beside the parts that stand, where parts are welded one after another.
+//! Whether the torch has room next to finished parts, where parts are welded one after another.
 //!
 //! Torch and hand fill a cone above the wire's tip ([`TorchShape`]). Parts are as wide as the extents of their layers: more
 //! than they take, never less.
@@ -11,27 +11,27 @@ use planar::Bounds;
 /// The extent of the metal of a layer, and its top, mm.
 type Slab = (f64, Bounds);
 
-/// The parts that stand, and where the torch came too near to one of them.
+/// The finished parts, and where the torch came too close to one of them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Clearance {
     standing: Vec<(String, Vec<Slab>)>,
     close: Vec<Close>,
 }
 
-/// A part that stands too near to one that is welded.
+/// A finished part that is too close to one that is being welded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Close {
-    /// The part that is welded.
+    /// The part that is being welded.
     pub welded: String,
-    /// The part that stands.
+    /// The finished part.
     pub standing: String,
     /// Height of the wire's tip, mm.
     pub z: f64,
-    /// Height at which the other part is too near, mm.
+    /// Height at which the other part is too close, mm.
     pub height: f64,
-    /// What the torch needs there beside its path, mm.
+    /// The room that the torch needs there next to its path, mm.
     pub needs: f64,
-    /// What it has, mm.
+    /// The room that it has, mm.
     pub has: f64,
 }
 
@@ -45,15 +45,15 @@ impl Close {
         let Self { welded, standing, z, height, needs, has } = self;
         format!(
             "The torch would hit {standing} while it welds {welded} at z {z:.1} mm: at a height of {height:.1} mm it needs \
-             {needs:.1} mm beside its path and has {has:.1} mm (section [torch]). Stand the parts {:.0} mm farther apart, \
-             or let them grow together, layer by layer.",
+             {needs:.1} mm next to its path and has {has:.1} mm (section [torch]). Place the parts {:.0} mm farther apart, or \
+             build them together, layer by layer.",
             self.lacks().ceil()
         )
     }
 }
 
 impl Clearance {
-    /// Begins the next part; those before it stand.
+    /// Begins the next part; those before it are finished.
     pub fn begin(&mut self, part: &str) {
         self.standing.push((part.to_owned(), Vec::new()));
     }
@@ -77,12 +77,12 @@ impl Clearance {
         }
     }
 
-    /// Each pair of parts that stand too near, at its worst place.
+    /// Each pair of parts that are too close, at its worst place.
     pub fn close(&self) -> &[Close] {
         &self.close
     }
 
-    /// Height of what stands, the part that is being welded not counted, mm.
+    /// Height of the finished parts, without the one being welded, mm.
     pub fn height(&self) -> f64 {
         let before = self.standing.split_last().map_or(&[][..], |(_, before)| before);
         before.iter().flat_map(|(_, slabs)| slabs).map(|(z, _)| *z).fold(0.0, f64::max)
@@ -107,7 +107,7 @@ fn apart(a: &Bounds, b: &Bounds) -> f64 {
 pub struct Watch<'a, S> {
     /// Where the layers go.
     pub sink: &'a mut S,
-    /// What stands.
+    /// The finished parts.
     pub clearance: &'a mut Clearance,
     /// The room that the torch takes.
     pub torch: TorchShape,

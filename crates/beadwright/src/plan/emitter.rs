@@ -1,5 +1,5 @@
-//! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers on what stands
-//! below, keeps the limits of heat, and warns of what a layer cannot be welded on.
+//! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers over what
+//! lies below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
@@ -30,7 +30,7 @@ pub(super) struct Emitter<'a, S> {
     /// The first layer of which the helix could make no turn.
     pub(super) no_turn: Option<NoTurn>,
     pub(super) support: Support,
-    /// What the layers so far build, if metal is shared out on it.
+    /// What the layers so far have built, if metal is shared out over it.
     pub(super) grown: Option<Stack>,
     /// Outlines of the layer below, of the islands that are welded.
     pub(super) below: Vec<Polygon>,
@@ -80,7 +80,7 @@ impl<S: Sink> Emitter<'_, S> {
         self.sink.layer(layer)
     }
 
-    /// Keeps the limits of `[interpass]`, warns where that cannot be, and widens beads by the heat that they find.
+    /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat that they find.
     fn warm(&mut self, layer: &mut Layer) {
         let Some(build) = &mut self.heat.build else { return };
         let heat = build.layer_within_limits(layer);
@@ -101,7 +101,7 @@ impl<S: Sink> Emitter<'_, S> {
         let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let (place, peak) = heat.peak();
-            // A start is cool, or cannot be waited for: that is another warning. A helix begins its turns as hot as they are.
+            // A start is cool, or waiting does not help: that is another warning. A helix begins its turns as hot as they are.
             let is_asked = heat.start <= limits.max_temperature + NOISE || layer.lit.is_turn();
             if is_asked && peak > limits.max_temperature + NOISE {
                 let place = place_on(pass, place as f64 * build.spacing());
@@ -182,5 +182,5 @@ fn place_on(pass: &Pass, way: f64) -> DVec2 {
     planar::polyline::point_at(&line, way).or(line.first().copied()).unwrap_or_default()
 }
 
-/// A gap below a layer counts from this part of its thickness on.
+/// A gap below a layer counts if it is this part of its thickness or more.
 const LARGE_GAP: f64 = 0.25;

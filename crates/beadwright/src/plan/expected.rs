@@ -1,9 +1,9 @@
-//! About how much a plan will hold, before anything is planned.
+//! Roughly how much a plan will contain, before anything is planned.
 
 use crate::model::Mesh;
 use crate::profile::Profile;
 
-/// Path in a layer, in bead widths, from which strategies that weigh every place of a layer (`loop`) take minutes.
+/// Path in a layer, in bead widths, beyond which strategies that weigh every place of a layer (`loop`) take minutes.
 const LONG_LAYER: f64 = 25_000.0;
 /// Path of the whole plan, in bead widths: files of a hundred megabytes.
 const LONG_PLAN: f64 = 5e7;
@@ -15,7 +15,7 @@ pub struct Expected {
     pub layers: f64,
     /// Length of the beads of a layer, on average, mm.
     pub layer_length: f64,
-    /// Whether so much is seldom meant.
+    /// Whether it is so large that it is rarely intended.
     pub large: bool,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Filled {
 }
 
 /// Fills a batch of slices in parallel; `datum` is the place of the part. Slices of the same shape are filled together:
-/// prismatic parts once where the strategy lays the same on every layer, and a few times where layers take turns.
+/// prismatic parts once where the strategy lays the same on every layer, and a few times where layers alternate.
 pub(super) fn fill_batch(
     batch: Vec<Planned>,
     strategy: &dyn Strategy,
@@ -48,10 +48,10 @@ pub(super) fn fill_batch(
     Ok(filled)
 }
 
-/// The slices of a batch, those together that are filled together.
+/// The slices of a batch, grouped by what is filled together.
 fn groups(batch: &[Planned], strategy: &dyn Strategy, profile: &Profile) -> Vec<Vec<usize>> {
     let settings = |i: usize| FillSettings { layer: 0, ..settings_of(&batch[i], profile) };
-    // Short passes are told by the time that they take.
+    // Short passes are recognised by the time that they take.
     let rate = |i: usize| profile.process.at_layer(batch[i].slice.index).rate();
     let period = if strategy.repeats() { Some(1) } else { strategy.period() };
     let turn = |i: usize| period.map_or(batch[i].slice.index, |period| batch[i].slice.index % period);
@@ -117,7 +117,7 @@ pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, profile: &P
     fill_layer(layer.slice.clone(), fill, strategy, profile, &settings)
 }
 
-/// Fills a slice; `fill` gives what the strategy lays into an island of a number.
+/// Fills a slice; `fill` gives what the strategy lays into the island with a number.
 fn fill_layer(
     mut slice: Slice,
     fill: impl Fn(usize, &Polygon) -> Fill,
@@ -168,7 +168,7 @@ struct Cover {
     doubts: Vec<(WarningKind, DVec2, f64)>,
 }
 
-/// What beads leave bare is told when it is more than this part of an island.
+/// What beads leave bare is reported when it is more than this part of an island.
 const WORTH_TELLING: f64 = 0.01;
 
 /// A place too thin for a bead counts as welded if less than this part of it is left bare.
@@ -201,7 +201,7 @@ impl Cover {
             return Self { area: reach.area, doubts };
         }
         let (bare, least) = (coverage.bare().area, WORTH_TELLING * area);
-        // What no bead reaches, as sharp corners, is not left bare by the strategy.
+        // What no bead reaches, such as sharp corners, is not left bare by the strategy.
         let left = bare - unreached;
         if left > least {
             let inner = coverage.bare_of(&whole.offset(-FLANK * width, Join::ROUND));
@@ -212,7 +212,7 @@ impl Cover {
     }
 }
 
-/// Strips along the outline count, too, from this part of an island on.
+/// Strips along the outline count, too, if they are this part of an island or more.
 const FLANKS_TOO: f64 = 0.02;
 
 /// A bead is so flat over this part of its width that strips of it along the outline make little difference.
@@ -237,7 +237,7 @@ fn sound_fill(
     warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });
     let fill = candidates::best(island, settings, profile, is_sound).unwrap_or_else(|| rings_only(island, settings));
     if let Some(place) = unsound(&fill, island, settings, 0.0) {
-        // No known part comes here.
+        // No known part gets here.
         warnings.push(Warning { kind: WarningKind::Unsound, layer: settings.layer, place, size: island.area() });
     }
     fill
@@ -256,7 +256,7 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     })
 }
 
-/// Leaves out passes that are too short to weld, but for one to be kept, with a warning.
+/// Leaves out passes that are too short to weld, except one to be kept, with a warning.
 pub(super) fn drop_short(
     stage: &mut Vec<Path>,
     kept: Option<&Path>,
@@ -313,13 +313,13 @@ fn arc_time(pass: &Path, profile: &Profile, layer: usize) -> f64 {
     path.windows(2).enumerate().map(time).sum()
 }
 
-/// A feature is reported from this area on, in squared bead widths.
+/// A feature of this area or more is reported, in squared bead widths.
 const THIN_FEATURE: f64 = 0.25;
 
 /// Lost pieces end this far, in bead widths, before what a bead reaches: their edges then touch nowhere else.
 const CLEAR: f64 = 0.01;
 
-/// What a bead reaches of an island without leaving it.
+/// The part of an island that a bead reaches without leaving it.
 struct Reach {
     /// Its width, mm.
     width: f64,
@@ -330,7 +330,7 @@ struct Reach {
 }
 
 impl Reach {
-    /// What a bead of the given width, mm, reaches of an island.
+    /// The part of an island that a bead of the given width, mm, reaches.
     ///
     /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
     /// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes
@@ -351,7 +351,7 @@ impl Reach {
         Self { width, area: (area - lost.area()).max(0.0), lost }
     }
 
-    /// What is too thin for a bead, but for corners.
+    /// What is too thin for a bead, except corners.
     fn thin_places(&self) -> impl Iterator<Item = &Polygon> {
         let smallest = THIN_FEATURE * self.width * self.width;
         self.lost.polygons().iter().filter(move |piece| piece.area() > smallest)

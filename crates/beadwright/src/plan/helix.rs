@@ -1,8 +1,9 @@
 //! One helix in place of closed walls: every layer is a turn that rises from the layer below, with one arc start for all.
 //!
-//! The first turn lies level on the plate. The second one rises, so it finds no room where it begins and a whole layer where it
-//! ends: it lays its metal by that room, and a last, level turn fills what the ramp leaves below the top. No piece gets less than
-//! [`Lit::LEAST`] of a bead, so the second turn begins with too much metal, and the last one ends early by as much.
+//! The first turn lies level on the plate. The second one rises, so it has no room where it begins and a whole layer's where
+//! it ends: it lays as much metal as that room takes, and a last, level turn fills what the ramp leaves below the top. No
+//! piece gets less than [`Lit::LEAST`] of a bead, so the second turn begins with too much metal, and the last one ends early
+//! by as much.
 
 use crate::layer::{Layer, Lit};
 use crate::pass::{Along, Pass, PassKind, Segment};
@@ -12,8 +13,8 @@ use planar::polyline;
 
 /// Pieces are at most this long, in bead widths, so that they follow the turn below.
 const PIECE: f64 = 2.0;
-/// Points of the next two turns, as a factor of those of one: each may have a fifth more than the one before. Where a program has no
-/// room for them, the arc goes out, so no turn is ever alone.
+/// Points of the next two turns, as a multiple of those of one: each may have a fifth more than the one before. Where a
+/// program has no room for them, the arc goes out, so no turn is ever alone.
 const NEXT_TWO: f64 = 1.2 + 1.2 * 1.2;
 
 /// A layer of which no turn can be made.
@@ -35,7 +36,7 @@ pub(super) struct Helix {
     below: Option<(Vec<DVec2>, f64, DVec2)>,
     /// Number of turns.
     turns: usize,
-    /// Whether the arc burns, and how many points it has laid since it was lit.
+    /// Whether the arc is on, and how many points it has laid since it was struck.
     lit: bool,
     points: usize,
 }
@@ -65,7 +66,7 @@ impl Helix {
         let [pass] = &mut layer.passes[..] else { return none(format!("it has {count} passes")) };
         // A loop of two beads is one closed pass, too.
         if !pass.closed || pass.kind != PassKind::Wall || pass.points.len() < 3 {
-            return none("its pass is open, or no single bead along a wall".to_owned());
+            return none("its pass is open, or is not a single bead along a wall".to_owned());
         }
         let places = places(pass, self.below.as_ref().map(|(.., torch)| *torch), PIECE * bead_width);
         let ring: Vec<DVec2> = places.iter().map(|place| place.at).collect();
@@ -130,10 +131,11 @@ impl Turn {
     }
 }
 
-/// The places of a closed pass, once around to the left from where it comes nearest to `torch` back to there, at most `step` apart (mm).
+/// The places of a closed pass, once around to the left from where it comes nearest to `torch` back to there, at most `step`
+/// apart (mm).
 fn places(pass: &Pass, torch: Option<DVec2>, step: f64) -> Vec<Place> {
     let mut pieces: Vec<Segment> = pass.segments().filter(|s| s.length() > 0.0).collect();
-    // Orders turn passes around; every turn of a helix goes on in the same sense.
+    // Ordering may reverse passes; every turn of a helix continues in the same direction.
     if pieces.iter().map(|s| s.from.truncate().perp_dot(s.to.truncate())).sum::<f64>() < 0.0 {
         pieces.reverse();
         pieces.iter_mut().for_each(|s| std::mem::swap(&mut s.from, &mut s.to));
@@ -150,7 +152,7 @@ fn places(pass: &Pass, torch: Option<DVec2>, step: f64) -> Vec<Place> {
     let (mut places, mut along) = (Vec::new(), 0.0);
     for k in 0..=pieces.len() {
         let s = &pieces[(first + k) % pieces.len()];
-        // The first piece is laid from the torch on, and up to there in the end.
+        // The first piece is laid from the torch onwards, and at the end up to the torch.
         let (begin, end) = if k == 0 {
             (part, 1.0)
         } else if k == pieces.len() {

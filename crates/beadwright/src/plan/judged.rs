@@ -1,4 +1,4 @@
-//! How the deposit model looks at plans that are made with a profile.
+//! How the deposit model treats plans made with a profile.
 
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;

@@ -1,7 +1,7 @@
 //! Where the layers of a wall lie: as high as its beads grow (Li et al., section 1.2).
 //!
 //! Where a wall leans by φ from the build direction, a bead h_n away from the one below lies h_n cos φ above it. The lean
-//! is taken point by point, between neighbouring layers. A layer stays level, so it rises by what its most leaning points
+//! is taken point by point, between neighbouring layers. A layer stays level, so it rises by what the points that lean most
 //! allow: nowhere is a bead farther than h_n from the one below. Each piece of its path is paced by the width of the wall
 //! there: where the wall leans more, a level layer cuts it wider and takes more metal.
 
@@ -24,10 +24,10 @@ const MOST_LEAN: f64 = std::f64::consts::FRAC_PI_3;
 /// Points of an outline at which its lean is measured.
 const POINTS: usize = 64;
 
-/// One in so many points may lean more than the layer's rise allows for.
+/// One in this many points may lean more than the layer's rise allows for.
 const ASIDE: usize = 20;
 
-/// The layers of a mesh wall that stands on z = 0.
+/// The layers of a mesh wall that is placed on z = 0.
 pub(super) fn of_mesh(
     mesh: &Mesh,
     wall: &WallBead,
@@ -64,8 +64,8 @@ pub(super) fn of_mesh(
     Ok(stacked(top, wall, warmth, rise))
 }
 
-/// What a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them, a few
-/// points aside, which may lie on a corner or an edge.
+/// How much a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them,
+/// except for a few points, which may lie on a corner or an edge.
 fn rise(wall: &WallBead, leans: impl Iterator<Item = f64>) -> f64 {
     let mut leans: Vec<f64> = leans.map(|lean| lean.min(MOST_LEAN)).collect();
     leans.sort_by(f64::total_cmp);
@@ -94,7 +94,7 @@ fn evenly(line: &[DVec2]) -> Vec<DVec2> {
     (0..POINTS).filter_map(|k| planar::polyline::point_at(line, length * k as f64 / POINTS as f64)).collect()
 }
 
-/// Distance from a point to the nearest edge, mm; 0 where there is none, as above the top of a wall.
+/// Distance from a point to the nearest edge, mm; 0 where there is none, such as above the top of a wall.
 fn to_nearest(p: DVec2, edges: &[(DVec2, DVec2)]) -> f64 {
     let squared = edges.iter().map(|&(a, b)| planar::polyline::distance_squared_to_segment(p, a, b));
     squared.reduce(f64::min).unwrap_or_default().sqrt()
@@ -117,8 +117,8 @@ pub(super) fn lean_at(leans: &[(DVec2, f64)], at: DVec2) -> f64 {
     nearest.map_or(0.0, |(_, lean)| lean.min(MOST_LEAN))
 }
 
-/// The first layer is as high as the first bead; each further one rises as `rise` says of its middle, mm, and less where it
-/// is warm, until the top is nearest.
+/// The first layer is as high as the first bead; each further one rises by what `rise` gives for its middle, mm, and less
+/// where it is warm, until the top is nearest.
 fn stacked(top: f64, wall: &WallBead, warmth: &Warmth, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let mut slabs = vec![Slab { z: wall.height(), height: wall.height() }];
     let mut z = wall.height();

@@ -6,20 +6,20 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
-//! | [`clearance`] | whether the torch has room beside parts that stand |
+//! | [`clearance`] | whether the torch has room next to finished parts |
 //! | `parts` | parts that are welded one after another |
 //! | `centre_lines` | walls of one bead by their centre-lines |
 //! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
-//! | [`expected`](expected()) | about how much a plan will hold |
+//! | [`expected`](expected()) | roughly how much a plan will contain |
 //! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
-//! | `judged` | how the deposit model looks at plans |
+//! | `judged` | how the deposit model treats plans |
 //! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
 //! | `result` | what a plan is, where its layers go, why there may be none |
-//! | `reasons` | why a plan holds another volume than the part, or nothing |
+//! | `reasons` | why a plan's volume differs from the part's, or is nothing |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
 //! | `support` | whether passes lie on the metal below |
@@ -79,7 +79,7 @@ use warm::{Heat, Warmth};
 /// No plan has more layers than this.
 pub const MAX_LAYERS: usize = 100_000;
 
-/// Plans a part that stands on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
+/// Plans a part placed on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
 /// for files and headings.
 ///
 /// # Errors
@@ -109,7 +109,7 @@ pub fn plan_into<'a, S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let part = part.into();
-    plan_at(&warm::foretold(part, profile, task)?, name, part, profile, task, sink)
+    plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)
 }
 
 /// Plans a part whose layers follow a known warmth.
@@ -139,7 +139,7 @@ pub fn plan_with<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let warmth = warm::foretold(PartRef::Mesh(mesh), profile, task)?;
+    let warmth = warm::predicted(PartRef::Mesh(mesh), profile, task)?;
     plan_mesh(&warmth, name, mesh, strategy, profile, task, sink)
 }
 
@@ -218,14 +218,14 @@ pub fn slabs<'a>(
     task: &Task,
 ) -> Result<Vec<Slab>, PlanError<Infallible>> {
     let part = part.into();
-    let warmth = warm::foretold(part, profile, task)?;
+    let warmth = warm::predicted(part, profile, task)?;
     match part {
         PartRef::Mesh(mesh) => slabs_at(&warmth, mesh, profile, task),
         PartRef::Curves(curves, height) => Ok(levels::of_curves(curves, height, &profile.single_wall()?, &warmth)),
     }
 }
 
-/// Where the layers of a mesh lie that is so warm.
+/// Where the layers of a mesh with this warmth lie.
 fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
@@ -261,7 +261,7 @@ fn plan_curves<S: Sink + Send>(
     let summary = run([name, &profile.fill.strategy], extent, heat, profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
-            "each curve is shorter than fill.min_pass_length, or than the distance within which ends meet \
+            "each curve is shorter than fill.min_pass_length, or than the distance within which ends are joined \
              (wall.junction_tolerance)."
                 .to_owned(),
         ));
@@ -321,7 +321,7 @@ fn run<S: Sink + Send>(
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
-    let large = large.map(|most| format!("The plan has {points} points; {most} are the most (check.max_plan_points)."));
+    let large = large.map(|most| format!("The plan has {points} points; the limit is {most} (check.max_plan_points)."));
     Ok(Summary { metrics, warnings, notes: large.into_iter().chain(profile.notes()).collect(), forbidden })
 }
 

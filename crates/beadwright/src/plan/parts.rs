@@ -11,12 +11,12 @@ use crate::profile::Profile;
 use crate::task::Task;
 use crate::warning::Warnings;
 
-/// Plans solids that stand beside each other on z = 0, each from its first layer to its last before the next one begins, and
-/// hands all layers to `sink`, numbered through. Ways to another part lead over all that stands. Where the torch
-/// (`[torch]`) would hit a part that stands, [`Summary::forbidden`] says so.
+/// Plans solids next to each other on z = 0, each from its first layer to its last before the next one begins, and hands all
+/// layers to `sink`, numbered consecutively. Travels to another part pass over everything already built. Where the torch
+/// (`[torch]`) would hit a finished part, [`Summary::forbidden`] says so.
 ///
 /// # Errors
-/// [`PlanError`], also where the profile lacks `[torch]`, or has values for some layers only.
+/// [`PlanError`], including where the profile lacks `[torch]`, or has values for some layers only.
 pub fn parts_into<S: Sink + Send>(
     name: &str,
     parts: &[(String, &Mesh)],
@@ -27,16 +27,16 @@ pub fn parts_into<S: Sink + Send>(
     let torch = torch_of(profile)?;
     if !profile.process.layers.is_empty() {
         return Err(PlanError::Parts(
-            "process.layers: layers are numbered by the part, so it is not clear which are meant",
+            "process.layers: layers are numbered separately for each part, so it is not clear which are meant",
         ));
     }
-    let foretold = |(_, mesh): &(String, &Mesh)| -> Result<(Warmth, usize), PlanError<S::Error>> {
-        let warmth = warm::foretold(PartRef::Mesh(mesh), profile, task)?;
+    let predicted = |(_, mesh): &(String, &Mesh)| -> Result<(Warmth, usize), PlanError<S::Error>> {
+        let warmth = warm::predicted(PartRef::Mesh(mesh), profile, task)?;
         let count = slabs_at(&warmth, mesh, profile, task)?.len();
         Ok((warmth, count))
     };
-    let foretold = parts.iter().map(foretold).collect::<Result<Vec<_>, _>>()?;
-    let (warmths, counts): (Vec<Warmth>, Vec<usize>) = foretold.into_iter().unzip();
+    let predicted = parts.iter().map(predicted).collect::<Result<Vec<_>, _>>()?;
+    let (warmths, counts): (Vec<Warmth>, Vec<usize>) = predicted.into_iter().unzip();
     let bounds = parts.iter().map(|(_, mesh)| mesh.bounds());
     let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
     let extent = Extent { layers: counts.iter().sum(), low, high };
@@ -73,7 +73,7 @@ pub fn torch_of<E>(profile: &Profile) -> Result<TorchShape, PlanError<E>> {
         .ok_or(PlanError::Parts("the profile lacks the section [torch] with nozzle_radius, stick_out and cone"))
 }
 
-/// Which layers are those of which part.
+/// Which layers belong to which part.
 fn sentence(parts: &[(String, &Mesh)], counts: &[usize]) -> String {
     let mut first = 1;
     let range = |((name, _), count): (&(String, &Mesh), &usize)| {
@@ -85,7 +85,7 @@ fn sentence(parts: &[(String, &Mesh)], counts: &[usize]) -> String {
     format!("The parts are welded one after another: {}.", ranges.join(", "))
 }
 
-/// What is said of the parts, each thing once.
+/// What is reported about the parts, each thing once.
 struct Told {
     notes: Vec<String>,
     forbidden: Vec<String>,
@@ -107,7 +107,7 @@ impl Told {
     }
 }
 
-/// Numbers the layers of all parts through.
+/// Numbers the layers of all parts consecutively.
 struct Row<'a, S> {
     /// Layers of the parts before.
     first: usize,
@@ -119,7 +119,7 @@ struct Row<'a, S> {
 impl<S: Sink> Sink for Row<'_, S> {
     type Error = S::Error;
 
-    /// The whole has begun already.
+    /// The plan as a whole has already begun.
     fn begin(&mut self, _part: &Header) -> Result<(), S::Error> {
         Ok(())
     }

@@ -16,9 +16,9 @@ use crate::task::Task;
 use crate::warning::Warnings;
 use std::convert::Infallible;
 
-/// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. Only
-/// start points and order may differ from those in the whole plan, what heat changes there, and the metal that level layers get
-/// for what the layers below have built.
+/// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. It may differ
+/// from the layer in the whole plan only in start points and order, in what heat changes, and in the metal that level layers
+/// get for what the layers below have built.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -38,7 +38,7 @@ pub fn preview(
     };
     let mut last = Last(None);
     let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
-    // The layers below are taken for granted.
+    // The layers below are assumed to be there.
     let built = f64::INFINITY;
     let mut emitter = Emitter {
         profile,
@@ -46,7 +46,7 @@ pub fn preview(
         torch: None,
         heat: Heat::default(),
         memory: Memory::default(),
-        // Alone it is no turn.
+        // A single layer is not a turn.
         helix: None,
         no_turn: None,
         support: Support::default(),

@@ -1,4 +1,4 @@
-//! Sentences about a whole plan: why it holds another volume than the part, where it ends, and why it may be empty.
+//! Sentences about a whole plan: why its volume differs from the part's, where it ends, and why it may be empty.
 
 use super::Summary;
 use crate::model::Mesh;
@@ -6,7 +6,7 @@ use crate::profile::Profile;
 use crate::slice::{self, LayerFit, Slab};
 use crate::warning::{WarningKind, WarningSummary};
 
-/// Why the slices hold another volume than the mesh, as a sentence where it matters; `left` tells whether the layers end
+/// Why the volume of the slices differs from the mesh's, as a sentence where it matters; `left` says whether the layers end
 /// elsewhere than the part.
 pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
     /// Fraction of the mesh's volume.
@@ -26,7 +26,7 @@ pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<S
     } else if left {
         "the layers do not end where the part does"
     } else {
-        "each layer is as the part is at its middle; thinner layers follow the part more closely"
+        "each layer has the part's shape at its middle; thinner layers follow the part more closely"
     };
     let percent = 100.0 * more;
     Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
@@ -41,13 +41,13 @@ pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> St
         return match told(WarningKind::OpenContourDropped) {
             Some(open) => format!("the surface of the model is not closed. {open}"),
             None => told(WarningKind::Sliver).or(told(WarningKind::ContoursUnited)).map_or_else(
-                || format!("the slices are empty ({part}). Surfaces of opposite sense cancel: check that the model is a solid."),
+                || format!("the slices are empty ({part}). Opposite surfaces cancel: check that the model is solid."),
                 |lost| format!("the slices are empty. {lost}"),
             ),
         };
     }
     let width = profile.bead.width;
-    let remedy = "Take a narrower bead or a larger part, or check the unit of the file.";
+    let remedy = "Use a narrower bead or a larger part, or check the unit of the file.";
     match told(WarningKind::PassTooShort) {
         Some(short) => {
             format!(
@@ -68,7 +68,7 @@ pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Optio
         return None;
     }
     let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
-    let ends = format!("The part is {top:.2} mm high, {layers} at {last:.2} mm");
+    let ends = format!("The part is {top:.2} mm high, but {layers} at {last:.2} mm");
     Some(if last < top {
         let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
         let each = even.first().map_or(0.0, |slab| slab.height);

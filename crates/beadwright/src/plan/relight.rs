@@ -1,15 +1,15 @@
 //! Passes too long for one program of a controller. No program may end while the arc burns, so the arc ends, the crater is
-//! filled, and the next program lights it again on the end of the bead.
+//! filled, and the next program strikes it again on the end of the bead.
 
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::profile::Profile;
 use crate::warning::{Warning, WarningKind};
 
-/// Passes shorter than this are never cut, moves: their number is not even counted.
+/// Passes of fewer moves than this are never cut: their number is not even counted.
 const LEAST: usize = 10;
 
-/// Cuts the passes of a layer that have more moves than a program holds, and tells of each.
+/// Cuts the passes of a layer that have more moves than a program holds, and warns of each.
 pub(super) fn relight(layer: &mut Layer, profile: &Profile) {
     let Some(most) = profile.longest_pass() else { return };
     let cut = |pass: Pass| if pass.points.len() + LEAST <= most { vec![pass] } else { pieces(pass, most, profile) };

@@ -43,7 +43,7 @@ pub struct Summary {
     pub metrics: Metrics,
     /// Events on layers.
     pub warnings: Warnings,
-    /// What does not fit in the profile, as sentences.
+    /// What does not fit together in the profile, as sentences.
     pub notes: Vec<String>,
     /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
     pub forbidden: Vec<String>,
@@ -74,7 +74,8 @@ pub enum PlanError<E> {
     UnknownStrategy(String),
     /// The plan would be too large.
     #[error(
-        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. Check the unit of the file and layers.height."
+        "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. \
+         Check the unit of the file and layers.height."
     )]
     TooManyLayers {
         /// Height of the part, mm.
@@ -87,11 +88,12 @@ pub enum PlanError<E> {
     /// The bead gives no wall.
     #[error(transparent)]
     Wall(#[from] WallError),
-    /// A surface that is not closed, of which nobody said what it stands for.
+    /// A surface that is not closed, where nobody said what it stands for.
     #[error(
-        "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm by {width:.1} mm. If it is the skin of a solid, mend the \
-         model, or set slice.surface = \"solid\", which fills what its contours enclose and leaves out those that do not close. If it \
-         stands for a wall, set slice.surface = \"wall\", which lays one bead along it.", .place.x, .place.y, .place.z
+        "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm it has an opening {width:.1} mm wide. If it is the \
+         skin of a solid, mend the model, or set slice.surface = \"solid\", which fills what its contours enclose and leaves \
+         out those that do not close. If it stands for a wall, set slice.surface = \"wall\", which lays one bead along it.",
+        .place.x, .place.y, .place.z
     )]
     Open {
         /// Width of the widest opening, mm.

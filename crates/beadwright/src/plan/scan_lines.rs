@@ -61,15 +61,15 @@ fn raster_angles(
 pub struct ToFill<'a> {
     /// Its islands.
     pub islands: &'a [Polygon],
-    /// Where a sparse infill is solid all the same; `None` where all of it is.
+    /// Where a sparse infill is nevertheless solid; `None` where all of it is.
     pub solid: Option<&'a Region>,
 }
 
-/// A likelier angle is kept where another would save no more than this fraction of the time: the angle should not
-/// change from layers to the next ones for nothing.
+/// An earlier candidate is kept unless another angle would save more than this fraction of the time: the angle should not
+/// change between layers for nothing.
 const TIME_SLACK: f64 = 0.002;
 
-/// At least this fraction of the metal that the fixed angle lays: an angle may not be quick because it leaves more bare.
+/// At least this fraction of the metal that the fixed angle lays: an angle must not be fast because it leaves more bare.
 const LEAST_METAL: f64 = 0.98;
 
 /// The angle, radians, of the scan lines of two layers, the second of which is turned by 90°, with which their metal is
@@ -100,7 +100,7 @@ pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profil
     timed.into_iter().find(|(time, _)| *time <= least * (1.0 + TIME_SLACK)).map(|(_, angle)| angle)
 }
 
-/// What the layers above and below leave open is no top and no bottom where it is narrower than this, in bead widths.
+/// What the layers above and below leave open is neither top nor bottom where it is narrower than this, in bead widths.
 const SLIVER: f64 = 0.1;
 
 /// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
@@ -130,7 +130,7 @@ fn solid_regions(
         }
         let near = (own - reach..=own + reach).filter(|&other| other != own);
         let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
-        // Between slices of an upright wall slivers are left, since its facets are cut in other places.
+        // Between slices of an upright wall slivers are left, since its facets are cut at different places.
         let open = bare.into_polygons().into_iter().filter(|p| p.holds_disc(SLIVER * profile.bead.width / 2.0));
         // Grown, so that the solid infill holds on to the sparse infill around it.
         Some(Region::from_normalised(open.collect()).offset(2.0 * profile.bead.width, Join::ROUND))

@@ -22,7 +22,7 @@ const SMALL_PART: f64 = 0.5;
 const STUB: f64 = 2.0;
 /// Places per bead width at which a pass is looked at.
 const SAMPLES: f64 = 4.0;
-/// An island stands on another from this part of the smaller one's area on.
+/// An island rests on another if they share this part of the smaller one's area or more.
 const STANDS: f64 = 0.05;
 
 /// What lies below the next layer.
@@ -32,7 +32,7 @@ pub(super) struct Support {
     metal: Option<Metal>,
     /// Outlines of the layer below.
     islands: Vec<Polygon>,
-    /// Those of them that were left out, since they hang.
+    /// Those of them that were left out because they hang.
     left_out: Vec<Polygon>,
 }
 
@@ -44,8 +44,8 @@ struct Metal {
 }
 
 impl Support {
-    /// Warns of passes that lie in the air, takes small islands out that hang, and remembers the layer for the next one. On
-    /// sparse layers the next lie as if they were filled, and what is printed bridges gaps.
+    /// Warns of passes that lie in the air, takes out small islands that hang, and remembers the layer for the next one.
+    /// Sparse layers support the next as if they were filled, and printed beads bridge gaps.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
         let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
@@ -72,8 +72,8 @@ impl Support {
         self.left_out.contains(island)
     }
 
-    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. The islands
-    /// taken out.
+    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. Returns the
+    /// islands taken out.
     fn take_out(&self, layer: &mut Layer, hanging: &[Option<Hanging>], width: f64) -> Vec<Polygon> {
         if hanging.iter().all(Option::is_none) {
             return Vec::new();
@@ -141,8 +141,8 @@ struct Hanging {
     place: DVec2,
 }
 
-/// Whether less than `LEAST` of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is clear of it; looked at
-/// in steps (mm).
+/// Whether less than `LEAST` of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is clear of it;
+/// looked at in steps (mm).
 fn hanging(pass: &Pass, step: f64, bridge: f64, below: impl Fn(DVec2) -> Below) -> Option<Hanging> {
     let mut places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
     if pass.closed {

@@ -11,7 +11,8 @@ use crate::slice::Slab;
 use crate::task::Task;
 use planar::Bounds;
 
-/// Plans of a wall until its layers lie where its own heat lets them rise; each brings them closer by a factor of ten.
+/// How often a wall is planned until its layers lie where its own heat lets them rise; each time brings them closer by a
+/// factor of ten.
 const ROUNDS: usize = 3;
 
 /// Heights that differ by less are the same, mm.
@@ -25,9 +26,9 @@ pub(super) struct Warmth {
 }
 
 impl Warmth {
-    /// Thickness of a layer on metal of a height (mm), as a multiple of what it is at the temperature of the profile.
+    /// Thickness of a layer on metal at a height (mm), as a multiple of what it is at the temperature of the profile.
     pub(super) fn lift(&self, z: f64) -> f64 {
-        // Where one layer ends and the next begins, rounding decides nothing.
+        // Where one layer ends and the next begins, rounding must not decide.
         let next = self.lifts.partition_point(|(top, _)| *top <= z + SAME);
         self.lifts.get(next).or(self.lifts.last()).map_or(1.0, |(_, lift)| *lift)
     }
@@ -36,7 +37,7 @@ impl Warmth {
 /// The part as it warms up while its layers are planned.
 #[derive(Debug, Default)]
 pub(super) struct Heat {
-    /// Its metal; `None` where the profile neither limits its temperature nor says what that does.
+    /// Its metal; `None` where the profile neither limits its temperature nor says what it does.
     pub(super) build: Option<Build>,
     warmth: Warmth,
 }
@@ -51,7 +52,7 @@ impl Heat {
         Self { build, warmth: warmth.clone() }
     }
 
-    /// How thick a layer on metal of a height (mm) is, as a multiple of what it is at the temperature of the profile.
+    /// How thick a layer on metal at a height (mm) is, as a multiple of what it is at the temperature of the profile.
     pub(super) fn lift(&self, index: usize, below: f64) -> f64 {
         // The first bead of a wall is a cap on the cold plate.
         if index == 0 { 1.0 } else { self.warmth.lift(below) }
@@ -59,7 +60,7 @@ impl Heat {
 }
 
 /// The warmth of a wall, if its profile says what heat does to its layers, and they follow its height.
-pub(super) fn foretold<E>(part: PartRef, profile: &Profile, task: &Task) -> Result<Warmth, PlanError<E>> {
+pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Result<Warmth, PlanError<E>> {
     let mut warmth = Warmth::default();
     let Some(law) = profile.bead.by_heat else { return Ok(warmth) };
     let wall = match part {
@@ -72,7 +73,7 @@ pub(super) fn foretold<E>(part: PartRef, profile: &Profile, task: &Task) -> Resu
         match plan_at(&warmth, "", part, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
-            // The plan itself tells what is wrong.
+            // The plan itself reports what is wrong.
             Err(_) => return Ok(warmth),
         }
         let lift = |layer: &Layer| Some((layer.z, law.lift(wall.rise(), ahead(layer)?)));

@@ -20,8 +20,8 @@ pub struct BeadSection {
     /// measured beads as `{ library = [[width, height], …] }` in mm; default constant-height.
     #[serde(default)]
     pub law: Law,
-    /// A library of measured beads, as `beadwright bead fit` writes it, from the folder of the profile on: what it says of
-    /// beads at this process and other speeds takes the place of `law`; optional.
+    /// A library of measured beads, as `beadwright bead fit` writes it; its path is relative to the profile's folder. What
+    /// it says of beads of this process at other speeds replaces `law`; optional.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<String>,
     /// How the bead changes with the heat of the metal below; optional, default not at all.

@@ -3,7 +3,7 @@
 use super::{Profile, ProfileError};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
-/// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is taken as
+/// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is treated as
 /// text. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
 ///
 /// # Errors

@@ -16,7 +16,7 @@ pub enum RasterTurn {
     Alternate,
     /// Turned by `raster_increment` from layer to layer.
     Increment,
-    /// The angle that takes the least time, of those with few turns and of `raster_angle`, chosen for each pair of
+    /// The angle that takes the least time, among those with few turns and `raster_angle`, chosen for each pair of
     /// layers, the second of which is turned by 90° (Han et al. 2018, 3.1).
     Best,
 }
@@ -51,7 +51,7 @@ pub struct FillSection {
     /// Spacing of the scan lines: spread evenly (`even`), exactly one stepover apart (`exact`, Liu et al. 2022, eq 11),
     /// or spread evenly between the long edges parallel to them (`fitted`).
     pub raster_spacing: RasterSpacing,
-    /// Minimum length of a pass, mm; shorter passes are left out with a warning, except the only one of an island.
+    /// Minimum length of a pass, mm; shorter passes are left out with a warning, except an island's only pass.
     pub min_pass_length: f64,
     /// Whether `compound`, `hilbert` and `partition` lay the perimeters before the infill; default false.
     #[serde(default)]

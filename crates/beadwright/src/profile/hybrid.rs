@@ -6,11 +6,11 @@ use crate::limit::section;
 section! {
     /// Thresholds of the strategy `hybrid` (Zhao et al. 2023); every key has a default.
     HybridSection "hybrid" {
-        /// Whether to follow the paper to the letter; default false. Corner pockets from half a bead width on are then
+        /// Whether to follow the paper to the letter; default false. Corner pockets of half a bead width or more are then
         /// kept, and `scan_along = "auto"` means the short side.
         literal: bool = false;
         /// How far a contour is moved inwards to find its pockets, in stepovers; default 1.5.
-        pocket_depth: f64 = 1.5, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead beside them";
+        pocket_depth: f64 = 1.5, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead next to them";
         /// How much larger the backtracked contour is made (u), so that numerical slivers do not count as pockets, in
         /// stepovers; default 0.01.
         tolerance: f64 = 0.01, 0.001, 0.2, "stepovers", "smaller slivers are rounding errors, larger pockets are real";
@@ -46,8 +46,8 @@ section! {
     }
 }
 
-/// Longer corner pockets are never dropped by the paper's filter, in bead widths: it takes 12 arc starts on its propeller
-/// with this, and 32 with three.
+/// Corner pockets longer than this are never dropped by the paper's filter, in bead widths: its propeller takes 12 arc
+/// starts with this, and 32 with three.
 const LITERAL_POCKET: f64 = 0.5;
 
 impl HybridSection {

@@ -10,24 +10,25 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LayersSection {
     /// Thickness of a layer with many beads side by side, mm; for walls it is used only where their layer heights are not
-    /// predicted (`foretell`).
+    /// predicted (`predict`).
     pub height: f64,
     /// How the layers fit the height of a solid: `fixed` (layers of this thickness, as many as come nearest to the
-    /// height), `last` (one more layer where the part would end above the last), or `even` (the nearest number of equal
-    /// layers, each laid at the pace that fills it); default fixed. What is left over is reported. Level layers end with the part.
+    /// height), `last` (one more layer if the part would extend above the last), or `even` (the nearest number of equal
+    /// layers, each laid at the pace that fills it); default fixed. What is left over is reported. Level layers end at the
+    /// top of the part.
     #[serde(default)]
     pub fit: LayerFit,
-    /// Whether layers of solids are as high as the metal of their passes fills their slices, a wide one `height`, end with the
-    /// part, and have the metal where the slice needs it: more in beads at the rim and where the model finds the layers below too
-    /// low, less in beads between others and where it finds them too high; default true. Without it, all layers are of one height and all beads alike, and a part with few beads side by side ends lower
-    /// than planned.
+    /// Whether layers of solids are as high as the metal of their passes fills their slices (a wide one is `height`), end at
+    /// the top of the part, and have metal where the slice needs it: more in beads at the rim and where the model finds the
+    /// layers below too low, less in beads between others and where it finds them too high; default true. Otherwise all
+    /// layers have the same height and all beads are alike, and a part with few beads side by side ends lower than planned.
     #[serde(default = "yes")]
     pub level: bool,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
     /// thickness apart: `auto` (for the strategy `wall` only, unless it was chosen for a solid whose walls are thicker than the
     /// bead), `always` or `never`; default auto.
-    #[serde(default)]
-    pub foretell: Foretell,
+    #[serde(default, alias = "foretell")]
+    pub predict: Predict,
 }
 
 fn yes() -> bool {
@@ -38,7 +39,7 @@ fn yes() -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Foretell {
+pub enum Predict {
     /// For the strategy `wall` only.
     #[default]
     Auto,

@@ -59,7 +59,7 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     }
     match (fill.overlap.ratio(), fill.stepover) {
         (Some(_), Some(stepover)) => {
-            let reason = "it is given only with overlap = \"free\".".to_owned();
+            let reason = "it may be given only with overlap = \"free\".".to_owned();
             return Some(Broken { key: "fill.stepover".to_owned(), value: format!("{stepover}"), reason });
         }
         (None, None) => return Some(Broken::text("fill.overlap", "free", "fill.stepover must then be given, mm.")),
@@ -77,7 +77,7 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         && limits.max_temperature < heat.ambient + 10.0
     {
         let (key, value) = ("interpass.max_temperature".to_owned(), limits.max_temperature.to_string());
-        let reason = format!("no part cools so far: its surroundings have {} °C (heat.ambient).", heat.ambient);
+        let reason = format!("no part cools that far: its surroundings are at {} °C (heat.ambient).", heat.ambient);
         return Some(Broken { key, value, reason });
     }
     if let Some(limits) = &p.interpass {
@@ -90,11 +90,11 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         }
     }
     if let (Some(spot), Some(_)) = (&p.spot, &p.weave) {
-        let reason = "the torch stands while it welds a dot, so [spot] does not go with [weave].".to_owned();
+        let reason = "the torch stands still for a dot, so [spot] cannot be combined with [weave].".to_owned();
         return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });
     }
     if let (Some(spot), Follow::WireFeed) = (&p.spot, p.process.follow) {
-        let reason = "a dot is as large as its time is long, so process.follow must be \"speed\".".to_owned();
+        let reason = "the size of a dot depends on its time, so process.follow must be \"speed\".".to_owned();
         return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });
     }
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
@@ -111,9 +111,9 @@ fn bad_template(p: &Profile) -> Option<Broken> {
     lines.find_map(|(key, line)| {
         let known = PLACEHOLDERS.map(|(name, _)| name);
         let reason = match template::unknown_placeholder(line, &known) {
-            Some(name) => format!("{{{{{name}}}}} is not a placeholder; known are {}.", known.join(", ")),
+            Some(name) => format!("{{{{{name}}}}} is not a placeholder; the placeholders are {}.", known.join(", ")),
             None if !line.bytes().all(|b| b.is_ascii_graphic() || b == b' ') => {
-                "a line of a template holds printable ASCII characters only.".to_owned()
+                "a line of a template may hold printable ASCII characters only.".to_owned()
             }
             None => return None,
         };

@@ -9,11 +9,11 @@ const SPEEDS: u32 = 16;
 /// The library's bead at the profile's process may be this much wider or narrower than bead.width.
 const ALIKE: f64 = 0.1;
 
-/// How the bead changes with the speed at the profile's process, as a library (the text of a file by `beadwright bead fit`)
-/// has it.
+/// How the bead changes with the speed at the profile's process, as given by a library (the text of a file written by
+/// `beadwright bead fit`).
 ///
 /// # Errors
-/// A sentence that says what the library lacks, or in what it differs from the profile.
+/// A sentence that says what the library lacks, or how it differs from the profile.
 pub(super) fn law(text: &str, profile: &Profile) -> Result<Law, String> {
     let library = BeadLibrary::parse(text).map_err(|error| error.to_string())?;
     let speed = library.input_number("deposition_speed").map_err(|error| error.to_string())?;
@@ -33,7 +33,7 @@ pub(super) fn law(text: &str, profile: &Profile) -> Result<Law, String> {
     let nominal = library.predict(&own).map_err(|error| error.to_string())?.width.value;
     if (nominal / profile.bead.width - 1.0).abs() > ALIKE {
         return Err(format!(
-            "at {} it has a bead {nominal:.2} mm wide, but bead.width is {} mm. Make both agree.",
+            "at {} it gives a bead {nominal:.2} mm wide, but bead.width is {} mm. Make the two agree.",
             library.describe(&own),
             profile.bead.width
         ));
@@ -45,7 +45,7 @@ pub(super) fn law(text: &str, profile: &Profile) -> Result<Law, String> {
         let bead = library.predict(&values).ok()?.bead();
         Some([bead.width, bead.height])
     };
-    // Slower beads are wider; a fit that says otherwise at an end ends there.
+    // Slower beads are wider; a fit that says otherwise at one of its ends is cut off there.
     let mut beads: Vec<[f64; 2]> = Vec::new();
     for bead in (0..=SPEEDS).filter_map(at) {
         if beads.last().is_none_or(|last| bead[0] > last[0] && bead[0] * bead[1] > last[0] * last[1]) {

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-/// What a key may want, tried in this order; arrays of the lengths that profiles have.
+/// Values that a key may accept, tried in this order; arrays have the lengths found in profiles.
 const STAND_INS: [&str; 10] = ["1", "''", "false", "[]", "{}", "[1]", "[1,1]", "[1,1,1]", "[1,1,1,1]", "[1,1,1,1,1,1]"];
 
 /// More attempts than any profile needs.
 const MOST_ATTEMPTS: usize = 5000;
 
-/// The full names of the keys that `T` wants and the table lacks. Where another fault is met, those found before it.
+/// The full names of the keys that `T` requires and the table lacks. If another fault is met, those found before it.
 pub(super) fn missing<T: DeserializeOwned>(table: DeTable<'_>) -> Vec<String> {
     let mut trial = Trial::of(table);
     for _ in 0..MOST_ATTEMPTS {
@@ -34,7 +34,7 @@ pub(super) fn missing<T: DeserializeOwned>(table: DeTable<'_>) -> Vec<String> {
     trial.lacks
 }
 
-/// A table whose values are numbered by their spans, so that an error tells which of them it is about.
+/// A table whose values are numbered by their spans, so that an error shows which of them it is about.
 struct Trial<'a> {
     root: Spanned<DeTable<'a>>,
     /// Full names by number.

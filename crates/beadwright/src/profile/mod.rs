@@ -23,7 +23,7 @@ pub use bead::BeadSection;
 pub use check::CheckLimits;
 pub use fill::{FillSection, RasterTurn};
 pub use hybrid::HybridSection;
-pub use layers::{Foretell, LayersSection};
+pub use layers::{LayersSection, Predict};
 pub use one_loop::LoopSection;
 pub use order::OrderSection;
 pub use read::ProfileError;
@@ -51,7 +51,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
 
-/// The text of a profile for plasma on a CNC: one process, and the flavour of G-code of a control.
+/// The text of a profile for plasma on a CNC: one process, and a controller's flavour of G-code.
 macro_rules! plasma_304 {
     ($name:literal, $control:literal, $gcode:literal) => {
         concat!(
@@ -89,12 +89,12 @@ pub struct Profile {
     pub name: String,
     /// One-line description for lists.
     pub description: String,
-    /// The profile whose values hold where this one gives none: a built-in name, or the path of a file from this one's folder
-    /// on; optional.
+    /// The profile whose values apply where this one gives none: a built-in name, or the path of a file relative to this
+    /// one's folder; optional.
     #[serde(default, skip_serializing)]
     pub inherits: Option<String>,
-    /// Names of the dialects in which programs are written if none is requested, such as `krl`; a path such as
-    /// `./gantry` is that of a folder with a dialect of one's own, from the profile's folder on.
+    /// Names of the dialects in which programs are written if none is requested, such as `krl`; a path such as `./gantry`,
+    /// relative to the profile's folder, is that of a folder with a dialect of your own.
     pub posts: Vec<String>,
     /// The wire.
     pub wire: Wire,
@@ -139,14 +139,14 @@ pub struct Profile {
     /// How passes begin and end, and how long layers wait; optional.
     #[serde(default)]
     pub start_stop: StartStop,
-    /// How a dot is welded, for islands in which a bead has no room; optional.
+    /// How a dot is welded, for islands too small for a bead; optional.
     pub spot: Option<Spot>,
     /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
     /// Prices; optional.
     #[serde(default)]
     pub cost: Cost,
-    /// What the arc gives and the surroundings take, for temperatures; optional.
+    /// The heat that the arc gives and the surroundings take, for temperatures; optional.
     pub heat: Option<HeatSection>,
     /// Thermal values of the part; optional.
     pub material: Option<Material>,
@@ -175,7 +175,7 @@ impl Profile {
     /// The same, where `inherits` may name more than built-in profiles: `base` gives the text for what it names.
     ///
     /// # Errors
-    /// [`ProfileError`], also that of `base`.
+    /// [`ProfileError`], including that of `base`.
     pub fn parse_with(
         text: &str,
         base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
@@ -238,12 +238,12 @@ impl Profile {
     /// # Errors
     /// [`WallError`] for a bead from which no wall can be predicted.
     pub fn wall_bead(&self) -> Result<Option<WallBead>, WallError> {
-        let foretold = match self.layers.foretell {
-            Foretell::Auto => self.fill.strategy == "wall",
-            Foretell::Always => true,
-            Foretell::Never => false,
+        let predicted = match self.layers.predict {
+            Predict::Auto => self.fill.strategy == "wall",
+            Predict::Always => true,
+            Predict::Never => false,
         };
-        foretold.then(|| self.single_wall()).transpose()
+        predicted.then(|| self.single_wall()).transpose()
     }
 
     /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, where an infill
@@ -254,7 +254,7 @@ impl Profile {
         self.layers.level && self.fill.infill_density >= 1.0 && !walls && !literal
     }
 
-    /// The wall as thick as the bead is wide, one bead a layer, of the metal that a bead holds.
+    /// The wall as thick as the bead is wide, one bead per layer, with the metal that a bead holds.
     ///
     /// # Errors
     /// [`WallError`] for a bead from which no wall can be predicted.
@@ -262,8 +262,8 @@ impl Profile {
         WallBead::for_wall(self.bead.width, self.bead().area())
     }
 
-    /// What layer `index` (from 0) of that thickness (mm) adds to a wall, mm; `None` where walls are not foretold. The
-    /// first is thicker than what it adds: the bead on the substrate is a cap, higher than the others but of their metal.
+    /// What layer `index` (from 0) of that thickness (mm) adds to a wall, mm; `None` where walls are not predicted. The
+    /// first is thicker than what it adds: the bead on the substrate is a cap, higher than the others but with the same metal.
     pub fn wall_rise(&self, index: usize, height: f64) -> Option<f64> {
         let wall = self.wall_bead().ok().flatten()?;
         Some(if index == 0 { wall.rise() } else { height })
@@ -346,7 +346,7 @@ impl Profile {
             machining_allowance: fill.machining_allowance,
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,
-            // What a strategy lays outlasts the start of its arc where it has the choice.
+            // Where a strategy has the choice, its passes outlast the start of their arc.
             min_pass_length: fill.min_pass_length.max(self.steady_after() * self.process.deposition_speed),
             layer,
             hybrid: self.hybrid.settings(self.bead.width, self.stepover()),
@@ -356,14 +356,14 @@ impl Profile {
         }
     }
 
-    /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch stands until then.
+    /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch waits until then.
     pub fn soonest_arc_end(&self) -> f64 {
         let stands = |post: &String| self.dialects.get(post).is_some_and(|section| section.stands_at_start());
         let stands = !self.posts.is_empty() && self.posts.iter().all(stands);
         if stands { 0.0 } else { self.steady_after() }
     }
 
-    /// How long an arc takes until it is steady, s; a hybrid that follows its paper to the letter does not ask.
+    /// How long an arc takes to become steady, s; a hybrid that follows its paper to the letter ignores it.
     fn steady_after(&self) -> f64 {
         if self.hybrid.literal { 0.0 } else { self.process.arc_start_delay }
     }
@@ -420,7 +420,7 @@ impl Profile {
         Track::of(layers, self.programmer(), self.travel.speed)
     }
 
-    /// What a program of a part needs besides its layers. In a dry run the part's name says so at its beginning, since
+    /// What a program of a part needs besides its layers. In a dry run the part's name says so at the beginning, since
     /// long names are cut off at the end.
     pub fn job(&self, part: &str) -> Job<'_> {
         Job {
@@ -438,8 +438,8 @@ impl Profile {
         }
     }
 
-    /// How programs of this profile are read back: the lines that switch the arc, and what the controller takes. `file` is the
-    /// name of the main file, `post` its dialect.
+    /// How programs of this profile are read back: the lines that switch the arc, and what the controller accepts. `file` is
+    /// the name of the main file, `post` its dialect.
     pub fn reading_options(&self, file: Option<&str>, post: Option<&str>) -> Options {
         let sections = &self.dialects;
         let inform_cm_per_min = sections.inform.as_ref().is_some_and(|i| i.speed == InformSpeed::CentimetresPerMinute);
@@ -454,7 +454,7 @@ impl Profile {
 
     /// Why no program should be written with this profile, as sentences.
     pub fn forbidden(&self) -> Vec<String> {
-        // A printer's nozzle stands on the layer and may glide over it; a torch may not.
+        // A printer's nozzle touches the layer and may glide over it; a torch may not.
         let drags = self.process.ctwd > 0.0 && self.travel.clearance <= 0.0;
         let sentence = || "travel.clearance = 0: the wire would be dragged over fresh beads.".to_owned();
         drags.then(sentence).into_iter().collect()
@@ -464,11 +464,11 @@ impl Profile {
     pub fn notes(&self) -> Vec<String> {
         let rise = self.bead().rise(self.stepover());
         let height = self.layers.height;
-        let foretold = self.wall_bead().is_ok_and(|wall| wall.is_some());
-        let rise_note = (!foretold && (rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
+        let predicted = self.wall_bead().is_ok_and(|wall| wall.is_some());
+        let rise_note = (!predicted && (rise / height - 1.0).abs() > MassBalance::TOLERANCE).then(|| {
             let fitting = self.bead().for_rise(self.stepover(), height);
             format!(
-                "Beads {:.2} mm high at a stepover of {:.2} mm rise {rise:.2} mm a layer, but layers are {height:.2} mm \
+                "Beads {:.2} mm high at a stepover of {:.2} mm rise {rise:.2} mm per layer, but layers are {height:.2} mm \
                  high. A bead.height of {:.2} mm or a layers.height of {rise:.2} mm would fit.",
                 self.bead.height,
                 self.stepover(),

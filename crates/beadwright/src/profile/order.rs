@@ -12,8 +12,8 @@ pub struct OrderSection {
     /// `local-search` or `exact`; default local-search.
     pub method: Method,
     /// Where closed passes begin: `nearest`, `aligned`, `rotate` (two bead widths further along on each layer) or
-    /// `spread` (as far as possible from the seams below); default nearest. All but `aligned` keep half a bead off the starts
-    /// of the five layers below.
+    /// `spread` (as far as possible from the seams below); default nearest. All but `aligned` stay half a bead away from the
+    /// starts of the five layers below.
     pub seam: Seam,
     /// Whether passes run in the opposite direction on every second layer, so that ends lie over starts: closed passes
     /// are reversed; open ones begin at their left end (least x, then least y) on one layer and at their right end on

@@ -58,16 +58,16 @@ pub enum ProfileError {
     },
 }
 
-/// The most profiles that may inherit from each other in a row.
+/// The longest chain of profiles that may inherit from one another.
 const MOST_ANCESTORS: usize = 8;
 
-/// Reads a profile; `base` gives the texts of those that it inherits from, by what stands behind `inherits`.
+/// Reads a profile; `base` gives the texts of those that it inherits from, by the value of `inherits`.
 pub(super) fn parse(
     text: &str,
     base: &mut dyn FnMut(&str) -> Result<String, ProfileError>,
 ) -> Result<Profile, ProfileError> {
     let mut ancestors: Vec<String> = Vec::new();
-    // A library lies beside the profile that names it.
+    // A library's path is relative to the profile that names it.
     let mut library = library(text, text, base)?;
     while let Some(name) = inherits(ancestors.last().map_or(text, |ancestor| ancestor)) {
         if ancestors.len() == MOST_ANCESTORS {
@@ -87,7 +87,7 @@ pub(super) fn parse(
         ancestors.push(ancestor);
     }
     let mut profile = deserialize(text, &ancestors).map_err(|e| refused(&e, text, &ancestors))?;
-    // The law stays with the profile where its file does not go, as in plan.json.
+    // The law stays with the profile where the library's file does not go, such as into plan.json.
     if let Some((name, library)) = profile.bead.library.take().zip(library) {
         let law = measured::law(&library, &profile);
         profile.bead.law = law.map_err(|reason| of_library(text, name, reason))?;
@@ -122,7 +122,7 @@ fn without_nulls(value: &serde_json::Value) -> serde_json::Value {
     }
 }
 
-/// What stands behind `inherits`.
+/// The value of `inherits`.
 fn inherits(text: &str) -> Option<String> {
     let table = DeTable::parse(text).ok()?;
     Some(table.get_ref().get("inherits")?.get_ref().as_str()?.to_owned())
@@ -142,7 +142,7 @@ fn library(
     let Some(name) = named(profile) else { return Ok(None) };
     base(&name).map(Some).map_err(|error| match error {
         ProfileError::UnknownName { .. } => {
-            of_library(text, name, "files are not opened here; give the bead.law itself.".to_owned())
+            of_library(text, name, "files are not opened here; give bead.law itself.".to_owned())
         }
         other => other,
     })
@@ -218,7 +218,7 @@ pub(super) fn unknown_name(name: &str) -> ProfileError {
     let known = BUILT_IN.map(|(name, _)| name);
     let hint = match nearest(name, known) {
         Some(near) => format!("Did you mean \"{near}\"?"),
-        None => format!("Known: {}. A path to a TOML file is taken too.", known.join(", ")),
+        None => format!("Known profiles: {}. The path of a TOML file is accepted, too.", known.join(", ")),
     };
     ProfileError::UnknownName { name: name.to_owned(), hint }
 }

@@ -14,7 +14,7 @@ pub struct SliceSection {
     /// Contour vertices closer than this to the simplified line are dropped, mm; default 0.01.
     pub simplify: f64,
     /// What a surface that is not closed stands for: `solid`, whose contours are filled, or `wall`, along which one bead is
-    /// laid; optional. Where it is left out, a part with an opening wider than a bead is not planned.
+    /// laid; optional. If it is left out, a part with an opening wider than a bead is not planned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<Surface>,
 }

@@ -19,11 +19,12 @@ section! {
         /// Gap between the end of a path at a junction and the paths that run through the junction, in bead widths;
         /// default 0.4.
         end_gap: f64 = 0.4, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
-        /// Narrowest bead of the process, in bead widths; thinner walls are welded with it, and it reaches beyond them; default
-        /// 0.7.
+        /// Narrowest bead of the process, in bead widths; thinner walls are welded with this bead, which extends beyond
+        /// them; default 0.7.
         min_width: f64 = 0.7, 0.2, 1.0, "bead widths", "narrower beads have no steady arc";
-        /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. `wall` welds all.
-        thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie beside a thinner wall rather than in it";
+        /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. The strategy `wall` welds
+        /// all of them.
+        thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie next to a thinner wall rather than in it";
         /// Whether closed walls become the turns of one helix, from the bottom to the top with one arc start; default false.
         /// Each layer must be one closed wall.
         helix: bool = false;

@@ -7,11 +7,11 @@ use glam::DVec2;
 
 /// Points of a curve.
 const POINTS: usize = 121;
-/// Most curves: as many as can be told apart.
+/// Maximum number of curves: as many as can be distinguished.
 const CURVES: usize = 6;
 
-/// λ over the first input, by values of the second; further inputs are held at the middle of their range. A curve
-/// shows only where the library answers; dots are the measured beads on it.
+/// λ over the first input, by values of the second; further inputs are held at the middle of their range. A curve is drawn
+/// only where the library gives an answer; dots are the measured beads on it.
 pub fn plot(library: &BeadLibrary) -> Plot {
     let Some(first) = library.inputs.first() else { return Plot::default() };
     let second = library.inputs.get(1);

@@ -40,17 +40,17 @@ const FINEST: f64 = 0.01;
 /// A layer spans at most this many units, so that every difference fits in an Int16.
 const SPAN: f64 = 32_000.0;
 
-/// Most warnings that are listed for one layer.
+/// Maximum number of warnings listed for one layer.
 const MOST_WARNINGS: usize = 30;
 
-/// One layer, and what the deposit model says of it, as base64. It does not depend on other layers, so callers may
+/// One layer, and what the deposit model says about it, as base64. It does not depend on other layers, so callers may
 /// encode several in parallel.
 pub fn layer(layer: &Layer, process: &Process, figures: Option<&Figures>) -> String {
     let process = process.at_layer(layer.index);
     encoded(layer, figures, &|pace| process.speed_at(pace))
 }
 
-/// One layer as it lies there, with paces in place of the torch's speeds.
+/// One layer as it is, with paces in place of the torch's speeds.
 pub fn shape(layer: &Layer) -> String {
     encoded(layer, None, &|pace| pace)
 }
@@ -154,7 +154,7 @@ fn kind(kind: PassKind) -> u32 {
 fn differences(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<[i16; 2]> {
     let mut last = I64Vec2::ZERO;
     let step = |p: DVec2| {
-        // What is not negative is rounded down by a cast.
+        // A cast rounds down what is not negative.
         let at = ((p - origin) / resolution + 0.5).as_i64vec2();
         let difference = at - std::mem::replace(&mut last, at);
         [difference.x as i16, difference.y as i16]
@@ -192,10 +192,10 @@ fn short(warning: &Warning) -> String {
         WarningKind::HighStart => format!("first bead {size:.2} mm above the plate"),
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::InTheAir => format!("{size:.1} mm of a pass over nothing"),
-        WarningKind::HangingIsland => format!("hanging place of {size:.1} mm² left out"),
-        WarningKind::Overhang => format!("{size:.1} mm² hang over the layer below"),
-        WarningKind::ShortArc => format!("pass of {size:.1} mm over before its arc is steady"),
-        WarningKind::Relit => format!("pass longer than a program: arc lit again {size:.0} times"),
+        WarningKind::HangingIsland => format!("hanging island of {size:.1} mm² left out"),
+        WarningKind::Overhang => format!("{size:.1} mm² overhang the layer below"),
+        WarningKind::ShortArc => format!("pass of {size:.1} mm ends before its arc is steady"),
+        WarningKind::Relit => format!("pass longer than a program: arc struck again {size:.0} times"),
         WarningKind::ManyPoints => format!("{size:.0} points, more than check.max_points"),
         WarningKind::Sliver => format!("sliver of {size:.2} mm² left out"),
         WarningKind::NeverCools => format!("does not cool, {size:.0} °C"),

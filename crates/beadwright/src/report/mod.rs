@@ -5,12 +5,12 @@
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
 //! | [`rows`] | totals as people read them |
-//! | `words` | what the words of the figures mean |
+//! | `words` | what the terms of the figures mean |
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
-//! | [`overhang`] | faces that hang over, seen from below |
+//! | [`overhang`] | overhanging faces, seen from below |
 //! | [`reach`] | joint angles and margins over a program |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
@@ -54,9 +54,9 @@ pub struct Report {
     profile: Profile,
     layers: Vec<String>,
     maps: Vec<String>,
-    /// Of every layer: temperatures where its passes begin, °C, and the seconds that the torch waits.
+    /// For each layer: temperatures where its passes begin, °C, and the seconds that the torch waits.
     warmth: Vec<(Vec<f64>, f64)>,
-    /// Of every layer: arc, waits, and the rest of its time, s.
+    /// For each layer: arc, waits, and the rest of its time, s.
     times: Vec<[f64; 3]>,
     clock: Metrics,
     widths: Range,
@@ -68,7 +68,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// A report without layers yet.
+    /// A report with no layers yet.
     pub fn new(header: &Header, profile: &Profile) -> Self {
         Self {
             header: header.clone(),
@@ -86,7 +86,7 @@ impl Report {
         }
     }
 
-    /// Takes the next layer, and what the deposit model says of it.
+    /// Takes the next layer, and what the deposit model says about it.
     pub fn layer(&mut self, layer: &Layer, judgement: Option<&Judgement>) {
         if layer.index == self.header.extent.layers / 2 {
             self.middle = layer.clone();
@@ -117,8 +117,8 @@ impl Report {
         }
     }
 
-    /// The page. `files` are the names of the files that were written, `findings` all
-    /// that is to be said of the plan ([`check::all_findings`](crate::check::all_findings)).
+    /// The page. `files` are the names of the files that were written, `findings` everything to report about the plan
+    /// ([`check::all_findings`](crate::check::all_findings)).
     pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String], findings: &[Finding]) -> String {
         let (header, profile) = (&self.header, &self.profile);
         let values = [
@@ -162,7 +162,7 @@ impl Report {
         template::expand(include_str!("page.html"), &values)
     }
 
-    /// What the scripts need, as JSON that may stand in a `script` element.
+    /// What the scripts need, as JSON that is safe in a `script` element.
     fn data(&self) -> String {
         let bead = json!({ "width": self.profile.bead.width }).to_string().replace('<', "\\u003c");
         // Base64 needs no escaping.
@@ -222,7 +222,7 @@ pub(crate) fn escape(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\'' => escaped.push_str("&#39;"),
-            // Control characters may not stand in XML.
+            // XML does not allow control characters.
             c if c.is_control() && !c.is_whitespace() => escaped.push('\u{fffd}'),
             c => escaped.push(c),
         }

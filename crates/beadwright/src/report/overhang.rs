@@ -1,32 +1,32 @@
-//! Where a part hangs over, as a picture: seen from below, coloured by how far its faces lean.
+//! Where a part overhangs, as a picture: seen from below, coloured by how far its faces lean.
 
 use crate::model::Mesh;
 use crate::number::fixed;
 use glam::{DVec2, DVec3};
 
-/// Faces drawn at most; beyond, the file would be larger than browsers open.
+/// Maximum number of faces drawn; with more, the file would be too large for browsers.
 pub const MOST_FACES: usize = 200_000;
 
-/// Lean from the vertical up to which a band goes, °, its colour, and its area's name.
+/// The lean from the vertical up to which each band goes, °, and its colour.
 const BANDS: [(f64, &str); 4] = [(30.0, "#c9d4df"), (45.0, "#f2d06b"), (60.0, "#ee9a4d"), (90.0, "#cf4a3f")];
-/// What lies on the plate.
+/// The colour of what lies on the plate.
 const PLATE: &str = "#7d8894";
-/// Faces this near to the lowest point lie on the plate, in extents of the part.
+/// Faces this close to the lowest point lie on the plate, as a fraction of the part's extent.
 const ON_PLATE: f64 = 1e-3;
 
-/// The part has more faces that look down than are drawn.
+/// The part has more downward faces than are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{0} faces look down; at most {MOST_FACES} are drawn. Give a coarser model.")]
+#[error("{0} faces point downwards; at most {MOST_FACES} are drawn. Use a coarser model.")]
 pub struct TooMany(pub usize);
 
-/// A face that looks down.
+/// A downward face.
 struct Face {
     corners: [DVec3; 3],
     colour: &'static str,
     area: f64,
 }
 
-/// The picture as SVG, in the units of the part, of a part that stands with z upwards. Faces lean by the angle between
+/// The picture as SVG, in the units of the part, with z upwards. Faces lean by the angle between
 /// them and the vertical: a wall by 0°, a ceiling by 90°.
 ///
 /// # Errors
@@ -67,7 +67,7 @@ pub fn svg(mesh: &Mesh) -> Result<String, TooMany> {
     Ok(text + "</svg>\n")
 }
 
-/// A face that looks down, with its colour.
+/// A downward face, with its colour.
 fn face(corners: [DVec3; 3], plate: f64) -> Option<Face> {
     let [a, b, c] = corners;
     let across = (b - a).cross(c - a);

@@ -41,9 +41,9 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
-/// Told apart without red, green or blue cones too (`tests/it/page_colours.rs`; most are Okabe and Ito's, 2008).
+/// Distinguishable even without red, green or blue cones (`tests/it/page_colours.rs`; most are Okabe and Ito's, 2008).
 const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
-/// How lines are broken: every colour comes back in another way.
+/// How lines are dashed: when the colours repeat, the dashes differ.
 const DASHES: [&str; 3] = ["none", "9 4", "2 4"];
 
 impl Plot {
@@ -119,7 +119,7 @@ impl Plot {
         svg + "</svg>\n"
     }
 
-    /// Where the names of the curves stand, row by row.
+    /// Where the names of the curves are, row by row.
     fn legend(&self) -> Vec<DVec2> {
         let mut at = DVec2::new(LEFT, 36.0);
         let place = |curve: &Curve| {
@@ -133,7 +133,7 @@ impl Plot {
         self.curves.iter().map(place).collect()
     }
 
-    /// What a reader who does not see the plot is told: the range of every curve.
+    /// Text for a reader who does not see the plot: the range of every curve.
     fn words(&self) -> String {
         let range = |curve: &Curve| {
             let ys = || curve.points.iter().map(|p| p.y);

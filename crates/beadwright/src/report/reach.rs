@@ -5,9 +5,9 @@ use super::sheet::{Row, Sheet};
 use crate::robot::{Cell, Pose, Reach, Stop, Suggestion};
 use glam::DVec2;
 
-/// Most points of a curve: two for each stretch of the path, the least and the greatest value there.
+/// Maximum number of points of a curve: two for each stretch of the path, the least and the greatest value there.
 const POINTS: usize = 1200;
-/// Most marks of layers.
+/// Maximum number of layer marks.
 const MARKS: usize = 12;
 
 /// The page of a walk.
@@ -97,12 +97,12 @@ fn margins(reach: &Reach, way: &[f64]) -> Plot {
 
 fn torch(reach: &Reach, way: &[f64]) -> Plot {
     let curves = vec![curve("torch angle", reach, way, |pose| pose.torch_angle)];
-    plot("Turn of the torch about its axis", "angle in °", reach, way, curves)
+    plot("Rotation of the torch about its axis", "angle in °", reach, way, curves)
 }
 
 fn plot(title: &str, y: &str, reach: &Reach, way: &[f64], curves: Vec<Curve>) -> Plot {
     let (title, y) = (title.to_owned(), y.to_owned());
-    Plot { title, x: "way of the torch in m".to_owned(), y, curves, marks: layer_marks(reach, way), ..Plot::default() }
+    Plot { title, x: "path of the torch in m".to_owned(), y, curves, marks: layer_marks(reach, way), ..Plot::default() }
 }
 
 /// Where layers begin; if there are many, only every n-th.

@@ -26,7 +26,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// How the built part ends against the plan, bead laid on bead.
+/// How high the built part ends compared with the plan, bead laid on bead.
 pub fn built(built: &Growth) -> (&'static str, String) {
     let Growth { within, mean, hollow, peak, .. } = built;
     let percent = 100.0 * within;

@@ -76,7 +76,7 @@ impl Sheet {
         self.fields("null", labels, columns)
     }
 
-    /// Like [`Self::maps`], with other heights than those of beads: `key` names the ends of their scale.
+    /// Like [`Self::maps`], with heights other than those of beads: `key` names the ends of their scale.
     pub fn heights(
         &mut self,
         key: &[String; 2],
@@ -137,7 +137,7 @@ impl Sheet {
     }
 }
 
-/// A string for JSON that may stand in a `script` element.
+/// A string for JSON that is safe in a `script` element.
 fn json(text: &str) -> String {
     serde_json::Value::from(text).to_string().replace('<', "\\u003c")
 }

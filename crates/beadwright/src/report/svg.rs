@@ -72,7 +72,7 @@ impl Frame {
         svg
     }
 
-    /// Colours and a scale bar below the picture; walls stand alone.
+    /// Colours and a scale bar below the picture; walls are shown without the other kinds.
     fn legend(&self, svg: &mut String, walls: bool) {
         let (unit, y) = (self.unit, self.low.y + self.size.y - 4.0 * self.unit);
         let mut at = DVec2::new(self.low.x + 4.0 * unit, y);

@@ -44,7 +44,7 @@ fn empty(header: &Header, m: &Metrics) -> String {
     }
 }
 
-/// The badge beside the heading.
+/// The badge next to the heading.
 pub(super) fn state(summary: &Summary, findings: &[Finding]) -> String {
     if !summary.forbidden.is_empty() {
         return "<a class=\"badge bad\" href=\"#warnings\">Do not start</a>".to_owned();
@@ -90,7 +90,7 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
     if let Some(f) = figures {
         rows.push(("Void, low", format!("{:.2} %, {:.2} % of the area", f.void_percent(), f.low_percent())));
         rows.push(("Overfill, outside", format!("{:.2} %, {:.2} %", f.overfill_percent(), f.outside_percent())));
-        rows.push(("Height", format!("{:.2} mm ± {:.2} mm a layer", f.mean(), f.deviation())));
+        rows.push(("Height", format!("{:.2} mm ± {:.2} mm per layer", f.mean(), f.deviation())));
     }
     table(&rows)
 }
@@ -137,7 +137,7 @@ fn overlap(overlap: Overlap) -> &'static str {
     }
 }
 
-/// What a strategy lays, with those values of the profile that it heeds.
+/// What a strategy lays, with the values of the profile that it uses.
 fn strategy(name: &str, profile: &Profile) -> String {
     let fill = &profile.fill;
     let order = match fill.contour_order {
@@ -172,8 +172,8 @@ fn scan_lines(profile: &Profile) -> String {
     let angle = match fill.raster_turn {
         RasterTurn::Fixed => format!("at {}°", fill.raster_angle),
         RasterTurn::Alternate => format!("at {}°, turned by 90° on every second layer", fill.raster_angle),
-        RasterTurn::Increment => format!("at {}°, turned by {}° a layer", fill.raster_angle, fill.raster_increment),
-        RasterTurn::Best => "at the quickest angle for every two layers".to_owned(),
+        RasterTurn::Increment => format!("at {}°, turned by {}° per layer", fill.raster_angle, fill.raster_increment),
+        RasterTurn::Best => "at the fastest angle for each pair of layers".to_owned(),
     };
     format!("scan lines {angle}, {spacing}")
 }
@@ -193,17 +193,17 @@ pub(super) fn model(repair: &RepairReport) -> String {
     table(&[
         ("Triangles", repair.triangles.to_string()),
         ("Surfaces", format!("{}, {closed}", repair.shells)),
-        ("Mended", if repair.is_clean() { "nothing had to be" } else { "see the warnings" }.to_owned()),
+        ("Repairs", if repair.is_clean() { "none needed" } else { "see the warnings" }.to_owned()),
     ])
 }
 
 /// The names of the files that were written.
 pub(super) fn files(files: &[String]) -> String {
     let items = files.iter().map(|name| format!("<li>{}</li>", escape(name))).collect::<Vec<_>>().join("\n");
-    format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a list that scrolls\">\n{items}\n</ul>")
+    format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a scrollable list\">\n{items}\n</ul>")
 }
 
-/// All that is to be said, the worst first, or a line that says there is nothing of the kind.
+/// All findings, the worst first, or a line that says there are none.
 pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
     let item = |finding: &Finding| {
         let place = finding.layer.zip(finding.place.map(|place| place.truncate())).map(link).unwrap_or_default();
@@ -219,7 +219,7 @@ pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
-/// What does not stand at the head of the page, as what forbids the program does.
+/// The findings that are not at the head of the page, where those that forbid the program are.
 fn remarks<'a>(summary: &'a Summary, findings: &'a [Finding]) -> impl Iterator<Item = &'a Finding> {
     findings.iter().filter(|finding| !summary.forbidden.contains(&finding.sentence()))
 }

@@ -10,10 +10,10 @@ use crate::pass::Pass;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
 
-/// Most layers of which a picture is drawn.
+/// Maximum number of layers of which a picture is drawn.
 const PICTURES: usize = 12;
 
-/// Most rows of the table.
+/// Maximum number of rows of the table.
 const ROWS: usize = 60;
 
 /// The page of a plan.
@@ -41,14 +41,14 @@ fn lead(history: &History, limits: Option<&Interpass>) -> String {
     let waits = history.waits() / 60.0;
     let limit = limits.map_or(String::new(), |limits| format!(" The limit is {:.0} °C.", limits.max_temperature));
     format!(
-        "The hottest pass begins on metal of {hottest:.0} °C; the torch waits {waits:.1} min for it to cool, of {:.1} min in \
-         all.{limit} Computed from the program's own times with constant material values, in voxels ({}).",
+        "The hottest pass begins on metal at {hottest:.0} °C; the torch waits {waits:.1} min for metal to cool, of {:.1} min \
+         in all.{limit} Computed from the program's own times with constant material values, in voxels ({}).",
         history.seconds / 60.0,
         history.voxels
     )
 }
 
-/// Temperature at the starts of all passes, and of what lies below each layer, over time.
+/// Temperature at the start of each pass, and of what lies below each layer, over time.
 fn over_time(history: &History, limits: Option<&Interpass>) -> Plot {
     let starts =
         history.layers.iter().flat_map(|layer| &layer.passes).map(|pass| DVec2::new(pass.at / 60.0, pass.start));

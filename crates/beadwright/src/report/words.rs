@@ -1,4 +1,4 @@
-//! What the words of the figures mean: a hint on each word, and a list at the end of a page.
+//! What the terms of the figures mean: a hint on each term, and a list at the end of a page.
 
 use super::escape;
 use crate::deposit::{LOW, OUTSIDE, OVERFILL, VOID};
@@ -10,14 +10,14 @@ fn words() -> [(&'static str, String); 8] {
         (
             "Void",
             format!(
-                "A place inside the part, off its edge, where the metal stays below {} of the bead height.",
+                "A place inside the part, away from its edge, where the metal stays below {} of the bead height.",
                 percent(VOID)
             ),
         ),
         (
             "Low",
             format!(
-                "Metal from {} to {} of the bead height: more than a void, less than even.",
+                "Metal from {} to {} of the bead height: more than a void, but not level.",
                 percent(VOID),
                 percent(LOW)
             ),

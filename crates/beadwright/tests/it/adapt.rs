@@ -112,15 +112,15 @@ fn what_was_not_seen_is_left_out_and_told() {
 #[test]
 fn broken_scans_are_told_with_their_line() {
     for (text, said) in [
-        ("x,y,z\n1,2,3\n1,2,oops\n", "line 3 of the scan cannot be read: \"oops\" is no number for z in mm."),
+        ("x,y,z\n1,2,3\n1,2,oops\n", "line 3 of the scan cannot be read: \"oops\" is not a number for z in mm."),
         ("1,2\n", "line 1 of the scan cannot be read: z is missing."),
         ("a,b,c\n1,2,3\n", "line 1 of the scan cannot be read: no column is named x."),
-        ("x_ft,y,z\n1,2,3\n", "\"ft\" is no unit of x"),
-        ("height_map x0=0 y0=0\n1,2\n", "it must tell x0, y0 and step in mm"),
+        ("x_ft,y,z\n1,2,3\n", "\"ft\" is not a unit of x"),
+        ("height_map x0=0 y0=0\n1,2\n", "it must give x0, y0 and step in mm"),
         ("height_map x0=0 y0=0 step=0\n1,2\n", "the step must be above 0 mm, not 0"),
-        ("height_map x0=0 y0=0 step=1\n1,two\n", "line 2 of the scan cannot be read: \"two\" is no height in mm."),
+        ("height_map x0=0 y0=0 step=1\n1,two\n", "line 2 of the scan cannot be read: \"two\" is not a height in mm."),
         ("", "the scan holds no points."),
-        ("1e9 0 0\n", "farther than 20 m from the origin"),
+        ("1e9 0 0\n", "more than 20 m from the origin"),
     ] {
         let error = read(text.as_bytes(), &Task::new()).unwrap_err().to_string();
         assert!(error.contains(said), "{text:?}: {error}");

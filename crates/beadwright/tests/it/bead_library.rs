@@ -291,17 +291,17 @@ fn malformed_lines_give_one_clear_error() {
     for (csv, part) in [
         (String::new(), "the measurements are empty: the file has no line"),
         (head.lines().take(2).collect::<Vec<_>>().join("\n"), "the measurements are empty: no line with values"),
-        (format!("{head}100,8,5\n"), "line 4: 3 values stand here, but the header names 4 columns."),
-        (format!("{head}100,8,5,2,3\n"), "line 4: 5 values"),
+        (format!("{head}100,8,5\n"), "line 4: there are 3 values here, but the header names 4 columns."),
+        (format!("{head}100,8,5,2,3\n"), "line 4: there are 5 values"),
         (format!("{head}\n100,fast,5,2\n"), "line 5, column \"deposition_speed_mm_s\": \"fast\" is not a number"),
         (format!("{head}100,,5,2\n"), "line 4, column \"deposition_speed_mm_s\": the value is missing."),
-        (format!("{head}100,8,-5,2\n"), "line 4, column \"width_mm\": -5 mm is no size"),
+        (format!("{head}100,8,-5,2\n"), "line 4, column \"width_mm\": -5 mm is not the size of a bead"),
         (format!("{head}100,8,5,inf\n"), "line 4, column \"height_mm\": \"inf\" is not a number"),
         (format!("{head}\"100,8,5,2\n"), "line 4: a quotation mark is not closed."),
         (head.replace("width_mm", "breadth_mm"), "there is no column \"width\". Known: current_a"),
         (head.replace("width_mm", "width_cm"), "line 2, column \"width_cm\": the bead is measured in mm, not in cm."),
         (head.replace("deposition_speed_mm_s", "current_v"), "line 2: two columns are named \"current\""),
-        (head.replace("current_a", "100"), "line 2: 100 stands where the name"),
+        (head.replace("current_a", "100"), "line 2: 100 is where the name"),
         ("width_mm,height_mm\n5,2\n".into(), "no column is left as an input"),
     ] {
         let refused = Measured::read(&csv, &Columns::default()).unwrap_err().to_string();
@@ -403,7 +403,7 @@ fn a_library_that_does_not_fit_its_profile_is_refused() {
     let wide = said(with_library(9.5).unwrap_err());
     assert!(wide.contains("bead.library") && wide.contains("bead.width is 9.5 mm"), "{wide}");
     let unread = said(Profile::parse("inherits = \"cmt-steel-abb\"\n[bead]\nlibrary = \"ours.toml\"\n").unwrap_err());
-    assert!(unread.contains("bead.library") && unread.contains("give the bead.law itself"), "{unread}");
+    assert!(unread.contains("bead.library") && unread.contains("give bead.law itself"), "{unread}");
     let mut garbled = |name: &str| match name {
         "ours.toml" => Ok("version = 7".to_owned()),
         other => Profile::built_in_text(other).map(str::to_owned),

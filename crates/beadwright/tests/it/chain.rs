@@ -275,7 +275,7 @@ fn broken_urdf_files_are_refused_with_a_sentence() {
         }
     }
     let endless = text.replace("<parent link=\"base_link\"/>", "<parent link=\"wrist_3\"/>");
-    assert!(ur10e().with_urdf(&endless).unwrap_err().to_string().contains("circle"));
+    assert!(ur10e().with_urdf(&endless).unwrap_err().to_string().contains("loop"));
     // Joint 3 across joint 2: no closed form.
     let mut askew = UR10E;
     askew[1][2] = 1.0;

@@ -220,5 +220,10 @@ fn restart_with_too_many_passes_is_refused() {
     let layers: Vec<Layer> = (0..70).map(layer).collect();
     assert!(beadwright::dialect::write("gcode", &layers[..60], &profile.job("part")).is_ok());
     let error = beadwright::dialect::write("gcode", &layers, &profile.job("part")).unwrap_err().to_string();
-    assert!(error.contains("program.restart") && error.contains("N99999") && error.contains("--from-layer"), "{error}");
+    assert!(
+        error.contains("program.restart")
+            && error.contains("N99999")
+            && error.contains("the layer and pass that come next"),
+        "{error}"
+    );
 }

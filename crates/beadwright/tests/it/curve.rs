@@ -291,13 +291,13 @@ fn what_is_no_curve_is_refused() {
     let good = [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0];
     check(0, &good, &[1.0; 4], points(), "degree 0; degrees from 1 to 25");
     check(4, &good, &[1.0; 4], points(), "4 control points; degree 4 takes at least 5");
-    check(2, &good[1..], &[1.0; 4], points(), "6 knots where 7");
-    check(2, &good, &[1.0; 3], points(), "3 weights where 4");
+    check(2, &good[1..], &[1.0; 4], points(), "6 knots where its degree and control points require 7");
+    check(2, &good, &[1.0; 3], points(), "3 weights where its degree and control points require 4");
     check(2, &good, &[1.0, 1.0, 0.0, 1.0], points(), "weight 3 of the curve is 0");
     check(2, &[0.0, 0.0, 0.0, f64::NAN, 1.0, 1.0, 1.0], &[1.0; 4], points(), "knot 4 of the curve is not");
     check(2, &[0.0, 0.0, 0.5, 0.4, 1.0, 1.0, 1.0], &[1.0; 4], points(), "knot 4 of the curve (0.4) is smaller");
     check(2, &[1.0; 7], &[1.0; 4], points(), "begins and ends at the same parameter");
-    check(1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0], &[1.0; 4], points(), "knot 0.5 of the curve stands there 2 times");
+    check(1, &[0.0, 0.0, 0.5, 0.5, 1.0, 1.0], &[1.0; 4], points(), "knot 0.5 of the curve occurs 2 times");
     assert!(matches!(Nurbs::fitted(&points(), false, 0.0), Err(CurveError::Tolerance { .. })));
     assert!(matches!(Nurbs::interpolated(&[DVec3::X; 9], false), Err(CurveError::TooFewToFit { points: 1, .. })));
     assert!(matches!(Nurbs::polyline(vec![]), Err(CurveError::TooFewPoints { .. })));

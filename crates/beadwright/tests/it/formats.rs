@@ -238,7 +238,7 @@ fn broken_archives_are_refused() {
     let item = "<item objectid=\"1\"/>";
     let itself = object(1, "<components><component objectid=\"1\"/></components>");
     refused(threemf("millimeter", &itself, item), "in themselves");
-    refused(threemf("millimeter", "", item), "is not there");
+    refused(threemf("millimeter", "", item), "is missing");
     refused(threemf("millimeter", &object(1, &mesh_xml(&mesh)), ""), "no object");
     refused(threemf("furlong", &object(1, &mesh_xml(&mesh)), item), "furlong");
     refused(
@@ -254,7 +254,7 @@ fn broken_archives_are_refused() {
             ),
             item,
         ),
-        "names a vertex",
+        "refers to a vertex",
     );
     refused(
         threemf("millimeter", &object(1, &mesh_xml(&mesh)), "<item objectid=\"1\" transform=\"1 0 0\"/>"),
@@ -282,7 +282,7 @@ fn broken_archives_are_refused() {
     let vertices = "<vertex x=\"0\" y=\"0\" z=\"0\"/>".repeat(3_500_000);
     let packed = threemf("millimeter", &object(1, &format!("<mesh><vertices>{vertices}")), item);
     assert!(packed.len() < 1_000_000, "{}", packed.len());
-    refused(packed, "unfolds to more than 64 MB");
+    refused(packed, "unpacks to more than 64 MB");
     // Five thousand million spaces, packed small, would take minutes: elements nested without end stand for it.
     refused(archive(&[("3D/3dmodel.model", &"<a>".repeat(300))]), "deep");
     let lattice = format!(
@@ -309,7 +309,7 @@ fn broken_texts_name_their_line() {
     let many = String::from_utf8(text).unwrap().replacen("element face ", "element face 9999999", 1);
     refused(many.as_bytes(), "announces");
     let points = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n";
-    refused(points, "cloud of points");
+    refused(points, "point cloud");
     refused(amf(&mesh, "cubit").as_bytes(), "cubit");
     assert!(!model::is_solid(b"G21\nG90\nG1 X1\n") && model::is_solid(b"v 0 0 0\n"));
 }

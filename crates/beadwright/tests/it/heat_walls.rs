@@ -1,5 +1,5 @@
 //! Walls of one program welded with waits of 0 to 240 s, measured by others (PIONEER M1, Zenodo 17608626): fitted on the
-//! shortest and the longest wait, the others are foretold.
+//! shortest and the longest wait, the others are predicted.
 
 use beadwright::Profile;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallFitError, WallLaw};
@@ -27,7 +27,7 @@ fn measured(length: f64, (dwell, height, width): (f64, f64, f64)) -> MeasuredWal
 }
 
 #[test]
-fn walls_between_are_foretold() {
+fn walls_between_are_predicted() {
     let (settings, weld) = pioneer();
     // The source does not give the length.
     for length in [100.0, 125.0, 150.0] {
@@ -35,7 +35,7 @@ fn walls_between_are_foretold() {
         let law = WallLaw::fit(&fitted, &settings, &weld).unwrap();
         println!("length {length} mm: {law:?}");
         for wall in WALLS {
-            let own = law.foretell(&measured(length, wall).wall, &settings, &weld);
+            let own = law.predict(&measured(length, wall).wall, &settings, &weld);
             let (height, width) = (own.height / wall.1 - 1.0, own.width / wall.2 - 1.0);
             println!(
                 "  wait {:3} s: {:4.0} °C, height {:.1} mm for {:.1} ({:+.1} %), width {:.2} mm for {:.2} ({:+.1} %)",

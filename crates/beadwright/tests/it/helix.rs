@@ -160,7 +160,7 @@ fn a_loop_of_two_beads_is_no_helix() {
     "loop".clone_into(&mut profile.fill.strategy);
     let error = plan::plan("two", &tube(40.0, 13.0, 10.0, 0.0), &profile, &Task::new()).unwrap_err();
     assert!(
-        matches!(error, PlanError::NoHelix { layer: 1, .. }) && error.to_string().contains("no single bead"),
+        matches!(error, PlanError::NoHelix { layer: 1, .. }) && error.to_string().contains("not a single bead"),
         "{error}"
     );
 }
@@ -203,7 +203,7 @@ fn a_helix_longer_than_a_program_is_lit_again_and_said() {
         assert!(fits && starts > 1 && starts <= plan.layers.len() / 2, "{turns}: {starts}");
         assert!(plan.layers.iter().all(|layer| layer.lit.is_turn()), "no turn is alone");
         let text: Vec<String> = plan.summary.warnings.summaries().map(|w| w.sentence()).collect();
-        assert!(text.iter().any(|t| t.contains("lit again")), "{text:?}");
+        assert!(text.iter().any(|t| t.contains("struck again")), "{text:?}");
         let settings = plan::deposit_settings(&profile);
         let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
         assert!(!findings.iter().any(|f| f.kind == "points"), "{findings:?}");

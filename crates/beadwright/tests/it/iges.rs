@@ -135,7 +135,7 @@ fn the_siemens_file_is_in_metres_and_its_arc_in_place() {
     let curve = |entry| file.curves.iter().find(|c: &&IgesCurve| c.entry == entry).unwrap();
     assert!(file.system.contains("Siemens"));
     // The rectangle's sides stand in the wrong order in the file.
-    assert!(file.warnings.len() == 1 && file.warnings[0].contains("D13 are not listed as they meet"), "{file:?}");
+    assert!(file.warnings.len() == 1 && file.warnings[0].contains("D13 are listed out of sequence"), "{file:?}");
     for side in curve(13).parts.windows(2) {
         assert_near(ends(&side[0]).1, ends(&side[1]).0);
     }
@@ -390,9 +390,9 @@ fn gaps_and_wrong_pointers_are_told() {
     );
     check(Draft::new(&[line, (102, 0, "102,0;")]), "it has no members");
     check(Draft::new(&[line, (102, 0, "102,5,1;")]), "announces 5 items");
-    check(Draft::new(&[line, line]).matrix(0, 3), "its matrix should stand at D3, where there is a line");
+    check(Draft::new(&[line, line]).matrix(0, 3), "its matrix should be at D3, where there is a line");
     let matrix = (124, 0, "124,1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,5.;");
-    check(Draft::new(&[line, matrix]).matrix(0, 3).matrix(1, 3), "point to each other in a circle");
+    check(Draft::new(&[line, matrix]).matrix(0, 3).matrix(1, 3), "point to each other in a loop");
     check(Draft::new(&[line, (124, 0, "124,1.,0.;")]).matrix(0, 3), "its matrix at D3 is broken");
     check(Draft::new(&[(110, 0, "110,0.,0.,0.,3.,0.;")]), "parameter 6 is missing (the record has 5)");
     check(Draft::new(&[(110, 0, "110,0.,0.,0.,3.,0.,1.")]), "without the \";\" that closes the record");
@@ -416,7 +416,7 @@ fn cards_that_do_not_match_the_last_are_told() {
     let last = cards.pop().unwrap();
     cards.push(last.replace("P      1", "P      4"));
     let warnings = read(cards.join("\n").as_bytes()).unwrap().warnings;
-    assert!(warnings.len() == 1 && warnings[0].contains("announces 4 P cards, but 1 stand there"), "{warnings:?}");
+    assert!(warnings.len() == 1 && warnings[0].contains("announces 4 P cards, but there are 1"), "{warnings:?}");
 }
 
 #[test]
@@ -450,7 +450,7 @@ fn broken_files_give_one_clear_error() {
     );
     check(draft().global("2,2HMM", "0,3HELL").text().as_bytes(), "unit flag 0 and the unit name \"ELL\"");
     check(draft().global("1H,,1H;,", "1H,,1H,,").text().as_bytes(), "cannot be the delimiters");
-    check(draft().global("1H,,1H;,", "1Hx;1H;x").text().as_bytes(), "\";\" stands where the delimiter \"x\" belongs");
+    check(draft().global("1H,,1H;,", "1Hx;1H;x").text().as_bytes(), "\";\" is where the delimiter \"x\" belongs");
     check(draft().global("4Hpart,1.0", "4Hpart,-1.0").text().as_bytes(), "the scale of the drawing is -1");
     check(draft().global("000000;", "000000").text().as_bytes(), "without the \";\" that closes the record");
 }

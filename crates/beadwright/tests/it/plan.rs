@@ -293,7 +293,7 @@ fn plan_json_holds_the_plan() {
         ("\"version\":2", "\"version\":9", "version 9"),
         ("\"units\":\"mm\"", "\"units\":\"in\"", "is in \"in\""),
         ("\"width\":7.5400,\"pace\"", "\"width\":1e5,\"pace\"", "at most 2000"),
-        ("\"outline\":[[", "\"outline\":[[1e9,0],[", "out of all bounds"),
+        ("\"outline\":[[", "\"outline\":[[1e9,0],[", "out of bounds"),
         ("\"deposition_speed\":10.5", "\"deposition_speed\":-1.0", "process.deposition_speed"),
         ("\"index\":0", "\"index\":7", "its place in the list"),
         ("\"pace\":10.5000", "\"pace\":-1", "greater than 0"),

@@ -53,7 +53,7 @@ fn a_misspelt_name_gets_the_nearest_or_all() {
     let error = |name: &str| Profile::built_in(name).unwrap_err().to_string();
     assert!(error("plasma-304-cn").contains("Did you mean \"plasma-304-cnc\"?"));
     assert!(
-        error("zzz").contains(&format!("Known: {KUKA}, {ABB}, {ROBOTS}, {CNC}, plasma-304-fanuc")),
+        error("zzz").contains(&format!("Known profiles: {KUKA}, {ABB}, {ROBOTS}, {CNC}, plasma-304-fanuc")),
         "{}",
         error("zzz")
     );
@@ -86,7 +86,7 @@ fn layers_that_beads_do_not_rise_to_are_noted() {
     profile.layers.height = 3.0;
     let notes = profile.notes();
     assert_eq!(notes.len(), 1);
-    assert!(notes[0].contains("rise 2.00 mm a layer, but layers are 3.00 mm"), "{}", notes[0]);
+    assert!(notes[0].contains("rise 2.00 mm per layer, but layers are 3.00 mm"), "{}", notes[0]);
     assert!(notes[0].contains("A bead.height of 3.22 mm or a layers.height of 2.00 mm would fit"), "{}", notes[0]);
     profile.layers.height = 2.0 * (1.0 + 0.9 * MassBalance::TOLERANCE);
     assert_eq!(profile.notes(), [""; 0]);
@@ -482,7 +482,7 @@ fn tolerances_of_programs_are_checked() {
         ("follow_wall = 1.2", "follow_wall", "between 0 and 1"),
         ("max_work_angle = 50.0", "max_work_angle", "between 0 and 45 °"),
         ("travel_angle = -31.0", "travel_angle", "between -30 and 30 °"),
-        ("table_angle = 5.0\ntable_side = 90.0", "table_side", "take one of them out"),
+        ("table_angle = 5.0\ntable_side = 90.0", "table_side", "remove one of them"),
         ("min_point_time = 1.5", "min_point_time", "between 0 and 1 s"),
         ("min_point_time = 0.012", "[program]", "needs a tolerance"),
     ] {
@@ -513,7 +513,7 @@ fn templates_with_unknown_placeholders_are_refused() {
     };
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
         let error = key(KUKA, &format!("krl.{part}"), "WAIT SEC {{gas_preflw}}");
-        assert!(error.contains("{{gas_preflw}} is not a placeholder; known are program, layer"), "{error}");
+        assert!(error.contains("{{gas_preflw}} is not a placeholder; the placeholders are program, layer"), "{error}");
     }
     for part in ["start", "layer_start", "arc_on", "arc_off", "end"] {
         key(ABB, &format!("rapid.{part}"), "SetDO doGas,{{gas}};");

@@ -243,7 +243,7 @@ fn codes_of_the_options_light_the_arc() {
     let body = "G1 X0 Y0 Z0 F60\nWELD_ON\nG1 X10\nWELD_OFF\nG1 X20\n";
     totals_are(&try_read(body, &arc_codes("weld_on", "weld_off")).unwrap(), 1, 10.0, 10.0);
     let error = try_read("G1 X0 Y0 Z0\nM64 P1\nG1 X10\n", &Options::default()).unwrap_err().to_string();
-    assert!(error.contains("light and end the arc") && error.contains("M64 P1"), "{error}");
+    assert!(error.contains("strike and end the arc") && error.contains("M64 P1"), "{error}");
 }
 
 #[test]

@@ -359,7 +359,7 @@ fn an_urscript_of_another_hand() {
     let bad = try_read(&URSCRIPT.replacen("0.04,0.01", "0.04,O.01", 1)).unwrap_err().to_string();
     assert!(bad.starts_with("line 8: \"O.01\""), "{bad}");
     let none = read(URSCRIPT, &mut |_| None, &Options::default()).unwrap_err().to_string();
-    assert!(none.contains("light and end the arc") && none.contains("set_standard_digital_out(1, True)"), "{none}");
+    assert!(none.contains("strike and end the arc") && none.contains("set_standard_digital_out(1, True)"), "{none}");
     let endless = try_read("def a():\n  a()\nend\n").unwrap_err().to_string();
     assert!(endless.contains("call of a"), "{endless}");
 }

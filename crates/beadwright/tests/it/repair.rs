@@ -239,7 +239,7 @@ fn every_fault_is_told_in_a_sentence() {
         "3 vertices merged",
         "4 open",
         "5 edges",
-        "6 triangles wound",
+        "6 triangles with the wrong winding",
         "7 stored",
         "inside out",
     ];

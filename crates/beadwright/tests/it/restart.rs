@@ -166,7 +166,7 @@ fn posts_that_cannot_restart_refuse() {
             profile.dialects.gcode.as_mut().unwrap().control = None;
         }
         let error = dialect::write(post, &planned(&profile).layers, &profile.job("demo")).unwrap_err().to_string();
-        assert!(error.contains("program.restart") && error.contains("--from-pass"), "{error}");
+        assert!(error.contains("program.restart") && error.contains("the layer and pass that come next"), "{error}");
     }
 }
 

@@ -397,7 +397,7 @@ fn a_limit_is_named_with_its_joint() {
     let reach = robot::reach(&narrow, place(1200.0, 600.0, 500.0, 0.0), &square());
     let bad = reach.first_bad().unwrap();
     assert!(matches!(bad.trouble, Trouble::Limit { joint: 0, angle, .. } if angle < -3.0), "{bad:?}");
-    assert!(bad.sentence().contains("joint 1 would have to stand at"), "{}", bad.sentence());
+    assert!(bad.sentence().contains("joint 1 would have to be at"), "{}", bad.sentence());
 }
 
 #[test]

@@ -292,7 +292,7 @@ fn a_file_packed_by_gzip_is_read_as_it_is() {
     let [plain, unpacked] = [obj.to_vec(), packed(obj)].map(|bytes| import(&bytes, &Task::new()).unwrap());
     assert_eq!((plain.mesh.triangles, plain.mesh.vertices), (unpacked.mesh.triangles, unpacked.mesh.vertices));
     let bomb = packed(&vec![b' '; 80 << 20]);
-    check(&bomb, &["the gzip file cannot be read", "unfolds to more than 64 MB"]);
+    check(&bomb, &["the gzip file cannot be read", "unpacks to more than 64 MB"]);
     check(&packed(obj)[..30], &["the gzip file cannot be read", "damaged"]);
 }
 

@@ -59,7 +59,10 @@ fn what_an_open_surface_stands_for_is_asked() {
             match plan::plan("part", &turned(&skin, angle), &profile(None), &Task::new()) {
                 Err(error @ PlanError::Open { .. }) => {
                     let said = error.to_string();
-                    assert!(said.contains("--surface solid") && said.contains("--surface wall"), "{said}");
+                    assert!(
+                        said.contains("slice.surface = \"solid\"") && said.contains("slice.surface = \"wall\""),
+                        "{said}"
+                    );
                 }
                 other => panic!("{other:?}"),
             }

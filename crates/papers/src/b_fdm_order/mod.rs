@@ -3,7 +3,7 @@
 //! The paper shows its parts only as pictures, so these are plates of the same kind. Its plain plan takes loops in file
 //! order from their first vertex, scan lines at 0° on one layer and at 90° on the next, and sub-regions one by one in
 //! scan order. Two layers are planned, since scan lines alternate, and every plate is turned by 0 to 175° in steps of 5°:
-//! one layer of a plate that stands well shows whatever one likes.
+//! one layer of a well-placed plate shows whatever one likes.
 
 mod plans;
 mod plate;
@@ -91,7 +91,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          shows its parts only as pictures; these are of the same kind. Two layers are planned, the second with its scan \
          lines turned by 90°, and every plate is turned by 0 to 175° in steps of 5°. Times are those of a layer, the mean \
          of the two, on a machine with 1000 mm/s² that passes corners at 10 mm/s and loses no time where a path starts \
-         (ours: the paper tells none of these).",
+         (ours: the paper gives none of these).",
     );
     let (mut lines, mut goals, mut swept) = (Vec::new(), Vec::new(), Vec::new());
     for plate in plates() {
@@ -151,17 +151,17 @@ impl Goal {
         if worst <= 0.0 {
             "reached at every rotation".to_owned()
         } else if mean <= 0.0 {
-            format!("reached on the mean, at the worst rotation {worst:.1} short")
+            format!("reached on average, at the worst rotation {worst:.1} short")
         } else {
-            format!("not reached: {mean:.1} short on the mean, {worst:.1} at the worst")
+            format!("not reached: {mean:.1} short on average, {worst:.1} at the worst")
         }
     }
 }
 
-/// More than this is not lost to a fixed angle, %.
+/// At most this much may be lost against a fixed angle, %.
 const LOSES_AT_MOST: f64 = 0.5;
 
-/// Our figures beside the paper's, against its plain plan and against loops in columns; and the raster angle against a
+/// Our figures next to the paper's, against its plain plan and against loops in columns; and the raster angle against a
 /// fixed one.
 fn goals_of(plate: &Plate, sweep: &[At]) -> Vec<Goal> {
     let [travel, time] = plate.paper;
@@ -191,7 +191,7 @@ fn summary(plate: &Plate, sweep: &[At], goals: &[Goal]) -> Vec<String> {
     lines
 }
 
-/// What a start of a path would have to cost for the paper's layer time to be reached on the mean, as a sentence.
+/// What a start of a path would have to cost for the paper's layer time to be reached on average, as a sentence.
 fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
     let starts = |o: &Outcome| o.paths + plate.polygon.rings().count() as f64;
     let mean = |value: &dyn Fn(&At) -> f64| Spread::of(sweep, value).mean;
@@ -201,7 +201,7 @@ fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
     let fewer = mean(&|at| left * starts(&at.steps[0]) - starts(at.ours()));
     (seconds > 0.0 && fewer > 0.0).then(|| {
         format!(
-            "  a printer that loses {:.1} s at every start of a path would reach the paper's layer time on the mean",
+            "  a printer that loses {:.1} s at every start of a path would reach the paper's layer time on average",
             seconds / fewer
         )
     })

@@ -37,7 +37,7 @@ fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Ring {
     Ring::new([(x, y), (x + width, y), (x + width, y + height), (x, y + height)].map(DVec2::from).to_vec())
 }
 
-/// Plates of the kinds that the paper shows; lying, as the first there.
+/// Plates of the kinds that the paper shows; lying, like the first there.
 pub fn plates() -> [Plate; 3] {
     let plate = |name, paper, outer: Ring, holes: Vec<Ring>| {
         let holes = holes.into_iter().map(Ring::reversed).collect();

@@ -31,7 +31,7 @@ impl Printer {
     /// The profile `fdm-abs-0.4`.
     ///
     /// # Errors
-    /// [`ReproduceError`] where the profile tells no acceleration.
+    /// [`ReproduceError`] where the profile gives no acceleration.
     pub fn new() -> Result<Self, ReproduceError> {
         let profile = Profile::built_in("fdm-abs-0.4").map_err(|e| ReproduceError(e.to_string()))?;
         let motion = profile.motion.ok_or_else(|| ReproduceError("fdm-abs-0.4 gives no acceleration".to_owned()))?;

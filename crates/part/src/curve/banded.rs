@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-/// Unknowns are numbered so that two that share an equation are at most `band` apart, those of the border aside.
+/// Unknowns are numbered so that two that share an equation are at most `band` apart, except for those of the border.
 pub(super) struct Banded {
     band: usize,
     core: usize,

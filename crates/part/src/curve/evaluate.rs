@@ -32,7 +32,7 @@ impl Nurbs {
         [point, velocity, acceleration]
     }
 
-    /// Unit tangent at parameter `u`; where the curve stands still, the direction just beside; zero for a curve
+    /// Unit tangent at parameter `u`; where the derivative is zero, the direction just next to it; zero for a curve
     /// that is one point.
     pub fn tangent(&self, u: f64) -> DVec3 {
         let velocity = self.derivative(u);
@@ -80,7 +80,7 @@ impl Nurbs {
         (self.points[i] * self.weights[i]).extend(self.weights[i])
     }
 
-    /// De Boor's triangle for a spline of that degree, whose coefficient `local[j]` has index `span - degree + j`.
+    /// De Boor's triangle for a spline of this degree, whose coefficient `local[j]` has index `span - degree + j`.
     fn de_boor(&self, mut local: Local, degree: usize, span: usize, u: f64) -> DVec4 {
         for round in 1..=degree {
             for j in (round..=degree).rev() {

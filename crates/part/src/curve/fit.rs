@@ -37,7 +37,7 @@ impl Nurbs {
 
     /// A smooth cubic with few knots that passes all `points` within `error`, mm; with `closed`, on from the last to
     /// the first with no kink. An open curve begins and ends in the first and the last point. Between points the
-    /// curve is free to be smooth: give points as dense as the shape must be kept.
+    /// curve is free to be smooth: give points as densely as the shape must be kept.
     ///
     /// # Errors
     /// [`CurveError::Tolerance`] for an `error` not above 0, and those of [`Nurbs::interpolated`].

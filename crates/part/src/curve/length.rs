@@ -36,7 +36,7 @@ pub struct ArcLength<'a> {
 }
 
 impl Nurbs {
-    /// Length of the curve, mm, to about 1e-9 of itself.
+    /// Length of the curve, mm, to a relative accuracy of about 1e-9.
     pub fn length(&self) -> f64 {
         self.arc_length().total()
     }

@@ -52,7 +52,7 @@ pub enum CurveError {
         degree: usize,
     },
     /// The lengths of the lists do not match.
-    #[error("the curve has {found} {what} where {expected} belong to its degree and control points. Export it again.")]
+    #[error("the curve has {found} {what} where its degree and control points require {expected}. Export it again.")]
     Count {
         /// `knots` or `weights`.
         what: &'static str,
@@ -79,7 +79,7 @@ pub enum CurveError {
     },
     /// A knot is repeated so often that the curve breaks in two.
     #[error(
-        "knot {knot} of the curve stands there {times} times; at degree {degree} the curve breaks in two there. \
+        "knot {knot} of the curve occurs {times} times; at degree {degree} the curve breaks in two there. \
          Split it in the drawing program and export both."
     )]
     KnotRepeated {
@@ -105,7 +105,7 @@ pub enum CurveError {
         weight: f64,
     },
     /// Not enough different points for a fit.
-    #[error("a curve is to be fitted through {points} different points; at least {needed} are needed.")]
+    #[error("a curve cannot be fitted through {points} different points; at least {needed} are needed.")]
     TooFewToFit {
         /// Different points given.
         points: usize,

@@ -52,7 +52,7 @@ impl Nurbs {
         )
     }
 
-    /// Inserts `u` until it stands there as often as the degree: the curve then passes through a control point.
+    /// Inserts `u` until it occurs as often as the degree: the curve then passes through a control point.
     fn with_multiple_knot(&self, u: f64) -> Self {
         let mut curve = self.clone();
         let there = self.knots.iter().filter(|&&t| t == u).count();

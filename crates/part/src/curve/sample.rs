@@ -7,7 +7,7 @@ use glam::DVec3;
 /// the chord in the middle is seen.
 const PROBES: [f64; 5] = [0.13, 0.31, 0.5, 0.69, 0.87];
 
-/// Chords are made a little tighter than asked, to allow for the curve between the probes.
+/// Chords are made a little tighter than asked for, to allow for the curve between the probes.
 const SAFETY: f64 = 0.9;
 
 /// A piece is halved at most this often.
@@ -64,7 +64,7 @@ impl Nurbs {
     }
 }
 
-/// The nearest point of the segment from `a` to `b`: its share of the way, and its distance, mm.
+/// The nearest point of the segment from `a` to `b`: its fraction along the segment, and its distance, mm.
 pub(super) fn nearest_on_segment(p: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let along = b - a;
     let square = along.length_squared();

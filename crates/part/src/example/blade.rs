@@ -55,7 +55,7 @@ fn mean(x: f64) -> (DVec2, DVec2) {
     (DVec2::new(x - 0.5, y - 0.6 * CAMBER) * CHORD, DVec2::new(-slope, 1.0).normalize())
 }
 
-/// The outline at the foot: one side forth, the other back.
+/// The outline at the foot: one side out, the other back.
 fn foot() -> Polygon {
     let side = |left: f64| {
         move |k: u32| {

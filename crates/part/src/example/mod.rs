@@ -29,7 +29,7 @@ use crate::model::{Mesh, stl};
 pub struct Example {
     /// What people type: `propeller`.
     pub name: &'static str,
-    /// One line that ends with the extent along x, y and z, mm.
+    /// One line of description that ends with the extent along x, y and z, mm.
     pub about: &'static str,
     build: fn() -> Solid,
     curves: Option<fn() -> Vec<Nurbs>>,
@@ -57,7 +57,7 @@ pub const ALL: &[Example] = &[
     },
     Example {
         name: "gourd",
-        about: "bottle gourd with a 4 mm wall, open below and above, 120 × 120 × 200 mm",
+        about: "bottle gourd with a 4 mm wall, open at both ends, 120 × 120 × 200 mm",
         build: gourd::build,
         curves: Some(gourd::curves),
     },
@@ -105,7 +105,7 @@ pub const ALL: &[Example] = &[
     },
 ];
 
-/// The example of that name.
+/// The example with this name.
 pub fn find(name: &str) -> Option<&'static Example> {
     ALL.iter().find(|example| example.name == name)
 }

@@ -1,4 +1,4 @@
-//! A plate with rounded corners and holes of different size.
+//! A plate with rounded corners and holes of different sizes.
 
 use super::outline;
 use crate::model::solid::Solid;

@@ -34,7 +34,7 @@ pub(super) fn curves() -> Vec<Nurbs> {
     [0.0, HEIGHT].into_iter().filter_map(curve).collect()
 }
 
-/// The outline at the foot, moved inwards by a part of the wall: straight sides and round corners.
+/// The outline at the foot, moved inwards by a fraction of the wall: straight sides and round corners.
 fn ring(part: f64) -> Ring {
     let corners = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
     let points = corners.iter().enumerate().flat_map(|(k, side)| {

@@ -102,7 +102,7 @@ fn bucket_by_lower_vertex(vertex_count: usize, triangles: &[[u32; 3]]) -> (Vec<u
     (starts, half_edges)
 }
 
-/// Sorts each bucket; halves of the mesh in parallel, as long as they are worth it.
+/// Sorts each bucket; halves of the mesh in parallel, as long as that is worthwhile.
 fn sort_buckets(starts: &[u32], half_edges: &mut [u64]) {
     if starts.len() > 1 << 15 {
         let middle = starts.len() / 2;

@@ -47,7 +47,7 @@ struct File {
     resources: Resources,
     /// The object or constellation that is open.
     open: Option<(u32, Resource)>,
-    /// Its present vertex, triangle or instance.
+    /// Its current vertex, triangle or instance.
     at: DVec3,
     corners: [u32; 3],
     instance: Instance,
@@ -139,7 +139,7 @@ impl File {
         Ok(())
     }
 
-    /// What no constellation places stands where it is.
+    /// What no constellation places stays where it is.
     fn finish(mut self) -> Resources {
         let free = self.resources.objects.keys().filter(|(_, number)| !self.placed.contains(number));
         self.resources.items = free.map(|id| (id.clone(), DAffine3::IDENTITY)).collect();
@@ -155,6 +155,6 @@ fn in_mm(unit: &str) -> Result<f64, ImportError> {
         "meter" => 1000.0,
         "inch" => 25.4,
         "feet" => 304.8,
-        other => return Err(broken(format!("its unit \"{other}\" is not one of AMF"))),
+        other => return Err(broken(format!("its unit \"{other}\" is not an AMF unit"))),
     })
 }

@@ -44,7 +44,7 @@ impl Cut<'_> {
         self.mesh.vertices[vertex as usize].z >= self.z
     }
 
-    /// Adds what of a triangle lies above.
+    /// Adds the part of a triangle that lies above.
     fn clip(&mut self, triangle: &[u32; 3], kept: &mut Vec<[u32; 3]>) {
         let (mut corners, mut leaves, mut enters) = (Vec::with_capacity(4), None, None);
         for k in 0..3 {

@@ -1,4 +1,4 @@
-//! The formats of solids, one file each, and what they have in common: loose triangles become a mended mesh.
+//! The formats of solids, one file each, and what they have in common: loose triangles become a repaired mesh.
 
 use super::merge_vertices::{BLOCK, VertexMerger};
 use super::{Import, ImportError, amf, obj, ply, repair, stl, threemf};
@@ -12,16 +12,16 @@ pub(super) struct Format {
     pub(super) read: fn(&[u8], &Task) -> Result<Import, ImportError>,
 }
 
-/// All of them; STL comes last, since nothing but its size tells it.
+/// All of them; STL comes last, since only its size identifies it.
 pub(super) const ALL: [Format; 5] = [threemf::FORMAT, amf::FORMAT, ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
 /// A triangle: its normal, 0 where the file has none, and its corners.
 pub(super) type Facet = ([f32; 3], [[f32; 3]; 3]);
 
-/// No model has more triangles: their numbers have 32 bits, and a hostile file shall not fill the memory.
+/// No model has more triangles: their numbers have 32 bits, and a hostile file must not fill the memory.
 pub(super) const MOST_TRIANGLES: usize = 100_000_000;
 
-/// A mesh of `count` loose triangles; `place` tells where in the file a triangle stands.
+/// A mesh of `count` loose triangles; `place` says where in the file a triangle is.
 pub(super) fn of_facets(
     facets: impl Iterator<Item = Facet>,
     count: usize,
@@ -76,7 +76,7 @@ pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]])
 }
 
-/// The facets between vertices; `None` where a number names no vertex.
+/// The facets between vertices; `None` where a number refers to no vertex.
 pub(super) fn indexed(vertices: &[[f32; 3]], [a, b, c]: [u32; 3]) -> Option<Facet> {
     let at = |i: u32| vertices.get(i as usize).copied();
     Some(([0.0; 3], [at(a)?, at(b)?, at(c)?]))

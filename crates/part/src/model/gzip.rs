@@ -10,10 +10,10 @@ pub(super) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// The bytes unpacked, as far as a model of that size may unfold.
+/// The bytes unpacked, as far as a model of this size may unpack.
 ///
 /// # Errors
-/// [`ImportError::Broken`] for a damaged file, and for one that unfolds to too much.
+/// [`ImportError::Broken`] for a damaged file, and for one that unpacks to too much.
 pub(super) fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, ImportError> {
     let broken = |reason: String| ImportError::Broken { format: "gzip", reason };
     let (most, mut unpacked) = (most_of(bytes.len()), Vec::new());

@@ -1,4 +1,4 @@
-//! Holes in a surface, closed with triangles of the least area in all.
+//! Holes in a surface, closed with triangles of the least total area.
 //!
 //! A hole is a loop of open edges. It is closed by the triangulation of its loop with the least area (Barequet and Sharir 1995,
 //! "Filling gaps in the boundary of a polyhedron"), found by dynamic programming; no vertex is added.
@@ -20,7 +20,7 @@ pub struct Closed {
     pub triangles: usize,
     /// The widest of them, in the units of the file.
     pub widest: f64,
-    /// Holes that were left open: too wide, of too many edges, or touching another one.
+    /// Holes that were left open: too wide, with too many edges, or touching another one.
     pub left: usize,
     /// The widest of those, in the units of the file.
     pub widest_left: f64,
@@ -38,7 +38,7 @@ impl Closed {
         let open = (left > 0).then(|| {
             let left = count(left, "hole");
             format!(
-                "{left} left open: wider than asked for, of more than {MOST_EDGES} edges, or touching others; the widest \
+                "{left} left open: wider than asked for, with more than {MOST_EDGES} edges, or touching others; the widest \
                  measures {widest_left:.3} across."
             )
         });
@@ -46,7 +46,7 @@ impl Closed {
     }
 }
 
-/// Closes the holes that measure at most `widest` across, in the units of the file, and mends what that leaves.
+/// Closes the holes that measure at most `widest` across, in the units of the file, and repairs what that leaves.
 pub fn close(import: Import, widest: f64) -> (Import, Closed) {
     let Import { mut mesh, repair, .. } = import;
     let (loops, touching) = loops(&mesh);
@@ -86,7 +86,7 @@ fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
         }
     }
     let touching = next.values().filter(|ends| ends.len() > 1).count();
-    // Only where one way leads on is it clear how the loop goes.
+    // Only where there is one way on is it clear how the loop continues.
     let mut next: BTreeMap<u32, u32> =
         next.into_iter().filter(|(_, to)| to.len() == 1).map(|(from, to)| (from, to[0])).collect();
     let mut loops = Vec::new();
@@ -157,7 +157,8 @@ fn extent(mesh: &Mesh, corners: &[u32]) -> f64 {
     low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
 }
 
-/// The triangulation of a loop with the least area: for each pair of its corners the least that closes the loop between them.
+/// The triangulation of a loop with the least area: for each pair of its corners, the least area that closes the loop between
+/// them.
 fn least_area(mesh: &Mesh, corners: &[u32]) -> Vec<[u32; 3]> {
     let count = corners.len();
     let place = |k: usize| mesh.vertices[corners[k] as usize];

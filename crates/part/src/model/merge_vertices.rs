@@ -14,7 +14,7 @@ pub(crate) struct VertexMerger {
 }
 
 impl VertexMerger {
-    /// Room for a closed mesh of that many triangles, which has about half as many vertices.
+    /// Room for a closed mesh of this many triangles, which has about half as many vertices.
     pub(crate) fn for_triangles(triangles: usize) -> Self {
         let slots = triangles.max(16).next_power_of_two();
         Self { vertices: Vec::with_capacity(triangles / 2 + 8), slots: vec![0; slots] }

@@ -1,9 +1,9 @@
-//! Import: bytes become a [`Mesh`], and a [`RepairReport`] says what had to be mended.
+//! Import: bytes become a [`Mesh`], and a [`RepairReport`] says what had to be repaired.
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `formats` | the formats of solids, and how loose triangles become a mesh |
-//! | [`stl`] | binary and ASCII STL, told apart by content |
+//! | [`stl`] | binary and ASCII STL, distinguished by content |
 //! | `threemf`, `amf`, `obj`, `ply` | one other format each |
 //! | `placed` | objects that a file places, copies and assemblies |
 //! | [`outline`] | drawings in DXF and SVG, whose outlines become solids |
@@ -60,7 +60,7 @@ use std::borrow::Cow;
 /// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
 pub const MAX_REACH_MM: f64 = 20_000.0;
 
-/// Stands for "no triangle" in [`Mesh::neighbours`].
+/// Means "no triangle" in [`Mesh::neighbours`].
 pub const NO_NEIGHBOUR: u32 = u32::MAX;
 
 /// A triangle mesh, mm, wound counter-clockwise seen from outside.
@@ -77,13 +77,13 @@ pub struct Mesh {
 /// A model as it was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Import {
-    /// The mended mesh, in the units of the file.
+    /// The repaired mesh, in the units of the file.
     pub mesh: Mesh,
-    /// What was found and mended.
+    /// What was found and repaired.
     pub repair: RepairReport,
-    /// The format, for people: `binary STL`.
+    /// The format, in words: `binary STL`.
     pub format: &'static str,
-    /// The unit of the coordinates, where the file tells it.
+    /// The unit of the coordinates, where the file states it.
     pub units: Option<Units>,
     /// The objects that the file holds, where it names them.
     pub objects: Vec<Object>,
@@ -121,7 +121,8 @@ pub enum ImportError {
     Iges,
     /// Outlines where a solid is needed.
     #[error(
-        "this is {found}: a part grows from it when it is given a height, but here a solid is needed. Save the model as STL (binary or ASCII)."
+        "this is {found}: it becomes a part when it is given a height, but here a solid is needed. Save the model as STL (binary \
+         or ASCII)."
     )]
     Outline {
         /// What it is.
@@ -129,10 +130,11 @@ pub enum ImportError {
     },
     /// No known format.
     #[error(
-        "this is not an STL file: {reason}; nor is it 3MF, OBJ, PLY or AMF. Save the model as STL (binary or ASCII) and try again."
+        "this is not an STL file: {reason}; and it is not 3MF, OBJ, PLY or AMF. Save the model as STL (binary or ASCII) and try \
+         again."
     )]
     NotStl {
-        /// What speaks against it, with the byte or line.
+        /// The reason, with the byte or line.
         reason: String,
     },
     /// The file ends too early, or holds more than it says.
@@ -157,7 +159,7 @@ pub enum ImportError {
     Line {
         /// Line number, from 1.
         line: usize,
-        /// What was expected and what stands there.
+        /// What was expected and what was found.
         reason: String,
     },
     /// A coordinate that is not a finite number.
@@ -189,7 +191,7 @@ pub enum ImportError {
     Cancelled(#[from] Cancelled),
 }
 
-/// A length that may be out of all bounds, m.
+/// A length that may be arbitrarily large, m.
 fn metres(length: f64) -> String {
     if length < 1e6 { format!("{length:.1}") } else { format!("{length:.0e}") }
 }
@@ -207,7 +209,7 @@ pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
 }
 
-/// Like [`import`], but takes whatever triangles a damaged file holds; [`RepairReport::damage`] tells what is wrong.
+/// Like [`import`], but takes whatever triangles a damaged file holds; [`RepairReport::damage`] says what is wrong.
 ///
 /// # Errors
 /// [`ImportError`], with the byte or line and the reason.
@@ -235,10 +237,10 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
     }
 }
 
-/// What is packed by gzip unpacked, text as UTF-8 with usual line ends, anything else as it is.
+/// What is packed by gzip is unpacked, text becomes UTF-8 with usual line ends, anything else stays as it is.
 ///
 /// # Errors
-/// [`ImportError`] for text in an encoding that is not read, and for what cannot be unpacked.
+/// [`ImportError`] for text in an encoding that is not read, and for data that cannot be unpacked.
 pub fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, ImportError> {
     // A binary STL may have any header.
     if gzip::is_packed(bytes) && stl::announced_size(bytes) != Some(bytes.len()) {
@@ -261,18 +263,18 @@ pub fn is_iges(bytes: &[u8]) -> bool {
         && stl::announced_size(bytes) != Some(bytes.len())
 }
 
-/// Whether the bytes are those of a solid in a format that its content tells, as that of STL does not.
+/// Whether the bytes are those of a solid in a format that can be recognised by content, as STL cannot.
 pub fn is_solid(bytes: &[u8]) -> bool {
     let [known @ .., _stl] = &formats::ALL;
     stl::announced_size(bytes) != Some(bytes.len()) && known.iter().any(|format| (format.is)(bytes))
 }
 
-/// Whether the bytes are those of an STL file: its size is the one that it announces, or it begins as text does.
+/// Whether the bytes are those of an STL file: its size is the one that it announces, or it begins like a text STL.
 pub fn is_stl(bytes: &[u8]) -> bool {
     stl::announced_size(bytes) == Some(bytes.len()) || stl::looks_ascii(bytes)
 }
 
-/// Formats that people hand over by mistake.
+/// Formats that people give by mistake.
 fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(400)];
     if gzip::is_packed(head) {
@@ -285,7 +287,7 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl Mesh {
-    /// A mesh from vertices and triangles, mended like an imported one.
+    /// A mesh from vertices and triangles, repaired like an imported one.
     pub fn from_triangles(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Self, RepairReport) {
         repair::mend(vertices, triangles)
     }

@@ -37,7 +37,7 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
                 corners.clear();
                 for word in words {
                     let index = vertex(word, vertices.len());
-                    corners.push(index.ok_or_else(|| broken("a corner names a vertex that is not there yet"))?);
+                    corners.push(index.ok_or_else(|| broken("a corner refers to a vertex that is not defined yet"))?);
                 }
                 if corners.len() < 3 {
                     // Some programs write edges as faces.
@@ -59,7 +59,7 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     Ok(import)
 }
 
-/// The index of the vertex that a corner names: `7`, `7/1`, `7//2`, `7/1/2`, or counted back from the last one, `-1`.
+/// The index of the vertex that a corner refers to: `7`, `7/1`, `7//2`, `7/1/2`, or counted back from the last one, `-1`.
 fn vertex(word: &[u8], count: usize) -> Option<u32> {
     let text = std::str::from_utf8(word.split(|&b| b == b'/').next()?).ok()?;
     let number: i64 = text.parse().ok()?;

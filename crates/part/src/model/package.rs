@@ -1,6 +1,6 @@
-//! 3MF files as packages: a ZIP archive, the model file that it names, and what is required of who reads it.
+//! 3MF files as packages: a ZIP archive, the model file that it names, and what is required of its reader.
 //!
-//! Nothing is unpacked to the disk, and a path only names an entry of the archive. What an archive may unfold to is
+//! Nothing is unpacked to disk, and a path only names an entry of the archive. What an archive may unpack to is
 //! bounded.
 
 use super::ImportError;
@@ -12,29 +12,29 @@ use zip::read::ZipFile;
 
 /// The namespace of the toolpath extension.
 pub const TOOLPATH: &str = "http://schemas.3mf.io/3dmanufacturing/toolpath/2026/03";
-/// Its name in earlier drafts, which readers go on accepting.
+/// Its name in earlier drafts, which readers still accept.
 pub const OLD_TOOLPATH: &str = "http://schemas.microsoft.com/3dmanufacturing/toolpath/2019/05";
 /// The namespace of the production extension.
 pub const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 
-/// The files of an archive hold no more, bytes.
+/// The files of an archive hold no more than this, bytes.
 const MOST_BYTES: u64 = 4 << 30;
-/// Nor do they hold more than this multiple of the archive, beyond what is small anyhow: models unfold to 5 to 30 times their
+/// Nor do they hold more than this multiple of the archive, beyond what is small anyway: models unpack to 5 to 30 times their
 /// size.
 const MOST_TIMES: u64 = 100;
-/// What any archive may unfold to, bytes.
+/// What any archive may unpack to, bytes.
 const SMALL_BYTES: u64 = 64 << 20;
-/// An archive has no more entries.
+/// An archive has no more entries than this.
 const MOST_ENTRIES: usize = 100_000;
-/// Where the model lies if the archive does not say.
+/// Where the model is if the archive does not say.
 const USUAL: &str = "3D/3dmodel.model";
 
 /// A 3MF file that is being read.
 pub struct Package<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
-    /// How much may come out of it, bytes.
+    /// How much may be read from it, bytes.
     most: u64,
-    /// How much may still come out of it, bytes.
+    /// How much may still be read from it, bytes.
     left: u64,
 }
 
@@ -50,14 +50,14 @@ pub fn broken(reason: impl Into<String>) -> ImportError {
     ImportError::Broken { format: "3MF", reason: reason.into() }
 }
 
-/// A path in a 3MF file as the name of an archive's entry.
+/// A path in a 3MF file as the name of an entry in the archive.
 pub fn entry_name(path: &str) -> String {
     path.trim_start_matches('/').to_owned()
 }
 
 impl<'a> Package<'a> {
     /// # Errors
-    /// [`ImportError::Broken`] where the bytes are no archive, or one with too many entries.
+    /// [`ImportError::Broken`] where the bytes are not an archive, or one with too many entries.
     pub fn open(bytes: &'a [u8]) -> Result<Self, ImportError> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| broken(error.to_string()))?;
         if archive.len() > MOST_ENTRIES {
@@ -67,7 +67,7 @@ impl<'a> Package<'a> {
         Ok(Self { archive, most, left: most })
     }
 
-    /// The path of the model in the archive, as its relationships tell it.
+    /// The path of the model in the archive, as its relationships state it.
     ///
     /// # Errors
     /// [`ImportError::Broken`] where it is not there.
@@ -140,11 +140,11 @@ pub fn unit_in_mm(model: &Element) -> Result<f64, ImportError> {
         "meter" => 1000.0,
         "inch" => 25.4,
         "foot" => 304.8,
-        other => return Err(broken(format!("its unit \"{other}\" is not one of 3MF"))),
+        other => return Err(broken(format!("its unit \"{other}\" is not a 3MF unit"))),
     })
 }
 
-/// How much may come out of an archive of that size, bytes.
+/// How much may be read from an archive of this size, bytes.
 pub(super) fn most_of(packed: usize) -> u64 {
     (MOST_TIMES * packed as u64).clamp(SMALL_BYTES, MOST_BYTES)
 }
@@ -152,11 +152,11 @@ pub(super) fn most_of(packed: usize) -> u64 {
 pub(super) fn unfolds(most: u64) -> String {
     let megabytes = most >> 20;
     format!(
-        "it unfolds to more than {megabytes} MB, which no model of its size does. Save the part in another format, such as STL"
+        "it unpacks to more than {megabytes} MB, which no model of its size does. Save the part in another format, such as STL"
     )
 }
 
-/// Reads on until too much has come out of an archive.
+/// Reads on until too much has been read from an archive.
 pub struct Counted<'a, R> {
     inner: R,
     most: u64,

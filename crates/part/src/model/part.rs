@@ -19,7 +19,7 @@ pub enum Model {
     Mesh(Import),
     /// Curves.
     Curves(IgesFile),
-    /// Outlines, from which a solid grows.
+    /// Outlines, which are extruded to a solid.
     Outlines(Outlines),
 }
 
@@ -36,7 +36,7 @@ pub struct Placement {
     pub turn: DVec3,
     /// Moves the middle of the part's extent to x = y = 0.
     pub centre: bool,
-    /// Moves the part along x and y after all else, mm.
+    /// Moves the part along x and y after everything else, mm.
     pub shift: DVec2,
 }
 
@@ -106,7 +106,7 @@ pub enum PartError {
     #[error("a height belongs to walls given by curves (IGES) and to outlines (DXF, SVG), not to a solid")]
     HeightOfSolid,
     /// All curves or outlines lie at one height, and no height was given at which the part ends.
-    #[error("the curves lie at one height: say how high the part grows, mm")]
+    #[error("the curves lie at one height: say how high the part is, mm")]
     NoHeight,
     /// Nothing is left above the plane at which the part is cut.
     #[error("the part is {top:.2} mm high, so nothing of it lies above {z} mm")]
@@ -117,7 +117,7 @@ pub enum PartError {
         z: f64,
     },
     /// Curves are not cut.
-    #[error("a part given by curves is not cut by a plane; give its solid")]
+    #[error("a part given by curves cannot be cut by a plane; give its solid")]
     CurvesUncut,
 }
 
@@ -230,8 +230,8 @@ impl Placement {
         stand::faces(mesh).next().map_or(self.turn, |face| self.turned_onto(face))
     }
 
-    /// The turn that gives the least overhang, and of those with as little the lowest part, among the flat faces on which it
-    /// can stand. `mesh` is the part as placed now. Without such a face the turn stays as it is.
+    /// The turn that gives the least overhang and, where several give equally little, the lowest part, among the flat faces on
+    /// which it can stand. `mesh` is the part as placed now. Without such a face the turn stays as it is.
     pub fn least_overhang(&self, mesh: &Mesh) -> DVec3 {
         stand::least_overhang(mesh).map_or(self.turn, |face| self.turned_onto(face))
     }
@@ -247,8 +247,8 @@ impl Placement {
         DVec3::new(x, y, z).map(|angle| (angle.to_degrees() * 1e9).round() / 1e9)
     }
 
-    /// The placement after the part, which now stands with the middle of its extent at `foot` (mm), was moved by `shift`
-    /// (mm) and turned by `angle` (°) about the upright through that middle.
+    /// The placement after the part, now with the middle of its extent at `foot` (mm), was moved by `shift`
+    /// (mm) and turned by `angle` (°) about the vertical through that middle.
     pub fn moved(&self, shift: DVec2, angle: f64, foot: DVec2) -> Self {
         // The middle of a centred part stays by itself.
         let about = if self.centre { self.shift } else { foot };
@@ -280,7 +280,7 @@ impl Part {
         let Self::Mesh(import) = self else { return Err(PartError::CurvesUncut) };
         let top = import.mesh.bounds().1.z;
         let (mesh, cut) = cut::above(&import.mesh, z).ok_or(PartError::NothingAbove { top, z })?;
-        // What was mended before the cut stays told.
+        // What was repaired before the cut is still reported.
         let (triangles, vertices, open_edges, shells) = (cut.triangles, cut.vertices, cut.open_edges, cut.shells);
         let repair = RepairReport { triangles, vertices, open_edges, shells, ..import.repair };
         Ok(Self::Mesh(Import { mesh, repair, ..import }))
@@ -294,7 +294,7 @@ impl Part {
         }
     }
 
-    /// What was mended; nothing for curves.
+    /// What was repaired; nothing for curves.
     pub fn repair(&self) -> RepairReport {
         match self {
             Self::Mesh(import) => import.repair.clone(),
@@ -302,7 +302,7 @@ impl Part {
         }
     }
 
-    /// What is not read, as sentences, besides what was mended ([`Self::repair`]).
+    /// What is not read, as sentences, apart from what was repaired ([`Self::repair`]).
     pub fn notes(&self) -> &[String] {
         match self {
             Self::Mesh(import) => &import.notes,
@@ -310,7 +310,7 @@ impl Part {
         }
     }
 
-    /// What was mended or is not read, as sentences.
+    /// What was repaired or is not read, as sentences.
     pub fn warnings(&self) -> Vec<String> {
         self.repair().sentences().into_iter().chain(self.notes().iter().cloned()).collect()
     }

@@ -1,6 +1,6 @@
 //! Objects that a file places: meshes, and assemblies of other objects, each with a transform (3MF, AMF).
 //!
-//! What a file may unfold to is bounded: triangles with all copies, assemblies in assemblies.
+//! What a file may unpack to is bounded: triangles with all copies, assemblies in assemblies.
 
 use super::formats::{self, Facet, MOST_TRIANGLES};
 use super::{Import, ImportError, Object, Units};
@@ -8,7 +8,7 @@ use crate::task::Task;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
-/// Assemblies lie no deeper in each other.
+/// Assemblies are nested no deeper than this.
 const DEEPEST: usize = 32;
 
 /// A file of an archive and a number in it.
@@ -91,11 +91,11 @@ impl Resources {
             return Ok(*known);
         }
         if depth > DEEPEST {
-            return Err(self.broken(format!("components lie more than {DEEPEST} deep in each other, or in themselves")));
+            return Err(self.broken(format!("components are nested more than {DEEPEST} deep, or contain themselves")));
         }
         let missing = || match &id.0 {
-            file if file.is_empty() => self.broken(format!("object {} is not there", id.1)),
-            file => self.broken(format!("object {} of {file} is not there", id.1)),
+            file if file.is_empty() => self.broken(format!("object {} is missing", id.1)),
+            file => self.broken(format!("object {} of {file} is missing", id.1)),
         };
         let object = self.objects.get(id).ok_or_else(missing)?;
         let mut sum = 0_usize;
@@ -112,7 +112,7 @@ impl Resources {
         Ok(sum)
     }
 
-    /// Adds the triangles of an object and of its parts, which [`Self::count`] has looked at.
+    /// Adds the triangles of an object and of its parts, which [`Self::count`] has checked.
     fn lay(&self, id: &Id, at: &DAffine3, facets: &mut Vec<Facet>) -> Result<(), ImportError> {
         let Some(object) = self.objects.get(id).filter(|object| object.solid) else { return Ok(()) };
         match &object.shape {
@@ -127,7 +127,7 @@ impl Resources {
                     let corners = if mirrored { [a, c, b] } else { [a, b, c] };
                     let facet = formats::indexed(&placed, corners);
                     let missing =
-                        || self.broken(format!("a triangle of \"{}\" names a vertex that is not there", object.name));
+                        || self.broken(format!("a triangle of \"{}\" refers to a missing vertex", object.name));
                     facets.push(facet.ok_or_else(missing)?);
                 }
                 Ok(())

@@ -48,7 +48,7 @@ impl PropertyAccess for Face {
         if !matches!(key, "vertex_indices" | "vertex_index") {
             return PropertyAccessResult::Ignored;
         }
-        // A negative number names no vertex.
+        // A negative number refers to no vertex.
         let number = |v: i64| u32::try_from(v).unwrap_or(u32::MAX);
         self.0 = match property {
             Property::ListInt(v) => v.into_iter().map(|v| number(v.into())).collect(),
@@ -63,7 +63,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// The points of a PLY file, in the units of the file, and triangles between them where it has faces. Nothing is mended.
+/// The points of a PLY file, in the units of the file, and triangles between them where it has faces. Nothing is repaired.
 ///
 /// # Errors
 /// [`ImportError::Broken`] with what cannot be read.
@@ -71,7 +71,7 @@ pub fn points(bytes: &[u8], task: &Task) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), 
     let (vertices, faces) = elements(bytes, task)?;
     let triangles: Vec<_> = faces.iter().flat_map(|Face(corners)| formats::fan(corners)).collect();
     if triangles.iter().flatten().any(|&corner| corner as usize >= vertices.len()) {
-        return Err(broken("a face names a vertex that is not there"));
+        return Err(broken("a face refers to a missing vertex"));
     }
     Ok((vertices.into_iter().map(|Vertex(at)| Vec3::from_array(at).as_dvec3()).collect(), triangles))
 }
@@ -79,14 +79,14 @@ pub fn points(bytes: &[u8], task: &Task) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), 
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     let (vertices, faces) = elements(bytes, task)?;
     if faces.is_empty() {
-        return Err(broken("it holds no faces: a cloud of points is no solid"));
+        return Err(broken("it holds no faces: a point cloud is not a solid"));
     }
     let vertices: Vec<[f32; 3]> = vertices.into_iter().map(|Vertex(at)| at).collect();
     let mut facets = Vec::with_capacity(2 * faces.len());
     for (number, Face(corners)) in (1..).zip(&faces) {
         for triangle in formats::fan(corners) {
             let facet = formats::indexed(&vertices, triangle);
-            facets.push(facet.ok_or_else(|| broken(format!("face {number} names a vertex that is not there")))?);
+            facets.push(facet.ok_or_else(|| broken(format!("face {number} refers to a missing vertex")))?);
         }
     }
     let count = facets.len();
@@ -99,7 +99,7 @@ fn elements(bytes: &[u8], task: &Task) -> Result<(Vec<Vertex>, Vec<Face>), Impor
     let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(broken)?;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for (name, element) in &header.elements {
-        // Each value takes a byte at least, so that a count beyond the file is a lie.
+        // Each value takes at least a byte, so a count beyond the file is false.
         if element.count > bytes.len() {
             return Err(broken(format!("it announces {} of \"{name}\", but has {} bytes", element.count, bytes.len())));
         }

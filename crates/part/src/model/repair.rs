@@ -1,10 +1,10 @@
-//! Finds what is wrong with a mesh and mends what needs no guess: nothing is moved by more than the width of a crack.
+//! Finds what is wrong with a mesh and repairs what needs no guess: nothing is moved by more than the width of a crack.
 //!
 //! 1. degenerate triangles are removed;
 //! 2. vertices on open edges that lie within 1e-5 of the part's diagonal are merged (cracks from rounding);
 //! 3. duplicate triangles are removed;
 //! 4. triangles are turned to agree with their neighbours, each shell by its majority;
-//! 5. a mesh that is inside out as a whole is turned.
+//! 5. a mesh that is inside out as a whole is turned over.
 
 use super::Mesh;
 use super::adjacency::{Adjacency, HalfEdge, ends};
@@ -40,7 +40,7 @@ pub struct RepairReport {
     pub non_manifold_edges: usize,
     /// Triangles wound against their neighbours, turned.
     pub flipped: usize,
-    /// Whether the whole mesh was inside out and was turned.
+    /// Whether the whole mesh was inside out and was turned over.
     pub inside_out: bool,
     /// Stored normals that point against the winding of their triangle; the winding counts.
     pub normals_against_winding: usize,
@@ -49,7 +49,7 @@ pub struct RepairReport {
 }
 
 impl RepairReport {
-    /// Whether the mesh is closed and nothing had to be mended.
+    /// Whether the mesh is closed and nothing had to be repaired.
     pub fn is_clean(&self) -> bool {
         let mended = self.degenerate + self.duplicate + self.vertices_merged + self.flipped;
         mended + self.open_edges + self.non_manifold_edges + self.normals_against_winding == 0
@@ -61,7 +61,7 @@ impl RepairReport {
     pub fn sentences(&self) -> Vec<String> {
         let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
         let mut lines: Vec<String> =
-            self.damage.iter().map(|what| format!("The file is damaged and was taken as it is: {what}.")).collect();
+            self.damage.iter().map(|what| format!("The file is damaged and was read as it is: {what}.")).collect();
         let mut say = |n: usize, one: &str, many: &str, tail: &str| {
             if n > 0 {
                 lines.push(format!("{}{tail}.", plural(n, one, many)));
@@ -71,18 +71,18 @@ impl RepairReport {
         say(self.degenerate, "triangle", "triangles", " without an area removed");
         say(self.duplicate, "duplicate triangle", "duplicate triangles", " removed");
         say(self.vertices_merged, "vertex", "vertices", " merged to close cracks");
-        say(self.flipped, "triangle", "triangles", " wound against the neighbours turned");
+        say(self.flipped, "triangle", "triangles", " with the wrong winding turned over");
         say(self.normals_against_winding, "stored normal", "stored normals", " against the winding ignored");
         say(self.open_edges, "open edge", "open edges", ": the surface has holes");
         say(self.non_manifold_edges, "edge", "edges", " shared by three or more triangles");
         if self.inside_out {
-            lines.push("The mesh was inside out and was turned.".to_owned());
+            lines.push("The mesh was inside out and was turned over.".to_owned());
         }
         lines
     }
 }
 
-/// Mends a mesh and reports what was done.
+/// Repairs a mesh and reports what was done.
 pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, RepairReport) {
     let mut report = RepairReport { triangles_read: triangles.len(), ..RepairReport::default() };
     let mut mesh = Mesh { vertices, triangles, neighbours: Vec::new() };
@@ -235,7 +235,7 @@ fn turn_to_majority(mesh: &mut Mesh, adjacency: &mut Adjacency, flipped: &mut us
         }
     }
     let count = mesh.triangles.len();
-    // One extra place stands for "no neighbour": always visited, so the walk needs no branch that is hard to predict.
+    // One extra place means "no neighbour": always visited, so the walk needs no branch that is hard to predict.
     let mut visited = vec![false; count + 1];
     visited[count] = true;
     let mut turned = vec![false; if against.is_empty() { 0 } else { count }];

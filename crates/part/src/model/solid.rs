@@ -57,7 +57,7 @@ impl Solid {
         solid
     }
 
-    /// Merges vertices at the same position (to 1 nm) and drops the triangles that then have no area.
+    /// Merges vertices at the same position (to 1 nm) and drops the triangles that are left without an area.
     pub fn welded(self) -> Self {
         let mut numbers = HashMap::new();
         let mut welded = Self::default();

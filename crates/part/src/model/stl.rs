@@ -13,7 +13,7 @@ pub(super) const FORMAT: Format = Format { is: |_| true, read };
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// A binary STL file of triangles with their corners counter-clockwise seen from outside; `name` stands in its header, up to
+/// A binary STL file of triangles with their corners counter-clockwise seen from outside; `name` is in its header, up to
 /// 80 bytes of it. Coordinates are written with 24 bits.
 pub fn write(name: &str, triangles: impl Iterator<Item = [DVec3; 3]>) -> Vec<u8> {
     let mut bytes = name.as_bytes().to_vec();
@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     let length = bytes.len();
     match announced_size(bytes) {
         None => Err(ImportError::NotStl {
-            reason: format!("it has {} bytes, and a binary STL has at least {HEADER}", bytes.len()),
+            reason: format!("it has {} bytes, but a binary STL has at least {HEADER}", bytes.len()),
         }),
         Some(size) if size > length && plausible(&bytes[HEADER..]) => {
             let (announced, whole) = ((size - HEADER) / RECORD, (length - HEADER) / RECORD);

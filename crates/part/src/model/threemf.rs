@@ -1,7 +1,7 @@
 //! 3MF: the core specification with build transforms, components and several objects, and the production extension's parts
 //! in several files.
 //!
-//! What an archive may unfold to is bounded: bytes of its model files, triangles with all copies, components in
+//! What an archive may unpack to is bounded: bytes of its model files, triangles with all copies, components in
 //! components.
 
 use super::formats::Format;

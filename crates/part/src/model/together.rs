@@ -1,28 +1,26 @@
-//! Several parts for one build: side by side on the plate, or where their files have them.
+//! Several parts for one build: side by side on the plate, or where their files place them.
 
 use super::{Import, Mesh, NO_NEIGHBOUR, Object, RepairReport};
 use glam::{DVec2, DVec3};
 use planar::Bounds;
 
-/// How several parts stand on a plate.
+/// How several parts are placed on a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Arrangement {
     /// In rows from x = y = 0 on, this far apart, mm.
     Rows {
-        /// Distance of their extents, mm.
+        /// Distance between their extents, mm.
         gap: f64,
     },
     /// Where they are.
     AsTheyAre,
 }
 
-/// Why parts do not stand together.
+/// Why parts cannot be built together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TogetherError {
-    /// Two parts take the same place.
-    #[error(
-        "the extents of {0} and {1} overlap, seen from above. Leave their placing to Beadwright, or move one of them."
-    )]
+    /// Two parts occupy the same place.
+    #[error("the extents of {0} and {1} overlap, seen from above. Let Beadwright place them, or move one of them.")]
     Overlap(String, String),
     /// None was given.
     #[error("there is no part to build")]
@@ -35,7 +33,7 @@ pub type Named = (String, Import);
 /// A part's name and its extent on the plate, mm.
 pub type Place = (String, Bounds);
 
-/// One solid of several placed parts, and where each of them stands.
+/// One solid of several placed parts, and where each of them is.
 ///
 /// # Errors
 /// [`TogetherError`].
@@ -46,7 +44,7 @@ pub fn together(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Import, 
     Ok((all.fold(first, joined), places))
 }
 
-/// The parts moved to where they stand.
+/// The parts moved to their places.
 ///
 /// # Errors
 /// [`TogetherError::Overlap`].
@@ -75,7 +73,7 @@ fn extent(mesh: &Mesh) -> Bounds {
     Bounds { min: low.truncate(), max: high.truncate() }
 }
 
-/// How far each part moves to stand in rows: the deepest first, rows about as long as all of them are deep.
+/// How far each part moves to its place in the rows: the deepest first, rows about as long as all of them are deep.
 fn rows(extents: &[Bounds], gap: f64) -> Vec<DVec2> {
     let size = |index: usize| extents[index].size() + gap;
     let mut order: Vec<usize> = (0..extents.len()).collect();

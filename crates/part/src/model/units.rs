@@ -28,7 +28,7 @@ impl Units {
     pub const ALL: [(&'static str, Self); 4] =
         [("mm", Self::Millimetre), ("cm", Self::Centimetre), ("m", Self::Metre), ("in", Self::Inch)];
 
-    /// What numbers in it are called: `inches`.
+    /// The unit in the plural: `inches`.
     pub fn plural(self) -> &'static str {
         match self {
             Self::Millimetre => "millimetres",
@@ -49,7 +49,7 @@ impl Units {
     }
 }
 
-/// The part is so small under this bead that its unit must be another one.
+/// The part is so small for this bead that its unit must be another one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "the part measures {} in the file's units. As millimetres it would be smaller than {MIN_BEADS} beads of {bead_width} mm. \

@@ -40,12 +40,12 @@ pub struct Section {
     pub closed: bool,
 }
 
-/// Why curves are no wall.
+/// Why curves do not make a wall.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WallCurvesError {
-    /// No curve stands for itself.
+    /// No curve is independent.
     #[error(
-        "the file holds no curve that stands for itself ({curves} belong to surfaces or other entities). A wall needs \
+        "the file holds no independent curve ({curves} belong to surfaces or other entities). A wall needs \
          its centre-lines; export the surface as a mesh (STL) instead."
     )]
     None {
@@ -55,7 +55,7 @@ pub enum WallCurvesError {
     /// A curve is not level.
     #[error(
         "the curve of directory entry {entry} is not level: it runs from z {low:.2} to z {high:.2} mm. The centre-lines \
-         of a wall are level, one set for each height."
+         of a wall must be level, one set for each height."
     )]
     NotLevel {
         /// Number of the directory entry.
@@ -67,7 +67,7 @@ pub enum WallCurvesError {
     },
     /// Heights with different numbers of curves.
     #[error(
-        "there are {lower} curves at z {z:.2} mm but {upper} at z {next:.2} mm. To be lofted, every height needs the same \
+        "there are {lower} curves at z {z:.2} mm but {upper} at z {next:.2} mm. To loft the wall, every height needs the same \
          number of curves in the same order."
     )]
     Uneven {
@@ -83,7 +83,7 @@ pub enum WallCurvesError {
 }
 
 impl WallCurves {
-    /// The visible curves of a drawing that stand for themselves, turned and scaled by `place`; the lowest height
+    /// The visible, independent curves of a drawing, turned and scaled by `place`; the lowest height
     /// becomes z = 0.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl WallCurves {
     }
 }
 
-/// The curves that make a height.
+/// The curves that define a height.
 enum Between<'a> {
     One(&'a [Curve]),
     Two(&'a [Curve], &'a [Curve], f64),
@@ -266,7 +266,7 @@ fn mixed(lower: &[DVec2], upper: &[DVec2], share: f64) -> Vec<DVec2> {
     lower.iter().zip(upper).map(|(a, b)| a.lerp(*b, share)).collect()
 }
 
-/// The centre-line between two others, at a share of the way up.
+/// The centre-line between two others, at a fraction of the way up.
 fn lofted(lower: &Curve, upper: &Curve, share: f64, error: f64) -> Section {
     // As many corresponding points as the finer curve needs.
     let count = (4 * lower.path(error).len().max(upper.path(error).len())).max(PAIRS);

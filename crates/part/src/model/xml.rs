@@ -26,7 +26,7 @@ pub enum Step {
 /// The beginning of an element.
 pub struct Element(BytesStart<'static>);
 
-/// Elements lie no deeper in each other.
+/// Elements are nested no deeper than this.
 const DEEPEST: usize = 256;
 
 impl<R: BufRead> Elements<R> {
@@ -44,7 +44,7 @@ impl<R: BufRead> Elements<R> {
             match self.reader.read_event_into(&mut self.buffer) {
                 Err(error) => return Err(broken(error.to_string())),
                 Ok(Event::Start(_)) if self.depth >= DEEPEST => {
-                    return Err(broken(format!("elements lie more than {DEEPEST} deep in each other")));
+                    return Err(broken(format!("elements are nested more than {DEEPEST} deep")));
                 }
                 Ok(Event::Start(start)) => {
                     self.depth += 1;
@@ -75,7 +75,7 @@ impl Element {
         self.0.local_name().into_inner()
     }
 
-    /// The attribute of a name, whatever its prefix.
+    /// The attribute of this name, whatever its prefix.
     pub fn attribute(&self, name: &str) -> Option<String> {
         let own = |key: &str| key.rsplit(':').next() == Some(name);
         self.attributes().into_iter().find(|(key, _)| own(key)).map(|(_, value)| value)

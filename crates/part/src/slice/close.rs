@@ -5,7 +5,7 @@ use planar::Ring;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Candidates looked at around one end.
+/// Candidates examined around one end.
 const NEAREST: usize = 8;
 
 /// An end of a chain: its index and whether it is the last point.
@@ -56,7 +56,7 @@ fn point(chains: &[Vec<DVec2>], end: End) -> DVec2 {
     chain[if end.last { chain.len() - 1 } else { 0 }]
 }
 
-/// Pairs of ends within the gap, nearest first; an end goes before a start of the same distance, as the winding asks.
+/// Pairs of ends within the gap, nearest first; an end goes before a start of the same distance, as the winding requires.
 fn candidate_pairs(chains: &[Vec<DVec2>], gap: f64) -> Vec<(f64, End, End)> {
     let ends = (0..chains.len()).flat_map(|chain| [false, true].map(|last| End { chain, last }));
     let items: Vec<_> = ends.map(|e| GeomWithData::new(point(chains, e).to_array(), e)).collect();

@@ -84,7 +84,7 @@ pub struct Lines {
     pub warnings: Vec<Warning>,
 }
 
-/// What a surface that is not closed stands for.
+/// What a surface that is not closed represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -100,7 +100,7 @@ pub enum Surface {
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum LayerFit {
-    /// Layers of the given thickness, as many as come nearest to the height.
+    /// Layers of the given thickness, in the number that comes nearest to the height.
     #[default]
     Fixed,
     /// Layers of the given thickness, with one more where the part would end above the last.
@@ -234,7 +234,7 @@ impl<'a> Slicer<'a> {
         self.each(batch, task, |index, triangles| self.cut(index, triangles))
     }
 
-    /// Something of each layer of a batch, in parallel.
+    /// A result for each layer of a batch, in parallel.
     fn each<T: Send>(
         &self,
         batch: usize,
@@ -253,7 +253,7 @@ impl<'a> Slicer<'a> {
             .collect()
     }
 
-    /// Cuts all layers. Long parts are better taken [batch](Self::batch) by batch.
+    /// Cuts all layers. Long parts are better cut [batch](Self::batch) by batch.
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
@@ -277,7 +277,7 @@ impl<'a> Slicer<'a> {
         by_layer
     }
 
-    /// The contours of a layer, those that do not close apart, and warnings of gaps.
+    /// The contours of a layer, those that do not close separately, and warnings of gaps.
     fn traced(&self, index: usize, triangles: &[u32]) -> (Trace, Vec<Warning>) {
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
@@ -316,7 +316,7 @@ impl<'a> Slicer<'a> {
 /// Slivers shorter than this are rounding.
 const WORTH_TELLING_MM: f64 = 1.0;
 
-/// Leaves out holes and islands that are too thin to be anything, with a warning.
+/// Leaves out holes and islands that are too thin to matter, with a warning.
 fn drop_slivers(layer: &mut Slice) {
     let Slice { index, islands, warnings, .. } = layer;
     let mut keep = |ring: &Ring| {
@@ -336,7 +336,7 @@ fn drop_slivers(layer: &mut Slice) {
 
 /// How many planes lie at height `z` or below.
 fn level(planes: &[f64], spacing: f64, z: f64) -> u32 {
-    // Right for equal layers but for rounding; the planes themselves decide.
+    // Right for equal layers except for rounding; the planes themselves decide.
     let guess = ((z / spacing + 0.5) as usize).min(planes.len());
     let above = guess == planes.len() || planes[guess] > z;
     let right = above && (guess == 0 || planes[guess - 1] <= z);

@@ -8,7 +8,7 @@ use crate::model::{Mesh, NO_NEIGHBOUR};
 use glam::{DVec2, DVec3};
 use planar::Ring;
 
-/// What one plane gives.
+/// The contours on one plane.
 #[derive(Default)]
 pub(super) struct Trace {
     pub(super) rings: Vec<Ring>,
@@ -49,7 +49,7 @@ struct Crossed {
 }
 
 /// Indexed by the set of corners that lie above the plane, corner k being bit k. A table instead of branches, because
-/// the set is as good as random and the processor would mispredict it at every step.
+/// the set is practically random and the processor would mispredict it at every step.
 const CROSSED: [Option<Crossed>; 8] = {
     const fn edges(falling: usize, rising: usize) -> Option<Crossed> {
         Some(Crossed { falling, rising })
@@ -73,7 +73,7 @@ impl Cut<'_> {
     pub(super) fn trace(&self, triangles: &[u32], scratch: &mut Scratch) -> Trace {
         scratch.next_layer();
         let mut result = Trace::default();
-        // Open contours first, from where they begin; what is left after them are loops.
+        // Open contours first, from where they begin; what is left after them is loops.
         for &triangle in triangles {
             let Some(Crossed { falling, .. }) = self.crossed(triangle) else { continue };
             if self.mesh.neighbours[triangle as usize][falling] == NO_NEIGHBOUR && scratch.visit(triangle) {

@@ -13,7 +13,7 @@ pub enum TextError {
 }
 
 /// The text of a file, without byte order mark and with `\n` at the end of each line. UTF-16 is understood if it begins
-/// with its mark; bytes that are no text become `\u{fffd}`.
+/// with its mark; bytes that are not text become `\u{fffd}`.
 ///
 /// # Errors
 /// [`TextError`] for UTF-32, and for UTF-16 without a mark.
@@ -26,7 +26,7 @@ pub fn of(bytes: &[u8]) -> Result<String, TextError> {
         _ if is_wide(bytes) => return Err(TextError::Encoding("UTF-16 without a byte order mark")),
         _ => String::from_utf8_lossy(bytes),
     };
-    // Old Macs end lines by \r alone; between \r and \n no line is counted.
+    // Old Macs end lines with \r alone; between \r and \n no line is counted.
     if text.contains('\r') { Ok(text.replace("\r\n", "\n").replace('\r', "\n")) } else { Ok(text.into_owned()) }
 }
 

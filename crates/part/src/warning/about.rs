@@ -2,7 +2,7 @@
 
 use super::WarningKind;
 
-/// What a welder should know of a kind of warning.
+/// What a welder should know about a kind of warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct About {
     /// The word in `metrics.json`.
@@ -48,62 +48,64 @@ impl WarningKind {
             Self::GapClosed => (
                 "gap-closed",
                 "the surface of the model has a gap, which was bridged",
-                "see whether the gap is wider than you trust, and mend the model if it is",
+                "check that the gap is not wider than you accept, and repair the model if it is",
             ),
             Self::OpenContourDropped => (
                 "open-contour-dropped",
                 "the surface has a hole or a slit, so a contour does not close and is left out",
-                "mend the model, bridge wider gaps with slice.close_gap, or say what the surface stands for (slice.surface)",
+                "repair the model, bridge wider gaps with slice.close_gap, or say what the surface is (slice.surface)",
             ),
             Self::ContoursUnited => (
                 "contours-united",
                 "solids of the model overlap, or a surface is wound the wrong way",
-                "look at the picture of the layer; unite the solids in CAD if it is wrong",
+                "check the picture of the layer; unite the solids in CAD if it is wrong",
             ),
             Self::ThinFeature => (
                 "thin-feature",
                 "a place is thinner than wall.thinnest, or a short neck, or the strategy is raster, which welds no thin walls",
-                "take another strategy than raster, a narrower bead, or a thicker part",
+                "use a strategy other than raster, a narrower bead, or a thicker part",
             ),
             Self::IslandTooSmall => (
                 "island-too-small",
-                "no bead has room in an island",
-                "take a narrower bead or a larger part, or say how dots are welded ([spot])",
+                "an island has no room for a bead",
+                "use a narrower bead or a larger part, or say how dots are welded ([spot])",
             ),
             Self::ThinWall => (
                 "thin-wall",
-                "a wall is thinner than the narrowest bead, so metal lies beside it",
+                "a wall is thinner than the narrowest bead, so metal lies outside it",
                 "machine it off, or allow narrower beads if the process can weld them ([loop], [wall])",
             ),
             Self::Refilled => (
                 "refilled",
                 "the strategy would have left the outline or crossed itself there, so another one fills the island, the best by the deposit model",
-                "look at the picture of the layer, and take another strategy if it will not do",
+                "check the picture of the layer, and use another strategy if it is not acceptable",
             ),
             Self::Bare => ("bare", "beads do not reach part of an island", "compare what other strategies leave"),
             Self::Unsound => (
                 "unsound",
                 "passes leave the part or cross each other, and nothing could replace them",
-                "take another strategy or another bead.width",
+                "use another strategy or another bead.width",
             ),
             Self::HighStart => (
                 "high-start",
-                "no bead has room in the lowest layers, as where a round part lies on the plate, so the first would be laid in the air",
-                "begin at that height, stand the part on a flat face, or take a narrower bead (bead.width)",
+                "the lowest layers have no room for a bead, for example under a round part, so the first bead would be laid in \
+                 the air",
+                "begin at that height, stand the part on a flat face, or use a narrower bead (bead.width)",
             ),
             Self::NothingBelow => (
                 "nothing-below",
                 "the beads of a whole layer would be laid in the air",
-                "begin at that height, turn the part, or take a narrower bead (bead.width), which has room in the layers below",
+                "begin at that height, turn the part, or use a narrower bead (bead.width), for which the layers below have room",
             ),
             Self::InTheAir => (
                 "in-the-air",
-                "a pass has no bead below for more than half of its length, or for two bead widths on end",
+                "a pass has no bead below for more than half of its length, or for two bead widths in a row",
                 "turn the part, begin above the place, or add metal below that is machined off",
             ),
             Self::HangingIsland => (
                 "hanging-island",
-                "a small island begins in the air, and nothing stands on it, or a pass of two bead widths hangs, so it is left out",
+                "a small island begins in the air, and nothing is built on it, or a pass of two bead widths hangs in the air, so \
+                 it is left out",
                 "turn the part, or add metal below that is machined off, if the island matters",
             ),
             Self::Overhang => (
@@ -114,43 +116,43 @@ impl WarningKind {
             Self::ShortArc => (
                 "short-arc",
                 "a pass is over before its arc burns steadily",
-                "raise fill.min_pass_length to leave it out, or take a strategy with longer passes",
+                "raise fill.min_pass_length to leave it out, or use a strategy with longer passes",
             ),
             Self::Relit => (
                 "relit",
                 "a pass has more points than one program of the controller may hold, so it is cut",
-                "let straight moves and arcs be fitted (program.chord_tolerance, program.arcs), and fewer passes are cut",
+                "fit straight moves and arcs (program.chord_tolerance, program.arcs), so that fewer passes are cut",
             ),
             Self::ManyPoints => (
                 "many-points",
                 "a layer has more points than check.max_points",
-                "raise slice.simplify, or let arcs be fitted (program.arcs)",
+                "raise slice.simplify, or fit arcs (program.arcs)",
             ),
             Self::Sliver => (
                 "sliver",
-                "shells of the model touch with a gap that is too thin to be meant, and it is left out",
+                "shells of the model touch with a gap too thin to be intended, and it is left out",
                 "nothing, as a rule; unite the shells in CAD if the place matters",
             ),
             Self::PassTooShort => (
                 "pass-too-short",
                 "a pass would be shorter than fill.min_pass_length, or over before the arc is steady in programs that do not wait \
                  for it (no {{arc_start_delay}} where the arc is struck), and is left out",
-                "lower fill.min_pass_length if your arc is steady sooner, or take another strategy",
+                "lower fill.min_pass_length if your arc is steady sooner, or use another strategy",
             ),
             Self::NeverCools => (
                 "never-cools",
                 "metal stays above interpass.max_temperature for ten hours",
-                "raise the limit, preheat less (substrate.preheat), or take a thicker plate or better contact",
+                "raise the limit, preheat less (substrate.preheat), or use a thicker plate or better contact",
             ),
             Self::HotAhead => (
                 "hot-ahead",
                 "a long pass comes back to metal that it has heated itself, and no wait within a pass lets that cool",
-                "let the torch wait on its way (interpass.along = true), wait longer before passes (a lower \
-                 interpass.max_temperature), or take a strategy with shorter passes",
+                "let the torch wait within passes (interpass.along = true), wait longer before passes (a lower \
+                 interpass.max_temperature), or use a strategy with shorter passes",
             ),
             Self::Paused => (
                 "paused",
-                "interpass.along keeps the limit all along passes, so a pass ends before metal that is too hot",
+                "with interpass.along the limit also holds along passes, so a pass ends before metal that is too hot",
                 "a higher interpass.max_temperature or a thicker plate needs fewer cuts",
             ),
             Self::TooCold => (
@@ -161,7 +163,7 @@ impl WarningKind {
             Self::EmptyLayer => (
                 "empty-layer",
                 "the part has a gap at this height, or all contours there were dropped",
-                "look at the layer's other warnings; join the two halves in CAD, or plan them as two parts",
+                "check the layer's other warnings; join the two halves in CAD, or plan them as two parts",
             ),
         };
         About { name, cause, remedy }

@@ -3,8 +3,8 @@
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// No bead is taken to become narrower, wider, lower or higher than by these factors: walls welded in a row, without any
-/// wait, change by 1.4 in width.
+/// No bead is assumed to become narrower, wider, lower or higher by more than these factors: walls welded without any
+/// wait change by 1.4 in width.
 const CHANGES: (f64, f64) = (0.5, 2.0);
 
 /// How a bead changes with the temperature of the metal just ahead of the torch, at the same wire feed and speed; linear,
@@ -17,17 +17,17 @@ pub struct BeadByHeat {
     pub temperature: f64,
     /// Change of the bead's width, mm/K.
     pub width: f64,
-    /// Change of the thickness of a layer of a wall with one bead a layer, mm/K; below 0 where warm metal spreads.
+    /// Change of the thickness of a layer of a wall with one bead per layer, mm/K; below 0 where warm metal spreads.
     pub rise: f64,
 }
 
 impl BeadByHeat {
-    /// Width on metal of a temperature (°C), as a multiple of the `nominal` one (mm).
+    /// Width on metal at `temperature` (°C), as a multiple of the `nominal` one (mm).
     pub fn widening(&self, nominal: f64, temperature: f64) -> f64 {
         self.change(self.width / nominal, temperature)
     }
 
-    /// Thickness of a wall's layer on metal of a temperature (°C), as a multiple of the `nominal` one (mm).
+    /// Thickness of a wall's layer on metal at `temperature` (°C), as a multiple of the `nominal` one (mm).
     pub fn lift(&self, nominal: f64, temperature: f64) -> f64 {
         self.change(self.rise / nominal, temperature)
     }

@@ -43,7 +43,7 @@ impl Law {
         nominal.area() / self.bead(nominal, width).area()
     }
 
-    /// Width, mm, of the bead with that area, mm²: the inverse of [`Self::bead`].
+    /// Width, mm, of the bead with this area, mm²: the inverse of [`Self::bead`].
     pub fn width_of_area(&self, nominal: &Bead, area: f64) -> f64 {
         match self {
             Self::ConstantHeight => return nominal.section.width_of(nominal.height, area),

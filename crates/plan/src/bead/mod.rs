@@ -111,7 +111,7 @@ impl MassBalance {
     pub fn warning(&self) -> Option<String> {
         ((self.ratio() - 1.0).abs() > Self::TOLERANCE).then(|| {
             format!(
-                "The wire brings {:.1} mm³/s, but the bead takes {:.1} mm³/s at this deposition speed ({:+.0} %). \
+                "The wire supplies {:.1} mm³/s, but the bead needs {:.1} mm³/s at this deposition speed ({:+.0} %). \
                  A deposition_speed of {:.2} mm/s would fit.",
                 self.wire,
                 self.bead,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_4;
 
-/// Part of a stadium's squared height by which its area is smaller than that of the box around it.
+/// Fraction of a stadium's squared height by which its area is smaller than that of the box around it.
 const CORNERS: f64 = 1.0 - FRAC_PI_4;
 
 /// The shape of a bead's cross-section.
@@ -21,7 +21,7 @@ pub enum Section {
 }
 
 impl Section {
-    /// Area of a bead of that width and height, mm².
+    /// Area of a bead of this width and height, mm².
     pub fn area(self, width: f64, height: f64) -> f64 {
         match self {
             Self::Parabola => 2.0 / 3.0 * width * height,
@@ -31,13 +31,13 @@ impl Section {
         }
     }
 
-    /// Height of a bead of that width and area, mm: the inverse of [`Self::area`].
+    /// Height of a bead of this width and area, mm: the inverse of [`Self::area`].
     pub fn height_of(self, width: f64, area: f64) -> f64 {
         match self {
             Self::Parabola => 1.5 * area / width,
             Self::Ellipse => area / (FRAC_PI_4 * width),
             Self::Stadium => {
-                // h w − c h² = A, up to h = w; higher ones are w (1 − c) wide on the mean.
+                // h w − c h² = A, up to h = w; higher ones are w (1 − c) wide on average.
                 let most = FRAC_PI_4 * width * width;
                 if area >= most {
                     return area / (FRAC_PI_4 * width);
@@ -47,7 +47,7 @@ impl Section {
         }
     }
 
-    /// Width of a bead of that height and area, mm: the other inverse of [`Self::area`].
+    /// Width of a bead of this height and area, mm: the other inverse of [`Self::area`].
     pub fn width_of(self, height: f64, area: f64) -> f64 {
         match self {
             Self::Parabola => 1.5 * area / height,
@@ -57,7 +57,7 @@ impl Section {
         }
     }
 
-    /// The width over which a bead's metal reaches for the deposit model, mm: a stadium counts as flat, and as wide as its
+    /// The width that a bead's metal covers in the deposit model, mm: a stadium counts as flat, and as wide as its
     /// area over its height.
     pub fn footprint(self, width: f64, height: f64) -> f64 {
         match self {

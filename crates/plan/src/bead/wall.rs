@@ -25,7 +25,7 @@ pub struct WallBead {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum WallError {
     /// Width or height is zero, negative or not a number.
-    #[error("a bead of width {width} mm and height {height} mm cannot be: both must be above 0 mm.")]
+    #[error("a bead of width {width} mm and height {height} mm is impossible: both must be above 0 mm.")]
     Size {
         /// Width B₁, mm.
         width: f64,
@@ -34,7 +34,7 @@ pub enum WallError {
     },
     /// No bead has this ratio of width to height.
     #[error(
-        "a bead of width {width} mm and height {height} mm has width/height {ratio:.3}; a wall can be foretold from \
+        "a bead of width {width} mm and height {height} mm has width/height {ratio:.3}; a wall can be predicted from \
          {min} to {max}. Check the units: both are in mm.", min = WallBead::RATIOS.0, max = WallBead::RATIOS.1
     )]
     Ratio {
@@ -45,7 +45,7 @@ pub enum WallError {
         /// λ = B₁/h₁.
         ratio: f64,
     },
-    /// No bead of that width gives layers of that height.
+    /// No bead of this width gives layers of this height.
     #[error(
         "beads of width {width} mm give layers of {least:.3} to {most:.1} mm, not of {rise} mm. Check the units: both \
          are in mm."
@@ -60,10 +60,10 @@ pub enum WallError {
         /// Greatest possible h_n, mm.
         most: f64,
     },
-    /// No bead of that area makes a wall of that thickness.
+    /// No bead of this area makes a wall of this thickness.
     #[error(
-        "beads of {area} mm² do not make a wall {thickness} mm thick: its layers would be {rise:.3} mm high, at most \
-         {most:.1} mm can be. Check the units: bead.width and bead.height are in mm."
+        "beads of {area} mm² do not make a wall {thickness} mm thick: its layers would be {rise:.3} mm high, but at most \
+         {most:.1} mm is possible. Check the units: bead.width and bead.height are in mm."
     )]
     Thickness {
         /// Wanted mean thickness, mm.
@@ -129,7 +129,7 @@ impl WallBead {
         Ok(of_ratio(ratio_where(|ratio| of_ratio(ratio).rise <= rise)))
     }
 
-    /// The wall of mean `thickness` (mm) of beads of `area` (mm²): the metal of a bead fills what a layer rises, so its
+    /// The wall of mean `thickness` (mm) of beads of `area` (mm²): the metal of a bead fills the rise of a layer, so its
     /// layers are `area`/`thickness` high.
     ///
     /// # Errors
@@ -252,7 +252,7 @@ fn unit_cap(theta: f64) -> f64 {
 }
 
 /// δ = π/2 − θn from eq (6), which is 2δ + sin 2δ = `area`, for areas from 0 to π. Newton's steps kept in a bracket:
-/// the left side rises all the way, with slope 0 only at its end. Exact to a few roundings of δ, however flat the bead.
+/// the left side rises throughout, with slope 0 only at its end. Exact to a few roundings of δ, however flat the bead.
 fn lens_complement(area: f64) -> f64 {
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     let mut delta = (area / 4.0).min(high);

@@ -1,7 +1,7 @@
 //! The height field of a layer on a grid, every point in double precision, computed in bands of rows: each band looks
 //! only at the pieces of bead that reach it, bands run in parallel, and none is kept unless asked for.
 //!
-//! This is the reference: a [`Judge`](super::Judge) takes the quick way (`tiles`) to the same figures.
+//! This is the reference: a [`Judge`](super::Judge) computes the same figures the quick way (`tiles`).
 
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
 use crate::bead::Section;
@@ -74,7 +74,7 @@ impl Grid {
     }
 }
 
-/// Rounded up, for what is not negative; without a call into the library of mathematics.
+/// Rounded up, for what is not negative; without a call into the mathematics library.
 pub(super) fn up(x: f64) -> usize {
     let down = x as usize;
     down + usize::from(x > down as f64)
@@ -135,7 +135,7 @@ impl<'a, H: Height> Band<'a, H> {
         self.heights.chunks(self.columns.len().max(1)).enumerate().map(|(k, row)| (self.first + k, row))
     }
 
-    /// The parts of stretches of columns, from left to right, that lie in the band, counted from the band's first.
+    /// The parts of stretches of columns, from left to right, that lie in the band, counted from the band's first column.
     pub(super) fn parts<'s>(
         &self,
         stretches: &'s [Range<usize>],
@@ -145,7 +145,7 @@ impl<'a, H: Height> Band<'a, H> {
         reaching.map(|stretch| self.within(stretch))
     }
 
-    /// The part of some columns of the grid that lies in the band, counted from the band's first.
+    /// The part of some columns of the grid that lies in the band, counted from the band's first column.
     pub(super) fn within(&self, columns: &Range<usize>) -> Range<usize> {
         let at = |column: usize| column.clamp(self.columns.start, self.columns.end) - self.columns.start;
         at(columns.start)..at(columns.end).max(at(columns.start))

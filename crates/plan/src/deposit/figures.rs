@@ -83,7 +83,7 @@ impl Figures {
         }
     }
 
-    /// Takes in the figures of another part of the layer, or of another layer.
+    /// Adds the figures of another part of the layer, or of another layer.
     pub fn add(&mut self, other: &Self) {
         self.min = match (self.area > 0.0, other.area > 0.0) {
             (true, true) => self.min.min(other.min),
@@ -174,9 +174,9 @@ pub mod whole {
     }
 }
 
-/// Heights are added up side by side in so many sums, as the processor does; the order never changes.
+/// Heights are added up side by side in this many sums, as the processor does; the order never changes.
 const LANES: usize = 8;
-/// So many heights are added up in their own precision.
+/// This many heights are added up in their own precision.
 const MOST_ADDED: usize = 64;
 
 /// The points of the judged area.

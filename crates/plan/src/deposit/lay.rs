@@ -57,9 +57,9 @@ fn lay<F: Pool>(frame: &Frame, band: &mut Band<'_, f32>) {
     }
 }
 
-/// So many columns are computed side by side.
+/// This many columns are computed side by side.
 const LANES: usize = 8;
-/// The corners beside the round ends of longer pieces, in half bead widths, cost less than to look where they begin.
+/// In pieces longer than this, in half bead widths, the corners next to the round ends cost less than finding where they begin.
 const SHORT: f32 = 4.0;
 
 /// A piece of bead in half bead widths.
@@ -97,7 +97,7 @@ impl Piece {
         }
     }
 
-    /// The columns from which on and up to which the row lies within the piece, made longer by `more` at both ends.
+    /// The columns from which and up to which the row lies within the piece, made longer by `more` at both ends.
     fn boxed(&self, start: (f32, f32), more: f32) -> (f32, f32) {
         let between = |low: f32, high: f32, start: f32, per_step: f32| {
             let (a, b) = ((low - start) * per_step, (high - start) * per_step);
@@ -129,7 +129,7 @@ impl Piece {
         let (Some(first), Some(last)) = (ramp.first(), ramp.last()) else { return };
         let (length, height) = (self.length, self.height);
         let ends = (start.0 + first * self.step.0, start.0 + last * self.step.0);
-        // Where the pool has wholly come, or is not yet to go, that end is left out.
+        // Where the pool has arrived completely, or has not yet begun to leave, that end is left out.
         let (low, high) = (ends.0.min(ends.1), ends.0.max(ends.1));
         let places = heights.iter_mut().zip(ramp);
         let places = places.map(|(value, k)| (value, start.0 + k * self.step.0, start.1 + k * self.step.1));

@@ -2,8 +2,8 @@
 //!
 //! Our plans and other programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their heights
 //! ([`stroke`]: the closed form) add up on a [grid](field::Grid). [`field`] does so at every point in double precision; a
-//! [`Judge`] takes the same points in single precision, but passes over those whose verdict is known before (`tiles`),
-//! and over layers that repeat an earlier one. Only a few layers are held in memory.
+//! [`Judge`] takes the same points in single precision, but skips those whose verdict is known beforehand (`tiles`),
+//! and layers that repeat an earlier one. Only a few layers are held in memory.
 //!
 //! Inside the outline, less a rim of a quarter of a bead width, a point is a *void* below [`VOID`] times the nominal
 //! bead height, *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than
@@ -45,7 +45,7 @@ pub const LOW: f64 = 0.7;
 pub const OVERFILL: f64 = 1.3;
 /// Metal outside counts above this fraction of the nominal bead height.
 pub const OUTSIDE: f64 = 0.05;
-/// The edge of a layer is rounded over this fraction of a bead width: no voids are looked for there.
+/// The edge of a layer is rounded over this fraction of a bead width: no voids are searched for there.
 pub const RIM: f64 = 0.25;
 /// Grid points across a bead, unless another grid is asked for.
 pub const POINTS_ACROSS: f64 = 20.0;
@@ -130,7 +130,7 @@ impl Judge {
         self
     }
 
-    /// Also lays the layers on each other, to see how the part grows; `bounds` holds all layers.
+    /// Also lays the layers on top of each other, to see how the part grows; `bounds` holds all layers.
     pub fn with_stack(mut self, bounds: &Bounds) -> Self {
         self.stack = Some(Stack::new(bounds, self.settings));
         self
@@ -142,7 +142,7 @@ impl Judge {
         self
     }
 
-    /// Does not join voids and overfilled places to patches; their areas are in the figures.
+    /// Does not join voids and overfilled places into patches; their areas are in the figures.
     pub fn without_patches(mut self) -> Self {
         self.patches = false;
         self
@@ -153,7 +153,7 @@ impl Judge {
         &self.total
     }
 
-    /// The layers on each other.
+    /// The layers on top of each other.
     pub fn stack(&self) -> Option<&Stack> {
         self.stack.as_ref()
     }
@@ -206,13 +206,13 @@ impl Judge {
     }
 }
 
-/// What is looked for in a layer.
+/// What is searched for in a layer.
 struct Eye<'a> {
     grid: &'a Grid,
     mask: &'a Mask,
     nominal: &'a Nominal,
     canvas: Option<Canvas>,
-    /// Whether its runs are joined to patches.
+    /// Whether its runs are joined into patches.
     patches: bool,
 }
 
@@ -225,7 +225,7 @@ struct Seen {
     work: usize,
 }
 
-/// Below so many grid points along a pixel a picture shows single beads, and wants their points.
+/// Below this many grid points along a pixel a picture shows single beads, and needs their points.
 const BEADS_SHOWN: usize = 4;
 
 impl Eye<'_> {
@@ -329,7 +329,7 @@ fn columns<'a>(crossings: &'a [f64], grid: &'a Grid) -> impl Iterator<Item = Ran
     let mut end = 0;
     let columns = crossings.chunks_exact(2).map(move |pair| {
         let columns = grid.columns_between(pair[0], pair[1]);
-        // Where two outlines touch on a grid point it counts once.
+        // Where two outlines touch at a grid point, it counts once.
         let start = columns.start.max(end);
         end = columns.end.max(end);
         start..columns.end

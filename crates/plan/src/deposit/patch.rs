@@ -65,12 +65,12 @@ pub(super) struct Run {
     pub(super) overfilled: bool,
     pub(super) row: u32,
     pub(super) columns: Range<u32>,
-    /// The least or greatest height, mm, and the column it is found in.
+    /// The least or greatest height, mm, and the column where it is found.
     pub(super) extreme: f64,
     pub(super) at: u32,
 }
 
-/// Points looked at together for whether any of them is void or overfilled.
+/// Points checked together for whether any of them is void or overfilled.
 const LOOK: usize = 16;
 
 /// Adds the runs of a band, row after row.
@@ -82,7 +82,7 @@ pub(super) fn find<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal
         for columns in band.parts(mask.core(row)) {
             let begun = runs.len();
             for (k, heights) in heights[columns.clone()].chunks(LOOK).enumerate() {
-                // Of known length they are looked at side by side.
+                // With a known length they are checked side by side.
                 if !heights.first_chunk::<LOOK>().map_or_else(|| any(heights), |all| any(all)) {
                     continue;
                 }
@@ -113,7 +113,7 @@ pub(super) fn find_between(ridges: &Ridges, square: &Square, grid: &Grid, runs: 
     });
 }
 
-/// Adds a point to the last run if that began at `begun` or later and reaches it, or begins another.
+/// Adds a point to the last run if that one began at `begun` or later and reaches it, or begins another.
 fn extend(runs: &mut Vec<Run>, begun: usize, (row, at): (usize, usize), height: f64, overfilled: bool) {
     let (row, at) = (row as u32, at as u32);
     match runs[begun..].last_mut() {
@@ -147,7 +147,7 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
         while last_row.start < last_row.end && runs[last_row.start].columns.end < runs[i].columns.start {
             last_row.start += 1;
         }
-        // The run before goes on in this one where a part of the layer ends between them.
+        // The previous run continues in this one where a part of the layer ends between them.
         let before = (row_start < i && runs[i - 1].columns.end == runs[i].columns.start).then(|| i - 1);
         let above = last_row.clone().take_while(|&j| runs[j].columns.start <= runs[i].columns.end);
         for j in before.into_iter().chain(above) {
@@ -203,7 +203,7 @@ fn root(parents: &mut [u32], i: usize) -> usize {
 /// A turn sharper than this piles metal up on its inner side: cos 30°.
 const SHARP: f64 = 0.866;
 
-/// The nearest start, end or sharp turn within half a bead; else whether one or several passes come that near.
+/// The nearest start, end or sharp turn within half a bead; otherwise, whether one or several passes come that near.
 fn cause(place: DVec2, passes: &[Pass], nominal: &Nominal) -> Option<Cause> {
     let reach = nominal.bead.width / 2.0;
     let mut nearest = (reach, None);
@@ -217,7 +217,7 @@ fn cause(place: DVec2, passes: &[Pass], nominal: &Nominal) -> Option<Cause> {
     for pass in passes {
         let beside = pass.segments().any(|s| {
             let (a, b) = (s.from.truncate(), s.to.truncate());
-            // Nearly all lie farther off than that already in y alone.
+            // Nearly all lie farther off than that in y alone.
             (a.y.min(b.y) - reach..a.y.max(b.y) + reach).contains(&place.y)
                 && planar::polyline::distance_squared_to_segment(place, a, b) < reach * reach
         });

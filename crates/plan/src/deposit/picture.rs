@@ -13,7 +13,7 @@ use std::ops::Range;
 pub const EMPTY: u8 = 0;
 /// A pixel that holds a void.
 pub const VOID_PIXEL: u8 = 1;
-/// The lowest value that stands for a height; the highest, 255, is [`FULL_SCALE`] times the nominal bead height.
+/// The lowest value that represents a height; the highest, 255, is [`FULL_SCALE`] times the nominal bead height.
 pub const FIRST_HEIGHT: u8 = 2;
 /// The greatest height shown, in nominal bead heights.
 pub const FULL_SCALE: f64 = 2.0;
@@ -83,7 +83,7 @@ impl Canvas {
         let rows = band.first..band.first + band.heights.len() / width.max(1);
         let (mut sums, mut points) = (vec![0.0_f32; width], vec![0_u32; width]);
         for (_, lines) in self.pixels(&rows) {
-            // Down the columns first: these sums go side by side.
+            // Down the columns first: these sums run side by side.
             sums.fill(0.0);
             points.fill(0);
             for heights in lines.clone().map(|row| &band.heights[(row - band.first) * width..][..width]) {

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 /// Points nearer than this many grid steps are the same: a void's edge moves by no more.
 pub(super) const NEAR: f64 = 1e-3;
-/// Layers are compared with so many before them: scan lines that turn come back after a few.
+/// Layers are compared with this many before them: scan lines that turn come back after a few.
 const KEPT: usize = 4;
 
 /// The last different layers and what was found in them.

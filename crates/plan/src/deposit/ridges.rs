@@ -1,7 +1,7 @@
-//! Parallel beads of one size side by side: most of a raster. One line across them tells all.
+//! Parallel beads of one size side by side: most of a raster. One line across them says everything.
 //!
 //! With lengths in half bead widths a, heights in bead heights, and δ from crest to crest, 1 ≤ δ < 2, only neighbours
-//! meet. Between two crests a bead stands alone up to δ − 1, as high as 1 − s²; from there both add up to
+//! meet. Between two crests a bead is alone up to δ − 1, as high as 1 − s²; from there both add up to
 //! 2 − s² − (δ − s)², which is least at its ends, 1 − (δ − 1)², and greatest in the middle, 2 − δ²/2.
 
 use super::stroke::Frame;
@@ -10,7 +10,7 @@ use super::{LOW, OVERFILL, VOID, field};
 use glam::DVec2;
 use std::ops::Range;
 
-/// More beads than these beside each other are not taken together.
+/// More beads than this side by side are not treated together.
 pub(super) const MOST: usize = 12;
 /// Places across a square for its means: nearer to each other than its points.
 const SAMPLES: usize = 96;
@@ -41,7 +41,7 @@ pub(super) struct Ridges {
 
 /// A row whose points differ by less than this across, in half bead widths, runs along the beads.
 const ALONG: f64 = 1e-9;
-/// Added and taken away again, this rounds to a whole number: 1.5 · 2⁵².
+/// Added and subtracted again, this rounds to a whole number: 1.5 · 2⁵².
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// Where the beads leave a void or a hump between them: places across in half bead widths.
@@ -111,7 +111,7 @@ impl Lines {
 impl Ridges {
     /// The beads like `frame` whose crests lie at `offsets` (mm across, from the middle of the square, in any order), over
     /// a square that reaches `half` mm to every side of its middle, half a step of the grid included. `None` where more
-    /// than two beads meet or none does, or where a void lies beyond the last crest, for a nominal bead of that height.
+    /// than two beads meet or none does, or where a void lies beyond the last crest, for a nominal bead of this height.
     pub(super) fn of(frame: &Frame, offsets: &mut [f64], half: f64, nominal_height: f64) -> Option<Self> {
         let (a, scale) = (frame.a, nominal_height / frame.height);
         let reach = half * (frame.along.x.abs() + frame.along.y.abs()) / a;
@@ -146,8 +146,8 @@ impl Ridges {
     }
 
     /// Finds the points of a square that lie in a void or a hump. Its first point lies `start` mm across from its middle,
-    /// the next in a row `step` mm farther and the next row `row_step`; it has so many `rows` of so many `points`. `found` is
-    /// told whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm; those of
+    /// the next in a row `step` mm farther and the next row `row_step`; it has `rows` rows of `points` points. `found` is
+    /// given whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm; those of
     /// a row come from its first point to its last.
     pub(super) fn stripes(
         &self,
@@ -172,7 +172,7 @@ impl Ridges {
         if step < 0.0 { stripes.rev().for_each(tell) } else { stripes.for_each(tell) }
     }
 
-    /// Tells the mean height, mm, over a stretch of `length` mm across the beads from where its middle lies.
+    /// Gives the mean height, mm, over a stretch of `length` mm across the beads from where its middle lies.
     pub(super) fn means(&self, length: f64) -> impl Fn(f64) -> f32 {
         const THIRD: f32 = 1.0 / 3.0;
         let per_mm = 1.0 / self.half_width;
@@ -233,7 +233,7 @@ fn between(a: f64, b: f64, scale: f64) -> [Option<Stripe>; 2] {
 /// Bounds of the height over `reach` to both sides of the middle; `None` where more than two beads meet, or none does.
 fn extremes(crests: &[f64], reach: f64) -> Option<(f64, f64)> {
     let (first, last) = (crests.first()?, crests.last()?);
-    // Beyond the outer crests one bead stands alone.
+    // Beyond the outer crests there is one bead alone.
     let alone = |distance: f64| 1.0 - distance.max(0.0).powi(2);
     let mut bounds = (alone(first + reach).min(alone(reach - last)), 1.0_f64);
     for pair in crests.windows(2) {

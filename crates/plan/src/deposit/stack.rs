@@ -4,8 +4,8 @@
 //! ground it meets: its top is max(ground, a + crown), and a is where the metal between top and ground is the metal fed.
 //! So a bead on a flat plate is the bead of [`stroke`](super::stroke), one between two others fills their valley, and
 //! one on the crest of a wall adds area over width (the equal areas of [`wall`](crate::bead::wall)). Where the ground
-//! falls away the bead hangs: its metal does not run down farther below its edge than a bead is high on average. Beyond that,
-//! nothing levels: neither remelting nor the flow along a bead is in the model.
+//! falls away, the bead overhangs: its metal does not run down farther below its edge than a bead is high on average. Beyond
+//! that, nothing levels: neither remelting nor the flow along a bead is in the model.
 
 use super::field::Grid;
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke, strokes};
@@ -28,14 +28,14 @@ const COARSER: f64 = 2.0;
 /// A piece may differ by this fraction from the metal that it is fed.
 const BALANCED: f64 = 1e-4;
 
-/// What stands on the plate.
+/// What is built on the plate.
 #[derive(Debug, Clone)]
 pub struct Stack {
     grid: Grid,
     settings: DepositSettings,
     /// Height of the metal, mm.
     top: Vec<f32>,
-    /// Height that the plan wants inside the rim, mm; not a number beside it.
+    /// Height that the plan wants inside the rim, mm; not a number elsewhere.
     wanted: Vec<f32>,
     swept: Vec<Swept>,
     pieces: u32,
@@ -55,7 +55,7 @@ struct Swept {
     piece: u32,
 }
 
-/// How far the metal stands above and below the plan, mm, inside the outlines less their rim.
+/// How far the metal rises above and falls below the plan, mm, inside the outlines less their rim.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Growth {
     /// The farthest above the plan.
@@ -86,7 +86,7 @@ impl Stack {
         &self.growth
     }
 
-    /// The state of all that stands, each place by the highest layer there; `None` before the first layer.
+    /// The state of all that is built, each place by the highest layer there; `None` before the first layer.
     pub fn built(&self) -> Option<Growth> {
         let columns = self.grid.columns.max(1);
         let all = self.wanted.chunks(columns).enumerate().map(|(row, wanted)| (row, 0..wanted.len()));
@@ -106,7 +106,7 @@ impl Stack {
     /// Lays the passes of a layer as they are welded.
     pub fn weld(&mut self, passes: &[Pass]) {
         for pass in passes {
-            // No sweep goes on from pass to pass.
+            // No sweep continues from pass to pass.
             self.pieces += 2;
             for piece in pieces(strokes(pass, &self.settings.nominal)) {
                 self.lay(&piece);
@@ -114,7 +114,7 @@ impl Stack {
         }
     }
 
-    /// Lays the passes of a layer and compares what stands with what is wanted there.
+    /// Lays the passes of a layer and compares what is built with what is wanted there.
     pub fn add(&mut self, layer: &Layer) {
         self.layer_height = Some(layer.height);
         let plate = *self.plate.get_or_insert(layer.z - layer.height);
@@ -133,7 +133,7 @@ impl Stack {
         self.growth.push(growth);
     }
 
-    /// What stands against what is wanted, on some stretches of rows.
+    /// What is built compared with what is wanted, on some stretches of rows.
     fn compared(&self, stretches: impl Iterator<Item = (usize, Range<usize>)>, layer_height: f64) -> Growth {
         let (mut points, mut near, mut sum) = (0_usize, 0_usize, 0.0);
         let mut growth = Growth::default();
@@ -195,7 +195,7 @@ impl Stack {
                 let swept = &mut self.swept[at];
                 let before = if self.pieces - swept.piece > 1 { 0.0 } else { f64::from(swept.part) };
                 let share = (added / whole).min(1.0);
-                // Of what the bead still has to bring here; a point swept to the end begins anew.
+                // Of what the bead still has to bring here; a point swept to the end begins again.
                 let (part, after) = if before + share < 1.0 {
                     (share / (1.0 - before), before + share)
                 } else {

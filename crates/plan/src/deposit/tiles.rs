@@ -1,10 +1,10 @@
 //! The quick way over a layer: squares of the grid, row after row of them, each judged as cheaply as it allows.
 //!
-//! A square without metal outside the outline is passed over. One inside it that parallel beads cross from side to side
+//! A square without metal outside the outline is skipped. One inside it that parallel beads cross from side to side
 //! is known from a line across it ([`Ridges`]). All others, at edges, ends and turns, are computed point by point
 //! ([`lay`]). So voids, overfill and metal outside are counted on the same points as by the reference
 //! ([`field`](super::field)), and differ only where single precision puts a height on the other side of a limit; only the
-//! mean, deviation and low area of ridges are taken along a line across them, and their least and
+//! mean, deviation and low area of ridges are computed along a line across them, and their least and
 //! greatest heights are the true ones, wherever the points lie.
 
 use super::field::{self, Band, Grid};
@@ -26,11 +26,11 @@ pub(super) struct Field<'a> {
     pub(super) grid: &'a Grid,
     pub(super) mask: &'a Mask,
     pub(super) nominal: &'a Nominal,
-    /// Whether ridges may be told from points.
+    /// Whether ridges may be judged as such instead of point by point.
     pub(super) ridges: bool,
 }
 
-/// A part of a layer that has been looked at.
+/// A part of a layer that has been examined.
 pub(super) enum Part<'a> {
     /// Computed point by point.
     Band(&'a Band<'a, f32>),
@@ -48,7 +48,7 @@ pub(super) struct Square {
 }
 
 impl Field<'_> {
-    /// Looks at a whole layer. Each row of squares has its own `R`, which takes in its parts from left to right; they come
+    /// Examines a whole layer. Each row of squares has its own `R`, which takes in its parts from left to right; they come
     /// back from the lowest to the highest, whatever the number of threads.
     pub(super) fn look<R: Send>(
         &self,
@@ -111,7 +111,7 @@ impl Field<'_> {
         columns.start / SIDE..columns.end.div_ceil(SIDE)
     }
 
-    /// The squares of a row as the outline leaves them.
+    /// The squares of a row as the outline determines them.
     fn cells<'f>(&self, rows: &Range<usize>) -> Vec<Cell<'f>> {
         let mut cells = vec![Cell::default(); self.grid.columns.div_ceil(SIDE)];
         // How many more rows are wholly inside from each square on.
@@ -137,7 +137,7 @@ impl Field<'_> {
 
     /// Notes what a piece does to a square.
     fn note<'f>(&self, cell: &mut Cell<'f>, frame: &'f Frame, at: usize, rows: &Range<usize>) {
-        // The square is taken as whole even at the end of the grid.
+        // The square is treated as whole even at the end of the grid.
         let middle = self.grid.place(at * SIDE, rows.start) + self.half() - self.grid.step / 2.0;
         let reach = self.half() * (frame.along.x.abs() + frame.along.y.abs());
         let d = middle - frame.from;
@@ -169,7 +169,7 @@ impl Field<'_> {
     }
 }
 
-/// What is known of a square before its points.
+/// What is known about a square before its points.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell<'f> {
     /// The first piece that reaches it.

@@ -29,8 +29,8 @@ pub fn fewest_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Option<f
 }
 
 /// Angles that may take the least time on such layers, radians, the likeliest first: those with few turns, and the
-/// fixed angle of the settings. Turns are not all: short lines cost less, and every path costs a start. An angle comes
-/// within 0..90° first and turned by 90° after it: where both layers are alike their lines are the same.
+/// fixed angle of the settings. Turns are not everything: short lines cost less, and every path costs a start. An angle comes
+/// within 0..90° first and turned by 90° after it: where both layers are alike, their lines are the same.
 pub fn candidates(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
     let few = few_turns(layers, settings);
     let fixed = (!few.is_empty()).then_some(settings.raster_angle);
@@ -73,7 +73,7 @@ fn few_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Curves {
     /// Angle, °, and number of turns (eqs 6–8): exact between its jumps, or for every degree where there are more edges than
-    /// can be told apart in a picture.
+    /// can be distinguished in a picture.
     pub turns: Vec<DVec2>,
     /// Angle, °, and length of the scan lines, mm.
     pub length: Vec<DVec2>,

@@ -64,7 +64,7 @@ fn core(innermost: &Region, settings: &FillSettings) -> Region {
 fn infill(core: &Region, settings: &FillSettings) -> Vec<Path> {
     let Some(near_surface) = settings.solid else { return zigzag(core, settings) };
     let solid = core.intersection(near_surface);
-    // Solid and sparse infill stay a stepover apart, so they do not lie on each other.
+    // Solid and sparse infill stay a stepover apart, so they do not overlap.
     let sparse = core.difference(&solid.offset(settings.stepover, Join::ROUND));
     let mut passes = zigzag(&solid, settings);
     passes.extend(zigzag_spaced(&sparse, settings, Spacing::AtMost(settings.stepover / settings.infill_density)));

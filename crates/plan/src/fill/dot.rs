@@ -1,4 +1,4 @@
-//! A dot for a small round island in which no bead has room.
+//! A dot for a small round island that has no room for a bead.
 
 use super::Path;
 use crate::pass::{Along, PassKind};
@@ -6,7 +6,7 @@ use crate::process::Dot;
 use glam::DVec2;
 use planar::Polygon;
 
-/// The outline of the island may lie this far beyond the edge of the dot, in radii: in the corners of a square it lies 0.25.
+/// The outline of the island may lie this far beyond the edge of the dot, in radii: at the corners of a square it is 0.25.
 const BEYOND: f64 = 0.35;
 /// A disc of this many radii must fit into the island.
 const ROOM: f64 = 0.6;

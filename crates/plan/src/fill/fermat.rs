@@ -1,8 +1,8 @@
 //! Connected Fermat spirals (Zhao et al. 2016, ACM Transactions on Graphics 35): contours become spirals that go in along
-//! every second contour and out along the others, so each begins and ends at its outer edge; pockets hang on one another
+//! every second contour and out along the others, so each begins and ends at its outer edge; pockets are attached to one another
 //! as in the tree of the contours, and the whole is one path.
 //!
-//! The paper ends a pocket wherever contours split; here it goes on into the largest part. Its smoothing of the finished
+//! The paper ends a pocket wherever contours split; here it continues into the largest part. Its smoothing of the finished
 //! curve is left out: contours and links are laid as they are.
 
 use super::ring_tree::{self, Join};

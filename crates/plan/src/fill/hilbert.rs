@@ -61,7 +61,7 @@ struct Walk {
 impl Walk {
     /// Walks through a square from its corner `at` to the other end of side `x`.
     fn square(&mut self, at: IVec2, x: IVec2, y: IVec2) {
-        // The cells of a square lie from one corner on along both sides.
+        // The cells of a square extend from one corner along both sides.
         let (a, b) = (at.min(at + x).min(at + y).min(at + x + y), at.max(at + x).max(at + y).max(at + x + y) - 1);
         if b.cmplt(self.low).any() || a.cmpgt(self.high).any() {
             // The curve leaves the box here.
@@ -94,7 +94,7 @@ struct End {
     along: f64,
 }
 
-/// The end to which another is linked (piece, whether its last point), and the way there.
+/// The end to which another is linked (piece, whether its last point), and the path to it.
 type Link = (usize, bool, Vec<DVec2>);
 
 /// Joins pieces of lines, whose ends lie on the boundary of a region, along it; between the two ends that a link joins
@@ -103,7 +103,7 @@ fn joined(pieces: Vec<Vec<DVec2>>, region: &Region, longest: f64) -> Vec<Vec<DVe
     let rings: Vec<&Ring> = region.rings().collect();
     let mut links = links(&pieces, &rings, longest);
     links.sort_by(|a, b| a.2.total_cmp(&b.2));
-    // What each end is linked to, with the way there.
+    // What each end is linked to, with the path to it.
     let mut linked: Vec<[Option<Link>; 2]> = vec![[None, None]; pieces.len()];
     let mut group: Vec<usize> = (0..pieces.len()).collect();
     for (from, to, length) in links {

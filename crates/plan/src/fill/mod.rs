@@ -62,7 +62,7 @@ pub const STRATEGIES: [&dyn Strategy; 12] = [
     &wall::Wall,
 ];
 
-/// The strategy of that name.
+/// The strategy with this name.
 pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
     STRATEGIES.into_iter().find(|s| s.name() == name)
 }
@@ -81,12 +81,12 @@ pub trait Strategy: Sync {
         layers.iter().map(|settings| self.fill(island, settings)).collect()
     }
 
-    /// After so many layers of the same shape most of the work is the same; `None` where each layer is one of its own.
+    /// After this many layers of the same shape most of the work is the same; `None` where every layer is different.
     fn period(&self) -> Option<usize> {
         None
     }
 
-    /// Settings with which the strategy lays a simpler fill, the better first, for islands where it cannot with those given.
+    /// Settings with which the strategy lays a simpler fill, the better first, for islands that it cannot fill with those given.
     fn simpler<'a>(&self, _settings: &FillSettings<'a>) -> Vec<FillSettings<'a>> {
         Vec::new()
     }
@@ -205,7 +205,7 @@ pub enum RasterSpacing {
     /// Exactly one stepover apart (Liu et al. 2022, eq 11).
     Exact,
     /// One line along each long edge that is parallel to the lines, the rest evenly between, so that no strip is left
-    /// beside an edge; `raster` treats this as `even`.
+    /// next to an edge; `raster` treats this as `even`.
     Fitted,
 }
 
@@ -230,7 +230,7 @@ pub struct FillSettings<'a> {
     pub perimeters_first: bool,
     /// Density of the infill of `compound` where it may be sparse: the fraction that is filled, 0 to 1.
     pub infill_density: f64,
-    /// Where a sparse infill is solid all the same: near tops and bottoms. `None` where all of it is solid.
+    /// Where a sparse infill is nevertheless solid: near tops and bottoms. `None` where all of it is solid.
     pub solid: Option<&'a Region>,
     /// How far beads may reach outside the island, mm.
     pub machining_allowance: f64,

@@ -1,9 +1,9 @@
 //! Cells that are nearly convex, each with a zigzag in its own direction, inside perimeters (Ding et al. 2014, The
 //! International Journal of Advanced Manufacturing Technology 73).
 //!
-//! The core is cut at its deepest notch, across the shortest way, until no cell has a notch deeper than a bead width: cutting
-//! at every notch (the paper's parts have straight sides) would leave slivers along curves. Beads lie along the greatest
-//! width of a cell, so that it takes the fewest. The paper joins the cells to one closed path; here each has its own arc
+//! The core is cut at its deepest notch, across the shortest distance, until no cell has a notch deeper than a bead width:
+//! cutting at every notch (the paper's parts have straight sides) would leave slivers along curves. Beads lie along the greatest
+//! width of a cell, so that it takes the fewest. The paper joins the cells into one closed path; here each has its own arc
 //! start, and they are counted.
 
 use super::compound::within_perimeters;
@@ -22,7 +22,7 @@ const SHALLOW: f64 = 1.0;
 const HAIR_MM: f64 = 1e-3;
 /// Cuts are longer than this, in stepovers: on a curve the nearest places lie on the curve itself.
 const SHORTEST_CUT: f64 = 0.5;
-/// Edges run along a direction if they lie this far off at most, rad.
+/// Edges run along a direction if they deviate by at most this much, rad.
 const PARALLEL: f64 = 0.01;
 /// Accuracy of the ends of cuts, in bead widths.
 const ACCURACY: f64 = 0.01;
@@ -59,7 +59,7 @@ fn cells(core: &Region, settings: &FillSettings) -> Vec<Polygon> {
     cells
 }
 
-/// A zigzag in the direction in which a cell takes the fewest lines; of several the one with most of the outline along it.
+/// A zigzag in the direction in which a cell takes the fewest lines; of several, the one with the most outline along it.
 fn lines_along(cell: Polygon, settings: &FillSettings) -> Vec<Path> {
     let hull = Ring::new(convex_hull(cell.outer.points()));
     let ways = hull.edges().chain(cell.outer.edges()).filter_map(|(a, b)| (b - a).try_normalize());

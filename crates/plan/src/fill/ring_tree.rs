@@ -1,7 +1,7 @@
-//! Rings parallel to the boundary, as a tree: each hangs on a ring one level further out, or across a gap that no ring
+//! Rings parallel to the boundary, as a tree: each is attached to a ring one level further out, or across a gap that no ring
 //! fills. Along it rings can be joined into one path.
 //!
-//! A *chain* is a run of rings one inside the other. All its rings are opened at one seam, side by side, and joined there
+//! A *chain* is a run of rings, each inside the one before. All its rings are opened at one seam, side by side, and joined there
 //! in one of two ways ([`Join`]). A chain on the side of a ring is a *detour*: it begins and ends beside that ring, which
 //! is opened there.
 
@@ -22,7 +22,7 @@ pub(super) enum Join {
     InAndOut,
 }
 
-/// Rings hang together up to this distance, in stepovers: one stepover where round joins are not cut short.
+/// Rings are connected up to this distance, in stepovers: one stepover where round joins are not cut short.
 const NEIGHBOUR: f64 = 1.3;
 /// Rings of one level face each other across a gap narrower than two stepovers.
 const ACROSS: f64 = 2.2;
@@ -33,16 +33,16 @@ const LONGEST_LINK: f64 = 1.7;
 /// Half the gap that the seam leaves in a ring, in stepovers: for links to the next ring, and to the next but one.
 const INWARDS_GAP: f64 = 0.55;
 const FERMAT_GAP: f64 = 1.0;
-/// Half the gap that a detour leaves in the ring beside it, in stepovers.
+/// Half the gap that a detour leaves in the ring next to it, in stepovers.
 const DETOUR_GAP: f64 = 0.5;
-/// Links are compared with the rings this far before and behind a seam, in stepovers.
+/// Links are compared with the rings this far before and after a seam, in stepovers.
 const BESIDE: f64 = 3.0;
-/// No gap takes more than this part of a ring.
+/// No gap takes more than this fraction of a ring.
 const LARGEST_GAP: f64 = 0.2;
 /// Seams tried for a chain, and whole paths tried for an island until one crosses nothing.
 const SEAMS: usize = 24;
 const TRIES: usize = 8;
-/// Where all of them cross, rings this much closer to each other are tried, and again, up to so many times.
+/// Where all of them cross, rings this much closer to each other are tried, and again, up to this many times.
 const CLOSER: f64 = 0.995;
 const CLOSER_TIMES: i32 = 6;
 /// The golden ratio spreads the seams of successive layers.
@@ -168,13 +168,13 @@ impl Loop {
     }
 }
 
-/// The rings of a part, and how they hang together.
+/// The rings of a part, and how they are connected.
 struct RingTree {
     loops: Vec<Loop>,
-    /// For every ring those that hang on it.
+    /// For every ring, those attached to it.
     hanging: Vec<Vec<Facing>>,
     roots: Vec<usize>,
-    /// Length of a ring with all that hang on it, mm.
+    /// Length of a ring with all those attached to it, mm.
     weight: Vec<f64>,
     stepover: f64,
 }
@@ -185,8 +185,8 @@ type Facing = (usize, Vec<[DVec2; 2]>);
 /// For every other ring the places that face each other, with their distance, mm.
 type Found = BTreeMap<usize, Vec<(f64, [DVec2; 2])>>;
 
-/// A ring that may be hung: whether it lies on the level of the other, when it was found, its number, and on which ring it
-/// hangs, with its place among the neighbours of that.
+/// A ring that may be attached: whether it lies on the level of the other, when it was found, its number, and to which ring
+/// it attaches, with its place among the neighbours of that ring.
 type Waiting = (bool, usize, usize, Option<(usize, usize)>);
 
 /// Rings joined at one seam.
@@ -265,8 +265,8 @@ impl RingTree {
         found.into_iter().map(|of| of.into_iter().map(|(other, places)| (other, sorted(places))).collect()).collect()
     }
 
-    /// Hangs every ring on a neighbour that hangs on a root: rings a level apart first. Returns the rings, each behind the
-    /// one on which it hangs.
+    /// Attaches every ring to a neighbour attached to a root: rings a level apart first. Returns the rings, each after the
+    /// one to which it is attached.
     fn hang(&mut self) -> Vec<usize> {
         let neighbours: Vec<Vec<Facing>> = self.neighbours();
         let mut known = vec![false; self.loops.len()];
@@ -298,7 +298,7 @@ impl RingTree {
         order
     }
 
-    /// Lets a ring run the same way as the one on which it hangs.
+    /// Makes a ring run the same way as the one to which it is attached.
     fn turn_alike(&mut self, on: usize, ring: usize, places: &[[DVec2; 2]]) {
         let way = |ring: &Loop, place: DVec2| ring.way(ring.nearest(place).0);
         let against = |[a, b]: &[DVec2; 2]| way(&self.loops[on], *a).dot(way(&self.loops[ring], *b)) < 0.0;
@@ -307,7 +307,7 @@ impl RingTree {
         }
     }
 
-    /// One path for every root. `turn` says how far around the outermost ring the first seam is looked for.
+    /// One path for every root. `turn` says how far around the outermost ring the first seam is searched for.
     fn paths(&mut self, join: Join, turn: f64) -> Vec<Vec<DVec2>> {
         let mut paths = Vec::new();
         // Roots are added where a ring finds no room for a detour.
@@ -351,7 +351,7 @@ impl RingTree {
         self.loops[ring].spared(gap * self.stepover)
     }
 
-    /// Whether the links at a seam cross each other or the rings beside it.
+    /// Whether the links at a seam cross each other or the rings next to it.
     fn crosses(&self, rings: &[(usize, f64)], join: Join) -> bool {
         let beside = |&(ring, seam): &(usize, f64)| {
             let (own, half) = (&self.loops[ring], self.half_gap(ring, join));
@@ -382,7 +382,7 @@ impl RingTree {
             lines.push(self.opened(ring, seam, half, next));
         }
         if first {
-            // The ends of the path close the gap of their rings but for half a stepover on each side of a link.
+            // The ends of the path close the gap of their rings except for half a stepover on each side of a link.
             let beside = DETOUR_GAP * d;
             let longer = [2.0 * halves[0] - beside, halves.get(1).map_or(0.0, |half| half - beside)];
             let ends = if join == Join::Inwards { 1 } else { 2 };
@@ -397,7 +397,7 @@ impl RingTree {
         }
     }
 
-    /// A ring from behind its seam to before it, with a detour through everything that hangs on it, but for the next ring
+    /// A ring from after its seam to before it, with a detour through everything attached to it, except the next ring
     /// of its chain.
     fn opened(&mut self, ring: usize, seam: f64, half: f64, next: Option<usize>) -> Vec<DVec2> {
         let cut = self.loops[ring].spared(DETOUR_GAP * self.stepover);
@@ -413,7 +413,7 @@ impl RingTree {
         }
         let own = &self.loops[ring];
         let length = own.length();
-        // From behind the seam on.
+        // From after the seam on.
         let ahead = |along: f64| (along - seam).rem_euclid(length);
         detours.sort_by(|a, b| ahead(a.0).total_cmp(&ahead(b.0)));
         let (mut line, mut from) = (Vec::new(), half);
@@ -426,7 +426,7 @@ impl RingTree {
         line
     }
 
-    /// Where a ring is left for another that hangs on it, and where that is entered; none where no place is free.
+    /// Where a ring is left for another attached to it, and where that one is entered; none where no place is free.
     fn beginning(&self, ring: usize, other: usize, places: &[[DVec2; 2]], cut: f64) -> Option<(f64, DVec2)> {
         let nearest = places.first().map(|[a, b]| a.distance(*b))?;
         let near = places.iter().take_while(|[a, b]| a.distance(*b) <= nearest + 0.2 * self.stepover).count();
@@ -441,7 +441,7 @@ impl RingTree {
 }
 
 /// Opened rings from outside in, joined into a path that goes in along the even ones (counted from 1) and out along the odd
-/// ones. It begins beside the seam of the first ring and ends there.
+/// ones. It begins next to the seam of the first ring and ends there.
 fn in_and_out(lines: Vec<Vec<DVec2>>) -> Vec<DVec2> {
     let (mut inwards, mut outwards) = (Vec::new(), Vec::new());
     for (k, line) in lines.into_iter().enumerate() {

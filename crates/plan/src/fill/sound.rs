@@ -1,6 +1,6 @@
 //! Whether the passes of an island can be welded at all: they stay inside it and do not cross each other.
 //!
-//! Every fill is checked, whatever strategy it is of, so that a fault of a strategy never reaches a robot.
+//! Every fill is checked, whatever strategy it is from, so that a fault of a strategy never reaches a robot.
 
 use super::Path;
 use glam::DVec2;
@@ -111,9 +111,9 @@ fn cut([p, q]: Piece, [r, s]: Piece) -> Option<f64> {
     (across != 0.0 && on(t) && on(w)).then_some(t)
 }
 
-/// Distance of the places at which a piece near the outline is looked at, mm.
+/// Distance between the places at which a piece near the outline is checked, mm.
 const SAMPLE_MM: f64 = 0.25;
-/// A piece between two edges that it crosses is looked at in this many places at least, and at most.
+/// A piece between two edges that it crosses is checked in at least, and at most, this many places.
 const LEAST_SAMPLES: f64 = 8.0;
 const MOST_SAMPLES: f64 = 4000.0;
 
@@ -161,7 +161,7 @@ fn pieces(lines: &[Vec<DVec2>]) -> (Vec<Number>, Vec<Piece>) {
 
 /// Where two pieces cross, or where their lines do at an end of a piece; neighbours on one line do not count.
 fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Crossing> {
-    /// Nearer to an end of a piece, in its lengths, is at its end.
+    /// A place nearer than this to an end of a piece, in its lengths, is at the end.
     const AT_END: f64 = 1e-6;
     if (j, l) > (i, k) {
         return crossing(lines, (j, l), (i, k));
@@ -183,11 +183,11 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
     (inner || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
 }
 
-/// The ways in which a line leaves a place on it, backwards and forwards.
+/// The directions in which a line leaves a place on it, backwards and forwards.
 struct Bend([DVec2; 2]);
 
 impl Bend {
-    /// Of the piece of a number; `None` at an end of the line.
+    /// Of the piece with a number; `None` at an end of the line.
     fn of(line: &[DVec2], piece: usize, place: DVec2) -> Option<Self> {
         let closed = line.first() == line.last();
         let points = line.len() - usize::from(closed);
@@ -204,7 +204,7 @@ impl Bend {
         let from_back = |way: DVec2| self.0[0].angle_to(way).rem_euclid(TAU);
         let on = from_back(self.0[1]);
         let [a, b] = other.0.map(from_back);
-        // Lines that leave in the same way lie on each other, and no side of them is known.
+        // Lines that leave in the same direction overlap, and neither side is known.
         let beside = |way: DVec2| {
             self.0.iter().all(|own| {
                 own.dot(way) < 0.0 || own.perp_dot(way).abs() > FINEST_MM.min(0.01 * way.length()) * own.length()

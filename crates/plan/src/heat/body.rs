@@ -2,8 +2,8 @@
 //!
 //! A voxel holds a volume of metal and the area that this covers seen from above; the two may be less than the voxel's
 //! own. So thin walls keep their metal and cross-section wherever they lie on the grid. What a face conducts follows from
-//! the geometric mean of the two cross-sections beside it, and what lies bare from their difference (finite volumes; Patankar,
-//! Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
+//! the geometric mean of the two cross-sections on either side, and what lies bare from their difference (finite volumes;
+//! Patankar, Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
 
 use super::grid::Grid;
 use super::sweep::{self, Lags};
@@ -71,7 +71,7 @@ pub struct Body {
     pub(super) levels: usize,
     supplied: f64,
     lost: f64,
-    /// Time that has passed, s, and what has not seen all of it.
+    /// Time that has passed, s, and what has not yet been advanced by all of it.
     pub(super) clock: f64,
     pub(super) lags: Lags,
     /// Number of voxels of each level that are bare across each axis.
@@ -150,17 +150,17 @@ impl Body {
         }
     }
 
-    /// Lets every place see all the time that has passed.
+    /// Advances every place by all the time that has passed.
     pub(super) fn settle(&mut self) {
         self.lost += sweep::settle(self);
     }
 
-    /// What lies around a voxel takes part in the next steps, and so sees all the time that has passed.
+    /// What lies around a voxel takes part in the next steps, and so is advanced by all the time that has passed.
     pub(super) fn wake(&mut self, voxel: usize) {
         sweep::wake(self, voxel);
     }
 
-    /// Computes anew what conducts and what lies bare, at these voxels and beside them.
+    /// Recomputes what conducts and what lies bare, at these voxels and next to them.
     pub(super) fn refresh(&mut self, voxels: &[usize]) {
         let strides = self.grid.strides();
         for &voxel in voxels {
@@ -191,7 +191,7 @@ impl Body {
         if axis == 2 { self.area[voxel] } else { self.metal[voxel] / self.grid.size(voxel)[axis] }
     }
 
-    /// Half of the way through a voxel's metal, over its conductivity, mm²·K/W.
+    /// Half of the distance through a voxel's metal, over its conductivity, mm²·K/W.
     fn resistance(&self, voxel: usize, axis: usize) -> f64 {
         let length = if axis == 2 { self.metal[voxel] / self.area[voxel] } else { self.grid.size(voxel)[axis] };
         length / 2.0 / self.stuff[self.grid.place(voxel)[2]].conductivity
@@ -226,7 +226,7 @@ impl Body {
         }
     }
 
-    /// Side area of a level as its voxels have it, mm².
+    /// Side area of a level according to its voxels, mm².
     pub(super) fn voxel_sides(&self, level: usize) -> f64 {
         let plane = self.grid.strides()[2];
         let of = |axis: usize| self.bare[axis][plane * level..plane * (level + 1)].iter().sum::<f64>();

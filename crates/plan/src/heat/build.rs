@@ -14,7 +14,7 @@ use std::ops::Range;
 /// Metal is laid in pieces of this length, in voxels.
 const CHUNK: f64 = 4.0;
 
-/// Levels hold as many layers as this height takes, in voxels.
+/// Levels hold as many layers as fit into this height, in voxels.
 const LEVEL: f64 = 0.5;
 
 /// Steps of waiting grow by this factor …
@@ -23,7 +23,7 @@ const GROWTH: f64 = 1.4;
 /// … from this one on, over the time in which heat crosses a voxel …
 const FIRST_STEP: f64 = 1.0;
 
-/// … to this one, or to this part of the wait so far: longer ones let too little heat turn the corner from wall to plate.
+/// … to this one, or to this fraction of the wait so far: longer ones let too little heat turn the corner from wall to plate.
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
@@ -33,13 +33,13 @@ const PATIENCE: f64 = 2.0;
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
 
-/// Lengths are equal to this, mm.
+/// Lengths are equal to within this, mm.
 const ROUNDING: f64 = 1e-6;
 
 /// No part is divided into more voxels: they take about 100 bytes each.
 pub const MOST_VOXELS: usize = 8_000_000;
 
-/// The longest wait for a pass, s: what has not cooled in it never will.
+/// The longest wait for a pass, s: what has not cooled by then never will.
 pub const LONGEST_WAIT: f64 = 36_000.0;
 
 /// Temperatures of a pass, °C; times in s.
@@ -61,7 +61,7 @@ impl PassHeat {
         self.along.iter().sum::<f64>() / self.along.len().max(1) as f64
     }
 
-    /// Mean temperature just ahead of the torch on a stretch of the pass (mm), where temperatures are told every `spacing`
+    /// Mean temperature just ahead of the torch on a stretch of the pass (mm), where temperatures are given every `spacing`
     /// (mm); °C.
     pub fn ahead(&self, stretch: Range<f64>, spacing: f64) -> f64 {
         let [first, last] = [stretch.start, stretch.end].map(|way| (way / spacing).round() as usize);
@@ -91,7 +91,7 @@ pub struct LayerHeat {
     pub cuts: Vec<DVec2>,
 }
 
-/// A limit of temperature is kept to this, K.
+/// A temperature limit is kept to within this, K.
 pub const NOISE: f64 = 1.0;
 
 impl LayerHeat {
@@ -118,10 +118,10 @@ pub struct Build {
     levels: Vec<usize>,
     /// Side area of the layers in every level, mm².
     sides: Vec<f64>,
-    /// Area that the present layer covers of each voxel, mm², and which those are.
+    /// Area of each voxel that the current layer covers, mm², and which voxels those are.
     covered: Vec<f64>,
     touched: Vec<usize>,
-    /// Time since the beginning, s, and the end of it that the body has not seen.
+    /// Time since the beginning, s, and the last part of it, by which the body has not been advanced yet.
     pub(super) now: f64,
     pub(super) pending: f64,
 }
@@ -166,7 +166,7 @@ impl Build {
     }
 
     /// Sets the longest steps of what lies far from the torch, over the time in which heat crosses a voxel. With 0 every step is
-    /// as short as beside the torch: slower, and what tests compare with.
+    /// as short as near the torch: slower, and what tests compare with.
     #[doc(hidden)]
     pub fn be_patient(&mut self, steps: f64) {
         self.body.lags.patience = steps * self.crossing();
@@ -205,7 +205,7 @@ impl Build {
         LayerHeat { end: self.now, ..heat }
     }
 
-    /// Begins a layer: the wait that it needs for other reasons than heat.
+    /// Begins a layer: the wait that it needs for reasons other than heat.
     pub(super) fn begin(&mut self, layer: &Layer) -> LayerHeat {
         self.process = self.nominal.at_layer(layer.index);
         let pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten();
@@ -235,13 +235,13 @@ impl Build {
         self.touched.drain(..).for_each(|voxel| self.covered[voxel] = 0.0);
     }
 
-    /// Time passes; the body sees it before its temperatures are next asked for.
+    /// Time passes; the body is advanced by it before its temperatures are next asked for.
     pub(super) fn spend(&mut self, seconds: f64) {
         self.now += seconds;
         self.pending += seconds;
     }
 
-    /// Lets the body see the time that has passed; all of it where a temperature is to be read, at a place of a layer.
+    /// Advances the body by the time that has passed; by all of it where a temperature is to be read, at a place of a layer.
     pub(super) fn catch_up(&mut self, at: Option<(usize, DVec2)>) {
         let (mut step, whole) = (FIRST_STEP * self.crossing(), self.pending);
         let place = at.map(|(layer, at)| self.body.grid().column(at.x, at.y, self.level(layer)));
@@ -256,7 +256,7 @@ impl Build {
         }
     }
 
-    /// The longest step after so long a wait, s.
+    /// The longest step after a wait this long, s.
     fn longest_step(&self, waited: f64) -> f64 {
         (LAST_STEP * self.crossing()).max(PART_OF_WAIT * waited)
     }
@@ -272,7 +272,7 @@ impl Build {
     }
 
     /// Temperature of the metal under a place of a layer, °C: the mean of the uppermost voxels within a bead's width. What
-    /// lies more than a level deeper, such as the plate beside a wall, does not count.
+    /// lies more than a level deeper, such as the plate next to a wall, does not count.
     pub(super) fn surface(&self, layer: usize, at: DVec2) -> f64 {
         let (level, reach) = (self.level(layer), 0.35 * self.settings.bead_width);
         let (grid, body) = (self.body.grid(), &self.body);
@@ -329,7 +329,7 @@ impl Build {
         for (a, b, pace) in pieces() {
             let (whole, mut done) = (a.distance(b), 0.0);
             while done < whole {
-                // A short rest is laid with the chunk before it.
+                // A short remainder is laid with the chunk before it.
                 let length = if left + chunk.length < 1.5 * spacing { f64::INFINITY } else { spacing };
                 let part = (length - chunk.length).min(whole - done);
                 let [from, to] = [done, done + part].map(|along| a.lerp(b, along / whole));
@@ -384,7 +384,7 @@ impl Build {
         }
     }
 
-    /// Lays and heats what a chunk holds, and lets its time pass; the temperature just ahead of its end, °C.
+    /// Lays and heats what a chunk holds, and lets its time pass; returns the temperature just ahead of its end, °C.
     fn finish(&mut self, layer: usize, chunk: &mut Chunk, end: DVec2) -> f64 {
         let Chunk { mut metal, joules, seconds, .. } = std::mem::take(chunk);
         if metal.is_empty() {
@@ -422,7 +422,7 @@ fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (G
     let mut heights: Vec<f64> = (0..=plate_levels).map(depth).collect();
     let (mut levels, mut from) = (Vec::with_capacity(layers.len()), bottom);
     for (i, &(z, _)) in layers.iter().enumerate() {
-        // Parts that are built one after another have layers of one height more than once.
+        // Parts that are built one after another have layers of the same height more than once.
         if z <= from && i > 0 {
             levels.push(levels[i - 1]);
             continue;

@@ -9,7 +9,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid with these edges, each list ascending and of two or more.
+    /// A grid with these edges, each list ascending and with two or more.
     pub fn new(edges: [Vec<f64>; 3]) -> Self {
         Self { edges }
     }
@@ -83,7 +83,7 @@ pub(super) fn graded(low: f64, high: f64, margin: f64, size: f64) -> Vec<f64> {
     let mut outer = Vec::new();
     let (mut reach, mut step) = (0.0, size);
     while margin - reach > 1e-6 {
-        // What would be left is no voxel of its own.
+        // What would be left is not a voxel of its own.
         reach = if margin - reach < 1.5 * step { margin } else { reach + step };
         outer.push(reach);
         step *= GROWTH;

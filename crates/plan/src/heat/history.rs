@@ -12,7 +12,7 @@ use planar::Bounds;
 pub struct History {
     /// The layers in order.
     pub layers: Vec<LayerHeat>,
-    /// Distance of the temperatures along a pass, mm.
+    /// Distance between the temperatures along a pass, mm.
     pub spacing: f64,
     /// Time of the build, s.
     pub seconds: f64,
@@ -63,7 +63,7 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
 }
 
 /// Builds all layers; within the limits of the settings if they have some, which changes waits, order and starts of the
-/// layers, and else with the waits that they have. `None` if there is nothing to build.
+/// layers, and otherwise with the waits that they have. `None` if there is nothing to build.
 ///
 /// # Errors
 /// [`Cancelled`].

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// Places on a closed pass at which it may begin instead.
 const STARTS: usize = 16;
 
-/// A pass that begins so close to the end of the last one goes on with its bead, mm.
+/// A pass that begins this close to the end of the last one continues its bead, mm.
 const GOES_ON_MM: f64 = 0.5;
 
 /// The first wait that is tried, s, and by how much the next ones are longer while the metal is too hot after them.
@@ -27,7 +27,7 @@ impl Build {
     /// Builds a layer within the limits of `[interpass]`: sets the waits of its passes and, where that saves waiting, their
     /// order and starts. Without limits the same as [`Self::layer`].
     pub fn layer_within_limits(&mut self, layer: &mut Layer) -> LayerHeat {
-        // A helix cannot wait on its way.
+        // A helix cannot wait along the way.
         let Some(limits) = self.limits().filter(|_| !layer.lit.is_turn()) else {
             return self.layer(layer);
         };
@@ -52,9 +52,9 @@ impl Build {
         LayerHeat { end: self.seconds(), ..heat }
     }
 
-    /// The queue whose first pass comes next: that of the present island while its metal is cool enough, or where a pass goes
-    /// on from the `end` of the last one; then the first one in the planned order that is cool, then the one that waits least.
-    /// Its pass begins where it is coolest if it must wait.
+    /// The queue whose first pass comes next: that of the current island while its metal is cool enough, or where a pass
+    /// continues from the `end` of the last one; then the first one in the planned order that is cool, then the one that waits
+    /// least. Its pass begins where it is coolest if it must wait.
     fn next(
         &self,
         layer: usize,
@@ -86,7 +86,7 @@ impl Build {
         queue
     }
 
-    /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if that holds all along passes; returns
+    /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if that holds along passes; returns
     /// the rest, which begins on the end of the bead. Both are long enough to be welded.
     fn cut_where_hot(&self, layer: usize, pass: &mut Pass, limits: &Interpass) -> Option<Pass> {
         if !limits.along {
@@ -112,7 +112,7 @@ impl Build {
     /// gets there; [`LONGEST_WAIT`] where it never cools so far.
     fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> f64 {
         let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
-        // What is as cool as this does not get too hot on the way.
+        // Metal as cool as this does not get too hot meanwhile.
         if self.surface(layer, at) <= limit.midpoint(ambient) {
             return 0.0;
         }
@@ -130,7 +130,7 @@ impl Build {
         wait
     }
 
-    /// Seconds from now until the torch stands at a start, a wait before it included.
+    /// Seconds from now until the torch is at a start, a wait before it included.
     fn until(&self, wait: f64, start: DVec3) -> f64 {
         let mut torch = self.torch.clone();
         let pause = torch.wait(wait).map_or(0.0, |pause| pause.moving + pause.seconds);
@@ -186,7 +186,7 @@ fn shortest(rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
         } else {
             long = guess;
         }
-        // What cools freely loses about this much a second, or more.
+        // Metal that cools freely loses about this much per second, or more.
         let next = (guess + over * guess / rise.max(1.0)).round();
         guess = if next > short && next < long && long.is_finite() {
             next

@@ -10,10 +10,10 @@
 //! | `grid` | where the voxels lie |
 //! | `body` | their metal: what it holds, conducts and leaves bare |
 //! | `sweep` | one step in time |
-//! | `build` | the torch goes, metal is laid and heated; temperatures of passes and layers |
+//! | `build` | the torch moves, metal is laid and heated; temperatures of passes and layers |
 //! | `history` | all layers of a plan, one after another |
 //! | `interpass` | waits, and the order of passes that saves waiting |
-//! | `walls` | thickness and width of layers by heat, fitted on measured walls |
+//! | `walls` | thickness and width of layers by heat, fitted to measured walls |
 
 mod body;
 mod build;
@@ -29,4 +29,4 @@ pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, NOISE, PassHeat};
 pub use grid::Grid;
 pub use history::{History, history, plate};
 pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
-pub use walls::{ByHeat, ForetoldWall, MeasuredWall, Wall, WallFitError, WallLaw};
+pub use walls::{ByHeat, MeasuredWall, PredictedWall, Wall, WallFitError, WallLaw};

@@ -5,7 +5,7 @@ use crate::process::Process;
 use planar::Bounds;
 use serde::{Deserialize, Serialize};
 
-/// Thermal values of the part, taken as constant. Means between room and interpass temperature serve best, since that is
+/// Thermal values of the part, assumed constant. Means between room and interpass temperature serve best, since that is
 /// where a part spends its time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,8 +69,8 @@ pub struct Interpass {
     /// true.
     #[serde(default = "yes")]
     pub reorder: bool,
-    /// Whether the limit holds all along a pass: where the metal ahead of the torch would be hotter, the pass ends, the torch
-    /// waits, and another arc start goes on; default false, and such passes are only reported.
+    /// Whether the limit also holds along a pass: where the metal ahead of the torch would be hotter, the pass ends, the torch
+    /// waits, and another arc start continues it; default false, and such passes are only reported.
     #[serde(default)]
     pub along: bool,
 }
@@ -95,7 +95,7 @@ impl Substrate {
         limits! {
             "substrate.thickness": self.thickness, 0.5, 500.0, "mm", "parts are built on plates";
             "substrate.margin": self.margin, 0.0, 2000.0, "mm", "the plate must fit on a table";
-            "substrate.contact": self.contact, 0.0, 1e5, "W/(m²·K)", "no cooling takes more";
+            "substrate.contact": self.contact, 0.0, 1e5, "W/(m²·K)", "no cooling removes more";
             "substrate.preheat": self.preheat.unwrap_or(20.0), -50.0, 1000.0, "°C", "plates are not heated further";
             "substrate.conductivity": self.conductivity.unwrap_or(40.0), 0.05, 500.0, "W/(m·K)", "copper has 400";
             "substrate.specific_heat": self.specific_heat.unwrap_or(500.0), 50.0, 5000.0, "J/(kg·K)", "metals have 130 to 1000";
@@ -108,9 +108,10 @@ impl HeatSection {
     /// The limits of its numbers.
     pub fn limits(&self) -> Vec<Limit> {
         limits! {
-            "heat.arc_efficiency": self.arc_efficiency, 0.05, 1.0, "(fraction of the power)", "no more heat than the arc has reaches the part";
+            "heat.arc_efficiency": self.arc_efficiency, 0.05, 1.0, "(fraction of the power)",
+            "the part receives no more heat than the arc has";
             "heat.ambient": self.ambient, -50.0, 100.0, "°C", "people work there";
-            "heat.convection": self.convection, 0.0, 1000.0, "W/(m²·K)", "only liquids take more";
+            "heat.convection": self.convection, 0.0, 1000.0, "W/(m²·K)", "only liquids remove more";
             "heat.emissivity": self.emissivity, 0.0, 1.0, "(fraction of a black body)", "no body radiates more than a black one";
             "heat.voxel": self.voxel.unwrap_or(5.0), 0.2, 100.0, "mm", "smaller ones take days, larger ones are coarser than most parts";
         }
@@ -121,13 +122,13 @@ impl Interpass {
     /// The limits of its numbers.
     pub fn limits(&self) -> Vec<Limit> {
         limits! {
-            "interpass.max_temperature": self.max_temperature, 30.0, 1500.0, "°C", "below 30 °C a part never gets in a warm shop";
+            "interpass.max_temperature": self.max_temperature, 30.0, 1500.0, "°C", "a part never gets below 30 °C in a warm shop";
             "interpass.min_temperature": self.min_temperature.unwrap_or(20.0), -50.0, 1000.0, "°C", "no steel is preheated further";
         }
     }
 }
 
-/// All that the heat model knows of a process.
+/// Everything that the heat model knows about a process.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatSettings {
     /// The part.
@@ -145,7 +146,7 @@ pub struct HeatSettings {
     /// Width of the nominal bead, mm.
     pub bead_width: f64,
     /// The box around the part seen from above, where voxels begin; `None` for that of the slices, which may lie a little
-    /// otherwise.
+    /// differently.
     pub over: Option<Bounds>,
 }
 

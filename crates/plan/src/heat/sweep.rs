@@ -1,6 +1,6 @@
 //! One step in time: implicit along x, y and z in turn (locally one-dimensional scheme; Yanenko, The Method of Fractional
 //! Steps, 1971). Each sweep solves the lines of one axis exactly, so it is stable for steps of any length, makes no new
-//! hottest or coldest place, and keeps the heat but for what the bare faces lose in it. Every step is made in two halves, the
+//! hottest or coldest place, and keeps the heat except for what the bare faces lose in it. Every step is made in two halves, the
 //! second in the opposite order, which cancels most of the error of splitting, and no temperature depends on how many steps there
 //! were before.
 
@@ -21,7 +21,7 @@ const WORTH_SHARING: usize = 16_000;
 /// efficiency already.
 const HOTTEST: f64 = 1800.0;
 
-/// So many voxels around the torch, sideways and below, take part in every step.
+/// This many voxels around the torch, sideways and below, take part in every step.
 const NEAR: usize = 5;
 
 /// Lines along x that are solved side by side.
@@ -34,14 +34,14 @@ const PART_OF_REST: f64 = 0.08;
 /// ago it was heated, the slower its temperatures change.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lag {
-    /// Time that it has not seen yet, s.
+    /// Time by which it has not been advanced yet, s.
     owed: f64,
     /// The body's clock when the torch was last near, s.
     heated: f64,
 }
 
 impl Lag {
-    /// The step to take when the body's clock has come to `now` after `seconds`; 0 where it is put off.
+    /// The step to take when the body's clock has reached `now` after `seconds`; 0 where it is put off.
     fn step(&mut self, seconds: f64, now: f64, patience: f64) -> f64 {
         self.owed += seconds;
         let longest = (PART_OF_REST * (now - self.heated)).min(patience);
@@ -63,13 +63,13 @@ pub(super) fn wake(body: &mut Body, voxel: usize) {
     }
 }
 
-/// What every level and tile is behind.
+/// How far every level and tile lags.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lags {
     pub(super) levels: Vec<Lag>,
     pub(super) tiles: Vec<Lag>,
-    /// The longest step, s: longer ones let too little heat turn the corner from wall to plate. 0 makes all take part in every
-    /// step.
+    /// The longest step, s: longer ones let too little heat turn the corner from wall to plate. 0 makes everything take part in
+    /// every step.
     pub(super) patience: f64,
 }
 
@@ -80,7 +80,7 @@ impl Lags {
     }
 }
 
-/// One step of `seconds`; gives the heat lost, J. Every sweep takes whole lines, so that none of them holds back the heat of
+/// One step of `seconds`; returns the heat lost, J. Every sweep takes whole lines, so that none of them holds back the heat of
 /// another, however long its step.
 pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
     body.clock += seconds;
@@ -90,7 +90,7 @@ pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
     both_ways(body, levels, tiles)
 }
 
-/// Lets all see the time that has passed; gives the heat lost, J.
+/// Advances everything by the time that has passed; returns the heat lost, J.
 pub(super) fn settle(body: &mut Body) -> f64 {
     let steps = |lags: &mut [Lag]| lags.iter_mut().map(|lag| std::mem::take(&mut lag.owed)).collect();
     let (levels, tiles): (Vec<f64>, Vec<f64>) = (steps(&mut body.lags.levels), steps(&mut body.lags.tiles));
@@ -139,7 +139,7 @@ impl Row<'_> {
     }
 }
 
-/// Heat stored a second and kelvin, W/K, `often` a second; an empty voxel stores something, so that it keeps its own
+/// Heat stored per second and kelvin, W/K, `often` per second; an empty voxel stores something, so that it keeps its own
 /// temperature.
 fn stored(capacity: f64, often: f64) -> f64 {
     if capacity > 0.0 { capacity * often } else { 1.0 }
@@ -221,7 +221,7 @@ struct Scratch {
     ratios: Vec<[f64; LANES]>,
 }
 
-/// Solves the lines of a few rows side by side, since each waits for itself; gives the heat lost, J.
+/// Solves the lines of a few rows side by side, since each waits for itself; returns the heat lost, J.
 fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -> f64 {
     let (count, length) = (rows.len().min(LANES), rows.first().map_or(0, |row| row.theta.len()));
     let Scratch { leaks, ratios } = scratch;
@@ -259,13 +259,13 @@ fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -
     rows.iter().zip(leaks.chunks(length)).map(|(row, leaks)| row.lost(leaks, seconds)).sum()
 }
 
-/// Solves the lines that cross rows lying one behind the other; gives the heat lost, J.
+/// Solves the lines that cross rows lying one behind the other; returns the heat lost, J.
 fn between(rows: &mut [Row<'_>], air: &Air, seconds: f64) -> f64 {
     let width = rows.first().map_or(0, |row| row.theta.len());
     let mut leaks = vec![0.0; rows.len() * width];
     let mut ratios = vec![0.0; rows.len() * width];
     let often = 1.0 / seconds;
-    // Of the row before the first.
+    // For the row before the first.
     let none = vec![0.0; width];
     for n in 0..rows.len() {
         let (done, rest) = rows.split_at_mut(n);

@@ -1,8 +1,8 @@
-//! Beads by the heat of the metal below: fitted on measured walls, and used to foretell others.
+//! Beads by the heat of the metal below: fitted to measured walls, and used to predict others.
 //!
-//! Of the same program, a wall that is left to cool between layers grows higher and thinner. The thickness and the width of a
-//! layer are taken to be linear in the temperature of the metal just ahead of the torch:
-//! `layer = a + b · T`, `width = c + d · T`, fitted by least squares on whole walls.
+//! With the same program, a wall that is left to cool between layers grows higher and thinner. The thickness and the width of a
+//! layer are assumed to be linear in the temperature of the metal just ahead of the torch:
+//! `layer = a + b · T`, `width = c + d · T`, fitted by least squares to whole walls.
 
 use super::build::Build;
 use super::settings::HeatSettings;
@@ -13,7 +13,7 @@ use crate::weld::WeldSettings;
 use glam::{DVec2, dvec2};
 use planar::{Bounds, Polygon, Ring};
 
-/// A wall of one bead a layer, welded to and fro.
+/// A wall of one bead per layer, welded back and forth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
     /// Length, mm.
@@ -53,9 +53,9 @@ pub struct WallLaw {
     pub width: ByHeat,
 }
 
-/// A wall as foretold.
+/// A predicted wall.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct ForetoldWall {
+pub struct PredictedWall {
     /// Mean temperature of the metal ahead of the torch over all layers, °C.
     pub temperature: f64,
     /// Height, mm.
@@ -114,18 +114,18 @@ impl WallLaw {
         Ok(Self { layer: fit(&layer)?, width: fit(&|w| w.width)? })
     }
 
-    /// The law for a profile whose bead has this width (mm): it holds at the temperature that gives it. `None` if no
+    /// The law for a profile whose bead has this width (mm): it holds at the temperature that gives that width. `None` if no
     /// temperature of solid metal does.
     pub fn by_heat(&self, width: f64) -> Option<BeadByHeat> {
-        /// Coldest and hottest metal that is welded on, °C.
+        /// Coldest and hottest metal that is welded onto, °C.
         const SOLID: (f64, f64) = (-50.0, 1500.0);
         let temperature = (width - self.width.cold) / self.width.slope;
         let law = BeadByHeat { temperature, width: self.width.slope, rise: self.layer.slope };
         (SOLID.0..=SOLID.1).contains(&temperature).then_some(law)
     }
 
-    /// Foretells a wall. Its layers depend on its temperature and the other way round, so both are found in turns.
-    pub fn foretell(&self, wall: &Wall, settings: &HeatSettings, weld: &WeldSettings) -> ForetoldWall {
+    /// Predicts a wall. Its layers depend on its temperature and vice versa, so both are found in turn.
+    pub fn predict(&self, wall: &Wall, settings: &HeatSettings, weld: &WeldSettings) -> PredictedWall {
         /// Turns; each brings the temperature closer by a factor of ten or more.
         const TURNS: usize = 3;
         let mut mean = 300.0;
@@ -134,7 +134,7 @@ impl WallLaw {
             mean = temperature(wall, layer, width, settings, weld);
         }
         let [layer, width] = [self.layer, self.width].map(|law| law.at(mean).max(0.1));
-        ForetoldWall { temperature: mean, height: layer * wall.layers as f64, width }
+        PredictedWall { temperature: mean, height: layer * wall.layers as f64, width }
     }
 }
 

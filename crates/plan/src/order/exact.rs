@@ -26,7 +26,7 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     found.map(|(_, tour)| tour).unwrap_or_default()
 }
 
-/// The shortest way through all stops, given the length of the way in and of the way out.
+/// The shortest path through all stops, given the length of the path in and of the path out.
 fn shortest(
     gates: &[Vec<Gate>],
     way_in: impl Fn(&Gate) -> Option<f64>,

@@ -51,7 +51,8 @@ struct Search<'a> {
     tour: Vec<Visit>,
     /// Place of each stop on the tour.
     place: Vec<usize>,
-    /// The stops that lie nearest to each, all of them where there are few, with a distance that their gates have at least.
+    /// The stops that lie nearest to each, all of them where there are few, with a lower bound of the distance between their
+    /// gates.
     near: Vec<Vec<(f64, usize)>>,
     all_reversible: bool,
 }
@@ -82,7 +83,7 @@ impl<'a> Search<'a> {
         neighbours(&self.tour, i, self.ends).1
     }
 
-    /// The gate of a stop with the shortest way from a point, through the stop, to another point.
+    /// The gate of a stop with the shortest path from a point, through the stop, to another point.
     fn best_gate(&self, stop: usize, from: Option<DVec2>, to: Option<DVec2>) -> Gate {
         let mut best = (f64::INFINITY, self.gates[stop][0]);
         for gate in &self.gates[stop] {
@@ -128,7 +129,7 @@ impl<'a> Search<'a> {
         let longest = gap(self.before(a), Some(self.tour[a].enter)).max(gap(Some(self.tour[a].leave), self.after(a)));
         for k in 0..self.near[stop].len() {
             let (distance, other) = self.near[stop][k];
-            // A new way gains only if it is shorter than the one it replaces at one of its ends.
+            // A new travel gains only if it is shorter than the one it replaces at one of its ends.
             if distance >= longest {
                 break;
             }
@@ -224,7 +225,7 @@ impl<'a> Search<'a> {
                 let previous = if self.follows(j, to) { before } else { self.before(to) };
                 (previous, Some(self.tour[to].enter))
             };
-            // Most stops lie too far off, whichever gate is taken.
+            // Most stops lie too far off, whichever gate is used.
             let least = if i == j { self.circles[self.tour[i].stop].least_way(from, into) } else { 0.0 };
             if freed - (least - gap(from, into)) <= LEAST_GAIN {
                 continue;
@@ -291,7 +292,7 @@ impl<'a> Search<'a> {
         while all().fold(false, |gained, (a, b, c)| gained | self.exchange(a, b, c, &mut kept)) {}
     }
 
-    /// Exchanges the stretches a..b and b..c of a tour that is kept if that does not shorten it, and tells whether it did.
+    /// Exchanges the stretches a..b and b..c of a tour that is kept if that does not shorten it, and returns whether it did.
     fn exchange(&mut self, a: usize, b: usize, c: usize, kept: &mut (Vec<Visit>, Vec<usize>)) -> bool {
         let old = self.cost_of_kick(a, b, c);
         self.tour[a..c].rotate_left(b - a);
@@ -311,7 +312,7 @@ impl<'a> Search<'a> {
         shorter
     }
 
-    /// Length of the ways at the three ends of the stretches a..b and b..c.
+    /// Length of the travels at the three ends of the stretches a..b and b..c.
     fn cost_of_kick(&self, a: usize, b: usize, c: usize) -> f64 {
         let into = |i: usize| gap(self.before(i), Some(self.tour[i].enter));
         let out = gap(Some(self.tour[c - 1].leave), self.after(c - 1));
@@ -320,7 +321,7 @@ impl<'a> Search<'a> {
         into(a) + into(b) + if whole { 0.0 } else { out }
     }
 
-    /// The best gates for the order as it stands, by dynamic programming; those of a closed tour in two halves.
+    /// The best gates for the order as it is, by dynamic programming; those of a closed tour in two halves.
     fn choose_gates(&mut self) {
         let n = self.tour.len();
         if n < 2 {
@@ -385,12 +386,12 @@ impl<'a> Search<'a> {
     }
 }
 
-/// No way through a stop that is left where it is entered is shorter than the straight one past it, mm.
+/// No path through a stop that is left where it is entered is shorter than the straight one past it, mm.
 fn straight(before: Option<DVec2>, after: Option<DVec2>, visit: &Visit) -> f64 {
     if visit.enter == visit.leave { gap(before, after) } else { 0.0 }
 }
 
-/// For each of a few stops all others, with a distance that their gates have at least.
+/// For each of a few stops all others, with a lower bound of the distance between their gates.
 fn all_near(circles: &[Circle]) -> Vec<Vec<(f64, usize)>> {
     let of = |s: usize| {
         let others = (0..circles.len()).filter(|&other| other != s);
@@ -403,9 +404,9 @@ fn all_near(circles: &[Circle]) -> Vec<Vec<(f64, usize)>> {
 
 /// For each stop the stops whose gates lie nearest to its own, with the distance.
 fn near(stops: &[Stop]) -> Vec<Vec<(f64, usize)>> {
-    /// The gates of the stop itself come first; at most this many gates around each are looked at.
+    /// The gates of the stop itself come first; at most this many gates around each are examined.
     const MOST_LOOKED_AT: usize = 64;
-    /// Gates of a ring lie close together: about so many of them, all around it, find its neighbours.
+    /// Gates of a ring lie close together: about this many of them, all around it, find its neighbours.
     const ASKED: usize = 16;
     let points = |s: usize| stops[s].gates().map(|g| [g.enter.x, g.enter.y]);
     let all = (0..stops.len()).flat_map(|s| points(s).map(move |p| GeomWithData::new(p, s)));

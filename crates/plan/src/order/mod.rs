@@ -12,7 +12,7 @@
 //! | [`ant_colony`] | the ant colony of Han et al. 2018 (2.2) |
 //! | [`local_search`] | 2-opt, Or-opt and start points together; the default |
 //! | [`exact`] | the optimum by dynamic programming, for few stops |
-//! | `seams` | starts of closed passes off those of the layers below |
+//! | `seams` | starts of closed passes moved off those of the layers below |
 //! | `direction` | passes reversed on every second layer |
 
 pub mod ant_colony;
@@ -123,7 +123,7 @@ impl OrderSettings {
     }
 }
 
-/// Puts the passes of a layer in order. `torch` is where the torch stands before and after (`None`: the origin).
+/// Puts the passes of a layer in order. `torch` is where the torch is before and after (`None`: the origin).
 pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Path> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
     direction::settle_open(&mut islands, settings);
@@ -142,7 +142,7 @@ pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Optio
     ordered
 }
 
-/// What the layers of a part know of those below: the order of passes that other layers have too, so that what begins at the
+/// What the layers of a part know about those below: the order of passes that other layers have too, so that what begins at the
 /// same place is not searched again, and where they begin.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
@@ -163,7 +163,7 @@ struct Known {
 const REMEMBERED: usize = 6;
 
 impl Memory {
-    /// [`order`], with starts of closed passes off those of the layers below; `shared` tells that other layers have the same
+    /// [`order`], with starts of closed passes moved off those of the layers below; `shared` says that other layers have the same
     /// passes.
     pub fn order(
         &mut self,
@@ -265,7 +265,7 @@ fn vertex_at(pass: &mut Path, point: DVec2) -> usize {
 /// A start nearer to a vertex than this is that vertex, mm.
 const SAME_POINT_MM: f64 = 1e-3;
 
-/// Where the torch stands after a pass.
+/// Where the torch is after a pass.
 fn last_point(pass: &Path) -> Option<DVec2> {
     if pass.closed { pass.points.first().copied() } else { pass.points.last().copied() }
 }

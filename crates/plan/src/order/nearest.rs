@@ -80,7 +80,7 @@ fn meeting(stop: &Stop, middle: DVec2, before: DVec2) -> Gate {
 }
 
 /// Walks from gate to nearest gate until no stop is left. Stops whose circle lies farther off than the nearest gate so far
-/// are passed over.
+/// are skipped.
 fn walk(
     left: &mut Vec<usize>,
     mut at: Option<DVec2>,

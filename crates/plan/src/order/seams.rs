@@ -1,4 +1,4 @@
-//! Closed passes begin beside the starts of the layers below, not above them, where humps would grow into a tower.
+//! Closed passes begin next to the starts of the layers below, not above them, where humps would grow into a tower.
 
 use super::{OrderSettings, Seam, begin_at};
 use crate::fill::Path;
@@ -22,8 +22,8 @@ pub(super) struct Seams(VecDeque<Starts>);
 type Starts = FxHashMap<IVec2, Vec<DVec2>>;
 
 impl Seams {
-    /// Moves the starts of closed passes the shortest way off those of the layers below, unless seams are to be aligned, and
-    /// remembers them for the layers above. A pass without such a place begins where it did.
+    /// Moves the starts of closed passes by the shortest distance off those of the layers below, unless seams are to be aligned,
+    /// and remembers them for the layers above. A pass without such a place begins where it did.
     pub(super) fn settle(&mut self, passes: Vec<Path>, settings: &OrderSettings) -> Vec<Path> {
         if settings.seam == Seam::Aligned || settings.bead_width <= 0.0 {
             return passes;
@@ -45,7 +45,7 @@ impl Seams {
         passes
     }
 
-    /// Where a closed pass begins better; `None` where it begins well, or nowhere better.
+    /// A better place for a closed pass to begin; `None` where it begins well, or no place is better.
     fn free_place(&self, pass: &Path, width: f64) -> Option<DVec2> {
         let start = *pass.points.first().filter(|_| pass.closed)?;
         if self.is_free(start, APART * width) {

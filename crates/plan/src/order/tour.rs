@@ -114,7 +114,7 @@ impl Stop {
         matches!(self, Self::Ring { .. } | Self::Line { reversible: true, .. })
     }
 
-    /// The gate with the shortest way from a point, through the stop, to another point.
+    /// The gate with the shortest path from a point, through the stop, to another point.
     pub fn best_gate(&self, from: Option<DVec2>, to: Option<DVec2>) -> Gate {
         let way = |gate: &Gate| gap(from, Some(gate.enter)) + gap(Some(gate.leave), to);
         self.gates().min_by(|a, b| way(a).total_cmp(&way(b))).unwrap_or(Gate::at(DVec2::ZERO))
@@ -134,7 +134,7 @@ impl Stop {
     }
 }
 
-/// A circle around the gates of a stop, and around all that lies between them.
+/// A circle around the gates of a stop, and around everything between them.
 pub(super) struct Circle {
     middle: DVec2,
     radius: f64,
@@ -145,22 +145,22 @@ impl Circle {
         let path: &[DVec2] = if let Stop::Ring { path, .. } = stop { path } else { &[] };
         let places = || stop.gates().flat_map(|gate| [gate.enter, gate.leave]).chain(path.iter().copied());
         let middle = Bounds::of(places()).map(|bounds| bounds.center()).unwrap_or_default();
-        // Greater by what rounding may take away.
+        // Larger by what rounding may take away.
         let radius = places().map(|p| p.distance(middle)).fold(0.0, f64::max) + 1e-9 * (1.0 + middle.length());
         Self { middle, radius }
     }
 
-    /// Any gate lies at least as far from a point, mm.
+    /// Any gate lies at least this far from a point, mm.
     pub(super) fn least_gap(&self, from: Option<DVec2>) -> f64 {
         (gap(from, Some(self.middle)) - self.radius).max(0.0)
     }
 
-    /// Any gates of two stops lie at least as far from each other, mm.
+    /// Any gates of two stops lie at least this far from each other, mm.
     pub(super) fn least_distance(&self, other: &Self) -> f64 {
         (self.middle.distance(other.middle) - self.radius - other.radius).max(0.0)
     }
 
-    /// A way through any gate is at least as long, mm.
+    /// A path through any gate is at least this long, mm.
     pub(super) fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
         self.least_gap(from) + self.least_gap(to)
     }
@@ -191,7 +191,7 @@ pub fn nearest_on(a: DVec2, b: DVec2, point: DVec2) -> DVec2 {
     a.lerp(b, t.clamp(0.0, 1.0))
 }
 
-/// The point of the edge from `a` to `b` through which the way from `from` to `to` is shortest: like light at a mirror.
+/// The point of the edge from `a` to `b` through which the path from `from` to `to` is shortest: like light at a mirror.
 fn turning_point(a: DVec2, b: DVec2, from: DVec2, to: DVec2) -> DVec2 {
     let length = a.distance(b);
     if length == 0.0 {

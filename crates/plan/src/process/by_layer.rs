@@ -23,7 +23,7 @@ pub struct LayerProcess {
 }
 
 impl Process {
-    /// The process as it is in the layer with an index: the first row that names it holds.
+    /// The process in the layer with this index: the first row that includes it applies.
     pub fn at_layer(&self, index: usize) -> Self {
         let mut process = self.clone();
         if let Some(row) = self.layers.iter().find(|row| (row.from..=row.to).contains(&(index + 1))) {

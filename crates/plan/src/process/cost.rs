@@ -3,21 +3,21 @@
 use crate::limit::section;
 
 section! {
-    /// Prices, for the cost in the totals; every key has a default, and with the defaults no cost is told.
+    /// Prices, for the cost in the totals; every key has a default, and with the defaults no cost is given.
     Cost "cost" {
         /// Currency, such as `EUR`, which is also the default.
         currency: String = "EUR".to_owned();
         /// An hour of the cell with its people, in the currency; default 0.
-        hour: f64 = 0.0, 0.0, 1e6, "a hour", "no cell costs more";
+        hour: f64 = 0.0, 0.0, 1e6, "per hour", "no cell costs more";
         /// A kilogram of wire, in the currency; default 0.
-        wire_kg: f64 = 0.0, 0.0, 1e6, "a kg", "even gold wire costs less";
+        wire_kg: f64 = 0.0, 0.0, 1e6, "per kg", "even gold wire costs less";
         /// A cubic metre of gas, in the currency; default 0.
-        gas_m3: f64 = 0.0, 0.0, 1e5, "a m³", "no shielding gas costs more";
+        gas_m3: f64 = 0.0, 0.0, 1e5, "per m³", "no shielding gas costs more";
     }
 }
 
 impl Cost {
-    /// What so many hours, kilograms of wire and cubic metres of gas cost; `None` without prices.
+    /// What this many hours, kilograms of wire and cubic metres of gas cost; `None` without prices.
     pub fn of(&self, hours: f64, wire_kg: f64, gas_m3: f64) -> Option<f64> {
         let known = self.hour > 0.0 || self.wire_kg > 0.0 || self.gas_m3 > 0.0;
         known.then_some(hours * self.hour + wire_kg * self.wire_kg + gas_m3 * self.gas_m3)

@@ -78,7 +78,7 @@ pub struct Process {
     /// Other speeds for some layers; default none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layers: Vec<LayerProcess>,
-    /// Speed and wire feed of the present layer as a multiple of the nominal ones.
+    /// Speed and wire feed of the current layer as a multiple of the nominal ones.
     #[serde(skip, default = "nominal")]
     rate: f64,
 }
@@ -129,7 +129,7 @@ impl Process {
         }
     }
 
-    /// The nominal wire feed of the present layer, as a multiple of that of the process.
+    /// The nominal wire feed of the current layer, as a multiple of that of the process.
     pub fn rate(&self) -> f64 {
         self.rate
     }

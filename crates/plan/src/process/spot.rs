@@ -1,8 +1,8 @@
-//! The section `[spot]`: a dot, welded with the torch standing, for islands in which a bead has no room.
+//! The section `[spot]`: a dot, welded with the torch standing still, for islands with no room for a bead.
 //!
 //! The metal of a dot is that of the bead in the time for which the arc burns. It is a dome, half an ellipsoid of height h
 //! and radius a: V = 2/3 π a² h. A dot that is welded longer holds more metal at the same height, so its diameter goes
-//! with the root of the time.
+//! with the square root of the time.
 
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
@@ -14,9 +14,9 @@ use std::ops::RangeInclusive;
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Spot {
-    /// For how long the arc burned, s, without the time that it takes to start.
+    /// How long the arc burned, s, without the time that it takes to start.
     pub time: f64,
-    /// How high the dot stands, mm.
+    /// How high the dot is, mm.
     pub height: f64,
 }
 
@@ -29,7 +29,7 @@ impl Spot {
         }
     }
 
-    /// The dot of a process that lays `rate` mm³ of metal a second.
+    /// The dot of a process that lays `rate` mm³ of metal per second.
     pub fn dot(&self, rate: f64) -> Dot {
         let metal = rate * self.time;
         Dot { time: self.time, metal, diameter: 2.0 * (1.5 * metal / (PI * self.height)).sqrt() }
@@ -39,7 +39,7 @@ impl Spot {
 /// A dot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
-    /// For how long the arc burns, s.
+    /// How long the arc burns, s.
     time: f64,
     /// What it holds, mm³.
     metal: f64,
@@ -54,13 +54,13 @@ impl Dot {
     /// A dot is welded for at least and at most this many times as long as in the trial.
     const TIMES: RangeInclusive<f64> = 0.5..=2.0;
 
-    /// Diameter, mm, of a dot with so much metal, mm³; `None` where that is too far from what was tried.
+    /// Diameter, mm, of a dot with this much metal, mm³; `None` where that is too far from what was tried.
     pub fn diameter_of(&self, metal: f64) -> Option<f64> {
         let times = metal / self.metal;
         Self::TIMES.contains(&times).then(|| self.diameter * times.sqrt())
     }
 
-    /// For how long the arc burns for a dot of a diameter, mm, in s.
+    /// How long the arc burns for a dot of this diameter, mm, in s.
     pub fn seconds(&self, diameter: f64) -> f64 {
         self.time * (diameter / self.diameter).powi(2)
     }

@@ -44,7 +44,7 @@ section! {
             "the end of a pass has less power than the rest of it";
         /// How far the wire is drawn back after the arc is off, mm; default 0. RAPID's arc instructions do this
         /// themselves; in other dialects `arc_off` must contain `{{wire_retract}}` or `{{wire_retract_time}}`.
-        wire_retract: f64 = 0.0, 0.0, 50.0, "mm of wire", "drawn back farther, the wire leaves the contact tip";
+        wire_retract: f64 = 0.0, 0.0, 50.0, "mm of wire", "if drawn back farther, the wire leaves the contact tip";
         /// Wait between two layers, s; default 0.
         interpass_time: f64 = 0.0, 0.0, 36_000.0, "s", "ten hours cool any part";
         /// Minimum time of a layer, s: after a faster layer the torch waits for the rest of this time; default 0.
@@ -74,7 +74,7 @@ impl StartStop {
         let lead = self.lead_in_length + self.lead_out_length;
         let fits = format!("fill.min_pass_length is {shortest} mm");
         let lead_note = (lead > shortest).then(|| {
-            format!("Lead-in and lead-out take {lead} mm, but {fits}: on passes shorter than that both are cut down.")
+            format!("Lead-in and lead-out take {lead} mm, but {fits}: on passes shorter than that, both are shortened.")
         });
         let overlap = self.end_overlap;
         let overlap_note = (overlap > shortest).then(|| {

@@ -12,7 +12,7 @@ pub struct TorchShape {
     pub nozzle_radius: f64,
     /// From the wire's tip up to the nozzle's end, mm.
     pub stick_out: f64,
-    /// Angle between the wire and the side of a cone from the nozzle's end on that holds torch and hand, °.
+    /// Angle between the wire and the side of a cone that begins at the nozzle's end and holds torch and hand, °.
     pub cone: f64,
 }
 

@@ -5,7 +5,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `path` | a pass with its overlap, hot start and lead-out: points, and the pace to each |
-//! | `torch` | follows the torch over passes and layers: ways without arc, times, waits |
+//! | `torch` | follows the torch over passes and layers: travels without arc, times, waits |
 //!
 //! The *pace* of a piece is the speed at which the nominal wire feed lays its metal, mm/s. Depending on
 //! `process.follow`, it is the speed of the torch, or it determines the wire feed while the torch keeps its nominal
@@ -32,9 +32,9 @@ pub struct WeldSettings {
     pub travel: Travel,
     /// How the machine accelerates, where that is known.
     pub motion: Option<Motion>,
-    /// How long the torch stands at the end of a pass after its crater is filled, s; by default the time for arc end, gas
+    /// How long the torch stands still at the end of a pass after its crater is filled, s; by default the time for arc end, gas
     /// postflow and drawing the wire back.
     pub arc_end_time: Option<f64>,
-    /// Height of what stands beside the part before its first pass, mm; the way to that pass leads over it.
+    /// Height of what stands next to the part before its first pass, mm; the travel to that pass leads over it.
     pub standing: f64,
 }

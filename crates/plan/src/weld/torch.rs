@@ -11,13 +11,13 @@ use glam::DVec3;
 /// Waits are multiples of this, s; they are rounded up, never down.
 const WAIT_STEP: f64 = 0.01;
 
-/// Where the torch stands, and how long the layer has taken.
+/// Where the torch is, and how long the layer has taken.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Torch {
-    /// As it is in the present layer, and as the profile has it.
+    /// As it is in the current layer, and as in the profile.
     process: Option<Process>,
     nominal: Option<Process>,
-    /// How passes begin and end, and how those of the present layer do, whose arc may stay lit.
+    /// How passes begin and end, and how those of the current layer do, whose arc may stay lit.
     usual: StartStop,
     ends: StartStop,
     lit: Lit,
@@ -28,7 +28,7 @@ pub struct Torch {
     at: Option<DVec3>,
     /// Height of the last pass's end, mm: travels keep clear of it.
     low: f64,
-    /// Height of all that stands, mm: the way to another part leads over it.
+    /// Height of all that is built, mm: the travel to another part leads over it.
     highest: f64,
     /// Whether a layer begins.
     fresh: bool,
@@ -116,17 +116,17 @@ impl Torch {
         }
     }
 
-    /// How passes of the present layer begin and end.
+    /// How passes of the current layer begin and end.
     pub fn ends(&self) -> &StartStop {
         &self.ends
     }
 
-    /// Whether the arc burns before and after the pass of the present layer.
+    /// Whether the arc burns before and after the pass of the current layer.
     pub fn lit(&self) -> Lit {
         self.lit
     }
 
-    /// Where it stands; `None` before the first pass.
+    /// Where it is; `None` before the first pass.
     pub fn at(&self) -> Option<DVec3> {
         self.at
     }
@@ -146,7 +146,7 @@ impl Torch {
         self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
-    /// Begins the layer with an index, with the wait that the previous layer needs, unless the arc stays lit.
+    /// Begins the layer with this index, with the wait that the previous layer needs, unless the arc stays lit.
     pub fn begin_layer(&mut self, index: usize, lit: Lit) -> Option<Pause> {
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
         (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
@@ -181,8 +181,8 @@ impl Torch {
     }
 
     /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
-    /// place to rise from. Where a layer does not rise above the last one, another part begins, and the way leads over all
-    /// that stands.
+    /// place to rise from. Where a layer does not rise above the last one, another part begins, and the travel leads over all
+    /// that is built.
     pub fn approach(&mut self, start: DVec3) -> Way {
         if self.lit.before && self.at.is_some() {
             return Way::default();
@@ -196,7 +196,7 @@ impl Torch {
         self.go(rise.into_iter().chain([start.with_z(top), start]))
     }
 
-    /// The way up from the end of a pass: whatever comes between passes happens above the fresh bead.
+    /// The move up from the end of a pass: whatever comes between passes happens above the fresh bead.
     pub fn retract(&mut self) -> Way {
         if self.lit.after {
             return Way::default();
@@ -216,7 +216,7 @@ impl Torch {
         Way { legs, length, moving }
     }
 
-    /// Length and time of a travel from where the torch stands, mm and s; its legs begin and end at rest. The travel to
+    /// Length and time of a travel from where the torch is, mm and s; its legs begin and end at rest. The travel to
     /// the very first point counts as 0.
     fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
         let Some(mut at) = self.at else { return (0.0, 0.0) };
@@ -230,8 +230,8 @@ impl Torch {
         (length, time)
     }
 
-    /// Welds a pass from where the torch stands: points and paces, as [`path`](super::path) gives them. A dot has no crater
-    /// that would be filled.
+    /// Welds a pass from where the torch is: points and paces, as [`path`](super::path) gives them. A dot has no crater
+    /// that would have to be filled.
     pub fn weld(&mut self, kind: PassKind, moves: &[(DVec3, f64)]) -> Welded {
         let (mut length, mut steady, mut metal) = (0.0, 0.0, 0.0);
         for ends in moves.windows(2) {

@@ -4,7 +4,7 @@ use super::boundary::{Boundary, Foot};
 use super::mesh::Sample;
 use glam::DVec2;
 
-/// Nodes are equidistant from what they touch to this, mm.
+/// Nodes are equidistant from what they touch to within this, mm.
 const TOLERANCE_MM: f64 = 1e-9;
 
 /// Number of nearer edges after which the search for a disc settles for what it has.

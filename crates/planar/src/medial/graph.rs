@@ -19,7 +19,7 @@ const MOST_PIECES: f64 = 50.0;
 /// it.
 const SPUR_TURN: f64 = PI / 6.0;
 
-/// The neighbours of a disc: three at most but where junctions fall together.
+/// The neighbours of a disc: three at most, except where junctions coincide.
 pub(super) type Links = SmallVec<[usize; 3]>;
 
 /// Discs and which of them follow each other. The discs of chords come first, under the numbers of their chords.
@@ -63,7 +63,7 @@ impl Graph<'_> {
         }
     }
 
-    /// Removes free ends for as long as their object angle is below `min_angle`, the smallest discs first; one disc
+    /// Removes free ends as long as their object angle is below `min_angle`, the smallest discs first; one disc
     /// always stays. What remains of a branch then ends exactly where the angle is reached.
     pub(super) fn peel(&mut self, min_angle: f64) {
         let key = |graph: &Self, node: usize| Reverse((graph.discs[node].radius.to_bits(), node));

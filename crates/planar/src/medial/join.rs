@@ -1,4 +1,4 @@
-//! Joins branches where only two meet, and merges junctions that lie together.
+//! Joins branches where only two meet, and merges junctions that coincide.
 
 use super::{Branch, MedialAxis, Node};
 
@@ -70,7 +70,7 @@ impl MedialAxis {
 }
 
 impl Branch {
-    /// The same curve, run so that it begins at `junction`.
+    /// The same curve, oriented so that it begins at `junction`.
     fn starting_at(mut self, junction: usize) -> Self {
         if self.from != junction {
             self.nodes.reverse();

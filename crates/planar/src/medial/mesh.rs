@@ -186,7 +186,7 @@ fn sample(boundary: &Boundary, options: &MedialOptions) -> (Vec<Sample>, Vec<[us
 }
 
 /// How far from the start of an edge, mm, the first samples must lie on both sides of that vertex, so that the
-/// triangulation cuts the corner off and the axis runs into it: the circle through the vertex and both samples
+/// triangulation cuts off the corner and the axis runs into it: the circle through the vertex and both samples
 /// must not reach any other edge. `None` where the vertex turns inwards or hardly at all.
 fn guard(boundary: &Boundary, edge: usize, min_angle: f64) -> Option<f64> {
     let Edge { a, b, previous, .. } = boundary.edges[edge];

@@ -8,7 +8,7 @@ const WINDOW: f64 = 1e-3;
 impl MedialAxis {
     /// Without the curves that only run into corners.
     ///
-    /// From every free end the axis is cut back for as long as the radius grows by at least sin(`corner` / 2) per mm,
+    /// From every free end the axis is cut back as long as the radius grows by at least sin(`corner` / 2) per mm,
     /// as it does on the way out of a corner of interior angle `corner` (rad, usually [`CORNER`](super::CORNER)) or
     /// blunter. Then branches that are the only two at a junction become one, and so on until nothing changes.
     /// Of a square, a triangle or a disc, only one junction without branches remains.
@@ -21,9 +21,9 @@ impl MedialAxis {
         self
     }
 
-    /// Without spurs: branches from a free end to a junction, as into the teeth of a gear, that `is_spur` tells by their nodes
-    /// from the free end on. The shortest goes first, and branches that are then the only two at a junction become one
-    /// before the next is looked at; so the longest way through a tree of spurs remains.
+    /// Without spurs: branches from a free end to a junction, such as those into the teeth of a gear, that `is_spur` recognises
+    /// by their nodes from the free end on. The shortest goes first, and branches that are then the only two at a junction become
+    /// one before the next is examined; so the longest path through a tree of spurs remains.
     #[must_use]
     pub fn without_spurs(mut self, is_spur: impl Fn(&[Node]) -> bool) -> Self {
         loop {
@@ -47,7 +47,7 @@ impl MedialAxis {
             if spurs.is_empty() {
                 return self;
             }
-            // At each junction one spur goes before the others are looked at again.
+            // At each junction one spur is removed before the others are examined again.
             let (mut touched, mut ends) = (vec![false; degrees.len()], vec![false; degrees.len()]);
             let mut gone = vec![false; self.branches.len()];
             for (_, number, [end, junction]) in spurs {

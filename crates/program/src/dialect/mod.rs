@@ -39,7 +39,7 @@ use serde::{Deserialize, Serialize};
 pub struct Dialect {
     /// The name people type.
     pub name: &'static str,
-    /// The language as people write it; dialects of one language are read alike.
+    /// The language as people write it; dialects of one language are read in the same way.
     pub language: &'static str,
     /// Whether it can write the axes of a turn table and of a track under the robot.
     pub external_axes: bool,
@@ -74,13 +74,13 @@ pub trait Section {
         None
     }
 
-    /// Whether the torch stands until the arc is steady (`process.arc_start_delay`), so that it may leave as soon as it likes.
+    /// Whether the torch stands still until the arc is steady (`process.arc_start_delay`), so that it may then leave at any time.
     fn stands_at_start(&self) -> bool {
         self.templates().iter().any(|(key, lines)| key.ends_with(".arc_on") && stands(lines))
     }
 
-    /// How long the torch stands at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of the
-    /// section determine it and not `process.arc_end_delay`.
+    /// How long the torch stands still at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of
+    /// the section determine it and not `process.arc_end_delay`.
     fn arc_end_time(&self, _weld: &WeldSettings) -> Option<f64> {
         None
     }
@@ -185,7 +185,7 @@ impl Sections {
         })
     }
 
-    /// The codes in the templates that light and end the arc: the last line of those that light it and the first of
+    /// The codes in the templates that strike and end the arc: the last line of those that strike it and the first of
     /// those that end it, since gas and delays come before and after. Lines with placeholders do not count.
     pub fn arc_codes(&self) -> ArcCodes {
         let lines_of = |name: &str| {
@@ -210,7 +210,7 @@ pub fn names() -> Vec<&'static str> {
     ALL.iter().map(|dialect| dialect.name).collect()
 }
 
-/// The dialect of that name.
+/// The dialect with this name.
 pub fn find(name: &str) -> Option<&'static Dialect> {
     ALL.iter().find(|dialect| dialect.name == name).copied()
 }

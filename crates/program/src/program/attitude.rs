@@ -1,24 +1,24 @@
-//! How the torch leans over the part, and how the turn table under it stands.
+//! How the torch leans over the part, and how far the turn table under it has turned.
 
 use glam::{DQuat, DVec2, DVec3};
 
-/// How torch and turn table stand at the end of a move.
+/// The attitude of torch and turn table at the end of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attitude {
-    /// Where the torch leans: the level part of the unit vector from the wire's tip along the torch. 0 is the orientation
+    /// Where the torch leans: the horizontal part of the unit vector from the wire's tip along the torch. 0 is the orientation
     /// in the robot's section.
     pub lean: DVec2,
-    /// Angle of a table that turns during the program, °; `None` where it stands still.
+    /// Angle of a table that turns during the program, °; `None` where it does not turn.
     pub table: Option<f64>,
 }
 
 impl Attitude {
-    /// Whether the torch stands as in the robot's section.
+    /// Whether the torch is oriented as in the robot's section.
     pub fn is_upright(&self) -> bool {
         *self == Self::default()
     }
 
-    /// What turns the tool's orientation in the part's frame: the table's turn taken back, so that the torch stays as it
+    /// What turns the tool's orientation in the part's frame: the table's turn undone, so that the torch stays as it
     /// is in the cell, then the lean.
     pub fn rotation(&self) -> DQuat {
         let up = self.lean.extend((1.0 - self.lean.length_squared()).max(0.0).sqrt());

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, default)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Safety {
-    /// What the cell must supply, as sentences: inputs, interlocks, extraction. They stand at the head of every program.
+    /// What the cell must supply, as sentences: inputs, interlocks, extraction. They are written at the head of every program.
     pub supplies: Vec<String>,
     /// How long programs wait for the arc to burn at each try, s: `{{arc_timeout}}` in templates. Default 3.
     pub arc_timeout: f64,
     /// How often programs strike the arc before they halt with wire and gas off: `{{arc_tries}}` in templates. Default 3.
     pub arc_tries: u32,
-    /// How long the gas flows on in a halt before it is switched off, s: `{{gas_halt}}` in templates. Default:
+    /// How long the gas keeps flowing in a halt before it is switched off, s: `{{gas_halt}}` in templates. Default:
     /// `process.gas_postflow`.
     pub gas_halt: Option<f64>,
 }

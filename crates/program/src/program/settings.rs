@@ -24,40 +24,40 @@ pub struct ProgramSettings {
     /// counter-clockwise as seen from behind the torch. Robots only; `beadwright reach` finds the best angle. Default
     /// 0.
     pub torch_angle: f64,
-    /// Where the robot stands on its linear axis (track), the same for the whole program, mm; `beadwright reach` finds the best
-    /// place. The controller must count the axis into its kinematics, so that the part's frame stays where it is. KRL writes it
-    /// as E1, RAPID as the first external axis, and a turn table then as the second; other posts refuse it. Leave it out if there
-    /// is no such axis.
+    /// Position of the robot on its linear axis (track), the same for the whole program, mm; `beadwright reach` finds the best
+    /// position. The controller must include the axis in its kinematics, so that the part's frame stays where it is. KRL writes
+    /// it as E1, RAPID as the first external axis, and a turn table then as the second; other posts refuse it. Leave it out if
+    /// there is no such axis.
     pub linear_axis: Option<f64>,
     /// Angle of the turn table under the part, the same for the whole program, °; `beadwright reach` finds the best
     /// angle. The part's frame turns with the table (`krl.table_machine`, `rapid.table_unit`). KRL and RAPID write it; other
     /// posts refuse it. Leave it out if there is no turn table.
     pub table_angle: Option<f64>,
-    /// Direction from the turn table's axis in which the arc stays, °: the table, whose axis stands at x = 0, y = 0 of the
+    /// Direction from the turn table's axis in which the arc stays, °: the table, whose axis is at x = 0, y = 0 of the
     /// part and whose angle grows counter-clockwise as seen from above, turns with the torch, and the controller moves both
-    /// together. KRL and RAPID write it, as `table_angle`, in whose place it stands. Leave it out if the table stands still.
+    /// together. KRL and RAPID write it, as `table_angle`, which it replaces. Leave it out if the table does not turn.
     pub table_side: Option<f64>,
-    /// Between which angles a table that turns with the torch (`table_side`) may turn, least and greatest, °: passes begin where it
-    /// can follow them to their end, and at the end of its range it stops while the torch goes on around it. Leave it out if the table
-    /// turns without end.
+    /// The angles between which a table that turns with the torch (`table_side`) may turn, least and greatest, °: passes begin
+    /// where it can follow them to their end, and at the end of its range it stops while the torch continues around it. Leave it
+    /// out if the table turns endlessly.
     pub table_range: Option<[f64; 2]>,
-    /// Which part of a wall's lean the torch takes on (work angle), 0 to 1; 0, the default, leaves it as in the robot's
+    /// Which fraction of a wall's lean the torch adopts (work angle), 0 to 1; 0, the default, leaves it as in the robot's
     /// section. Robots only.
     pub follow_wall: f64,
     /// The greatest work angle, °; default 30.
     pub max_work_angle: f64,
-    /// Lean of the torch along its way, °: above 0 the wire points forward (push), below 0 back (drag). Robots only. Default
+    /// Lean of the torch along its path, °: above 0 the wire points forward (push), below 0 back (drag). Robots only. Default
     /// 0.
     pub travel_angle: f64,
-    /// Whether a stopped build can go on inside the program, without a new one: a variable, which each program tells at its
+    /// Whether a stopped build can continue inside the program, without a new one: a variable, which each program names at its
     /// head, holds the layer times 10000 plus the pass at which to begin, and 0 to begin at the beginning. For robots and
-    /// LinuxCNC; others take `plan --from-layer --from-pass`. Default false.
+    /// LinuxCNC; for others use `plan --from-layer --from-pass`. Default false.
     pub restart: bool,
-    /// Whether every layer has a height of its own to be added, 0 mm to begin with, that can be set in the program between
+    /// Whether every layer has a height of its own to be added, 0 mm at first, that can be set in the program between
     /// layers: an array in KRL, RAPID and URScript, a line in each layer's program for FANUC; other posts refuse it. Default
     /// false.
     pub layer_offsets: bool,
-    /// Before every how many layers the lines of `hooks.measure` are written; default 10.
+    /// Interval, in layers, at which the lines of `hooks.measure` are written; default 10.
     pub measure_every: usize,
 }
 
@@ -84,7 +84,7 @@ impl Default for ProgramSettings {
 }
 
 impl ProgramSettings {
-    /// Whether there are axes beside the robot's.
+    /// Whether there are axes other than the robot's.
     pub fn external_axes(&self) -> bool {
         self.linear_axis.is_some() || self.has_table()
     }
@@ -94,7 +94,7 @@ impl ProgramSettings {
         self.table_angle.is_some() || self.table_side.is_some()
     }
 
-    /// Whether the torch leans other than the robot's section says.
+    /// Whether the torch leans differently from what the robot's section says.
     pub fn tilts(&self) -> bool {
         self.follow_wall != 0.0 || self.travel_angle != 0.0
     }
@@ -114,8 +114,8 @@ impl ProgramSettings {
                 "values outside this range make no sense";
             "program.table_side": self.table_side.unwrap_or(0.0), -360.0, 360.0, "°", "values outside this range make no sense";
             "program.follow_wall": self.follow_wall, 0.0, 1.0, "(fraction of the wall's lean)", "a torch leans no more than the wall";
-            "program.max_work_angle": self.max_work_angle, 0.0, 45.0, "°", "the gas does not cover the metal at a steeper torch";
-            "program.travel_angle": self.travel_angle, -30.0, 30.0, "°", "the gas does not cover the metal at a steeper torch";
+            "program.max_work_angle": self.max_work_angle, 0.0, 45.0, "°", "the gas does not cover the metal at a greater lean";
+            "program.travel_angle": self.travel_angle, -30.0, 30.0, "°", "the gas does not cover the metal at a greater lean";
         }
     }
 
@@ -123,7 +123,7 @@ impl ProgramSettings {
     pub fn broken(&self) -> Option<Broken> {
         if let (Some(_), Some(side)) = (self.table_angle, self.table_side) {
             let reason =
-                "a table stands still (table_angle) or turns with the torch (table_side): take one of them out.";
+                "a table keeps one angle (table_angle) or turns with the torch (table_side): remove one of them.";
             return Some(Broken {
                 key: "program.table_side".to_owned(),
                 value: format!("{side}"),
@@ -131,11 +131,11 @@ impl ProgramSettings {
             });
         }
         if let Some([low, high]) = self.table_range.filter(|[low, high]| !(low + 360.0 <= *high && high - low < 1e5)) {
-            let reason = "the least angle comes first, and the table must turn by 360° at least.".to_owned();
+            let reason = "the least angle comes first, and the table must turn by at least 360°.".to_owned();
             return Some(Broken { key: "program.table_range".to_owned(), value: format!("[{low}, {high}]"), reason });
         }
         let reason = if self.chord_tolerance > 0.0 && self.chord_tolerance < 0.015 {
-            "0 keeps every point; else it must be 0.015 mm or more, over the 0.01 mm of the least move."
+            "0 keeps every point; otherwise it must be 0.015 mm or more, more than the 0.01 mm of the shortest move."
         } else if self.arcs && self.chord_tolerance == 0.0 {
             "arcs = true needs a tolerance, such as 0.05 mm."
         } else if self.min_point_time > 0.0 && self.chord_tolerance == 0.0 {

@@ -8,32 +8,32 @@ const MOST_PER_MM: f64 = 2.0;
 /// Closer to the axis than this there is no side to turn to, mm.
 const AXIS_MM: f64 = 1.0;
 
-/// Between passes a table that turns farther than this turns while the joints move: the torch would have to go around with it
+/// Between passes a table that turns farther than this turns while the joints move: the torch would have to move around with it
 /// in a straight move, whose target lies in the part's frame.
 const WOUND: f64 = 180.0;
 
 /// Follows the torch with the table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Follower {
-    /// Direction from the axis in which the arc shall stay, °.
+    /// Direction from the axis in which the arc must stay, °.
     side: f64,
-    /// Between which angles the table turns, °; endless where nothing is said.
+    /// The angles between which the table turns, °; endless where none are given.
     range: Option<[f64; 2]>,
-    /// How the table stands, °.
+    /// Angle of the table, °.
     angle: f64,
 }
 
-/// How the table stands at the start of a pass.
+/// Angle of the table at the start of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turned {
     /// °
     pub(super) angle: f64,
-    /// Whether it comes from so far that the joints must move.
+    /// Whether it comes from so far away that the joints must move.
     pub(super) far: bool,
 }
 
 impl Follower {
-    /// A table as the profile has it; `None` where it stands still.
+    /// A table as in the profile; `None` where it does not turn.
     pub(super) fn new(program: &ProgramSettings) -> Option<Self> {
         program.table_side.map(|side| Self { side, range: program.table_range, angle: 0.0 })
     }
@@ -57,8 +57,8 @@ impl Follower {
         Turned { angle: self.angle, far: (self.angle - before).abs() > WOUND }
     }
 
-    /// Turns on with a move of a length (mm) under the arc. At the end of its range the table stops, and the torch goes on around
-    /// it.
+    /// Turns on with a move of `length` (mm) under the arc. At the end of its range the table stops, and the torch continues
+    /// around it.
     pub(super) fn follow(&mut self, to: DVec3, length: f64) -> f64 {
         let most = MOST_PER_MM * length;
         self.angle += self.missing(to).clamp(-most, most);
@@ -101,14 +101,14 @@ mod tests {
         (0..=count).map(|k| on_circle(f64::from(from + k * step))).collect()
     }
 
-    /// The angles of the table along a pass, and whether it came from far.
+    /// The angles of the table along a pass, and whether it came from far away.
     fn pass(table: &mut Follower, path: &[DVec3]) -> (Vec<f64>, bool) {
         let start = table.begin(path);
         let follow = |piece: &[DVec3]| table.follow(piece[1], piece[0].distance(piece[1]));
         (std::iter::once(start.angle).chain(path.windows(2).map(follow).collect::<Vec<_>>()).collect(), start.far)
     }
 
-    /// An endless table goes on from where it is; the arc stays on its side for many turns.
+    /// An endless table continues from where it is; the arc stays on its side for many turns.
     #[test]
     fn an_endless_table_is_never_unwound() {
         let mut table = Follower { side: -90.0, range: None, angle: 0.0 };
@@ -139,7 +139,7 @@ mod tests {
         assert!(unwound > 0, "six rings are more than the range");
     }
 
-    /// A pass of three turns is more than the range: the table stops at its end, and the program goes on.
+    /// A pass of three turns is more than the range: the table stops at its end, and the program continues.
     #[test]
     fn at_the_end_of_its_range_the_table_stops() {
         let mut table = Follower { side: -90.0, range: Some([-400.0, 400.0]), angle: 0.0 };

@@ -1,6 +1,6 @@
-//! The lean of the torch: with the wall that it builds (work angle), and forward or back along its way (travel angle).
+//! The lean of the torch: with the wall that it builds (work angle), and forward or back along its path (travel angle).
 //!
-//! A wall leans where its outline lies beside the outline of the layer below. The torch then leans the same way, so that
+//! A wall leans where its outline is offset from the outline of the layer below. The torch then leans the same way, so that
 //! the wire points down the wall and not past it. Steps, ledges and anything away from an outline leave it upright.
 
 use super::ProgramSettings;
@@ -18,7 +18,7 @@ const STEP: f64 = 2.0;
 const MOST: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Leans are multiples of this (0.03°), so that a wall's small faults do not move the torch.
 const GRID: f64 = 0.0005;
-/// Leans that differ by no more than this (2°) may stand in one fitted piece.
+/// Leans that differ by no more than this (2°) may be in one fitted piece.
 pub(super) const ALIKE: f64 = 0.035;
 
 type Outlines = RTree<Line<[f64; 2]>>;
@@ -37,7 +37,7 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// A torch that leans as the profile has it; `None` where it stays upright.
+    /// A torch that leans as in the profile; `None` where it stays upright.
     pub fn new(program: &ProgramSettings) -> Option<Self> {
         let (max_work_angle, back) = (program.max_work_angle.to_radians(), program.travel_angle.to_radians().sin());
         let (here, below) = (Outlines::new(), Outlines::new());
@@ -59,7 +59,7 @@ impl Tilt {
         self.height = layer.height;
     }
 
-    /// Divides long moves beside their ends, so that the torch turns at corners and not all along the sides.
+    /// Divides long moves near their ends, so that the torch turns at corners and not all along the sides.
     pub fn divided(moves: Vec<(DVec3, f64)>, width: f64) -> Vec<(DVec3, f64)> {
         let mut divided: Vec<(DVec3, f64)> = Vec::with_capacity(moves.len());
         for (to, pace) in moves {
@@ -73,7 +73,7 @@ impl Tilt {
         divided
     }
 
-    /// The lean at every point of a path whose beads are so wide (mm).
+    /// The lean at every point of a path whose beads have this width (mm).
     pub fn leans(&self, moves: &[(DVec3, f64)], width: f64) -> Vec<DVec2> {
         let points: Vec<DVec2> = moves.iter().map(|(to, _)| to.truncate()).collect();
         let leans: Vec<DVec2> =
@@ -109,8 +109,8 @@ fn way(points: &[DVec2], i: usize) -> DVec2 {
     (before + after).normalize_or_zero()
 }
 
-/// The mean of the values along the path from a `width` (mm) before each point to a `width` behind it; near an end, as far
-/// to both sides as there is path.
+/// The mean of the values along the path from a `width` (mm) before each point to a `width` after it; near an end, as far
+/// to both sides as the path goes.
 fn smoothed(points: &[DVec2], values: &[DVec2], width: f64) -> Vec<DVec2> {
     // The integral of the values up to each point, over the distance (mm).
     let mut sums = vec![(0.0, DVec2::ZERO); points.len().min(1)];

@@ -1,4 +1,4 @@
-//! The turns of a helix put together: a program needs them as one pass, since no program may end while the arc burns.
+//! The turns of a helix joined: a program needs them as one pass, since no program may end while the arc burns.
 
 use bead_plan::layer::{Layer, Lit};
 use bead_plan::pass::Along;
@@ -13,11 +13,11 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// The layers to be written once this one has come: none while a helix goes on.
+    /// The layers to be written once this one has come: none while a helix continues.
     pub fn take<'a>(&mut self, layer: &'a Layer) -> Vec<Cow<'a, Layer>> {
         let follows = self.so_far.is_some() && layer.lit.before && layer.index == self.last + 1;
         self.last = layer.index;
-        // A helix that is not gone on with, since its next turn is not to be welded, ends where it is.
+        // A helix that is not continued, since its next turn is not to be welded, ends where it is.
         let mut ready: Vec<Cow<'a, Layer>> =
             if follows { Vec::new() } else { self.end().map(Cow::Owned).into_iter().collect() };
         if layer.lit == Lit::default() {
@@ -34,13 +34,13 @@ impl Turns {
         ready
     }
 
-    /// The turns of a helix that did not come to its end.
+    /// The turns of a helix that did not reach its end.
     pub fn end(&mut self) -> Option<Layer> {
         self.so_far.take()
     }
 }
 
-/// Goes on with the only pass of a layer along that of the next one.
+/// Continues the only pass of a layer with that of the next one.
 fn append(turns: &mut Layer, next: &Layer) {
     let ([pass], [more]) = (&mut turns.passes[..], &next.passes[..]) else { return };
     let pieces = pass.points.len().saturating_sub(1);

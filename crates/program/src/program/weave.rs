@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Weave {
-    /// Way along the pass in which the torch swings to both sides once, mm.
+    /// Distance along the pass over which the torch swings once to both sides, mm.
     pub length: f64,
     /// How far it swings to each side, mm.
     pub amplitude: f64,
-    /// How long it stays at each side, s; where the weave is written as moves, it goes on along the pass meanwhile. Default 0.
+    /// How long it stays at each side, s; where the weave is written as moves, it moves on along the pass meanwhile. Default 0.
     #[serde(default)]
     pub dwell: f64,
     /// Number of the weaving file that has these values, on Yaskawa controllers; default 1.
@@ -50,10 +50,10 @@ pub(super) struct Swing {
     pub(super) speed: f64,
 }
 
-/// A path whose torch swings in even half waves from its start to its end, both on the path, and takes as long as the path
-/// does: `speeds` (mm/s) hold up to the points of the path.
+/// A path along which the torch swings in even half waves from its start to its end, both on the path, and takes as long as the
+/// path does: `speeds` (mm/s) hold up to the points of the path.
 pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing> {
-    // Way and time up to each point.
+    // Distance and time up to each point.
     let mut along = vec![(0.0, 0.0)];
     for (i, pair) in path.windows(2).enumerate() {
         let (length, (way, time)) = (pair[0].distance(pair[1]), along[i]);
@@ -65,7 +65,7 @@ pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing
     let part = |way: f64, i: usize| (way - along[i - 1].0) / (along[i].0 - along[i - 1].0).max(1e-12);
     let place = |way: f64| path[of(way) - 1].lerp(path[of(way)], part(way, of(way)).clamp(0.0, 1.0));
     let time = |way: f64| along[of(way) - 1].1 + part(way, of(way)) * (along[of(way)].1 - along[of(way) - 1].1);
-    // Sideways from the way that the path goes around a place, so that corners of the path are rounded.
+    // Sideways from the direction of the path around a place, so that corners of the path are rounded.
     let side = |way: f64| {
         let about = weave.amplitude.min(end / 4.0);
         let ahead = place((way + about).min(end)) - place((way - about).max(0.0));
@@ -92,7 +92,7 @@ pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing
     out
 }
 
-/// The greatest part of a half wave that the torch stays at a side.
+/// The greatest fraction of a half wave that the torch dwells at a side.
 const MOST_STAY: f64 = 0.8;
 
 #[cfg(test)]
@@ -128,13 +128,13 @@ mod tests {
             let sides: Vec<f64> = swings[..swings.len() - 1].iter().map(|s| off(s.to)).collect();
             assert!(sides.iter().all(|side| (side.abs() - 1.5).abs() < 2e-3), "{sides:?}");
             assert!(sides.iter().sum::<f64>().abs() < 0.01);
-            // What stays at a side goes on at the speed of the pass.
+            // A torch that dwells at a side moves on at the speed of the pass.
             let still = swings.windows(2).filter(|pair| off(pair[0].to) * off(pair[1].to) > 1.0);
             still.for_each(|pair| assert!((pair[1].speed - 8.0).abs() < 0.02, "{}", pair[1].speed));
         }
     }
 
-    /// A faster stretch has as many swings a mm, which are run faster.
+    /// A faster stretch has as many swings per mm, which are run faster.
     #[test]
     fn the_pitch_is_the_same_at_any_speed() {
         let path: Vec<DVec3> = (0..=100).map(|k| DVec3::new(f64::from(k), 0.0, 1.0)).collect();
@@ -146,7 +146,7 @@ mod tests {
         assert!((swings[40].speed / swings[10].speed - 2.0).abs() < 1e-3);
     }
 
-    /// Around a circle the swings stay beside it, and a path that is shorter than a half wave stays as it is.
+    /// Around a circle the swings stay near it, and a path that is shorter than a half wave stays as it is.
     #[test]
     fn circles_and_short_paths() {
         let circle: Vec<DVec3> = (0..=240)

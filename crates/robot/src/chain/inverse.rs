@@ -1,4 +1,4 @@
-//! The closed forms: joint by joint from what the joints not yet known leave as it is. Angles in rad.
+//! The closed forms: joint by joint from what the joints not yet known leave unchanged. Angles in rad.
 //!
 //! Turns about parallel axes do not change a place's height along them: that gives joint 1 by the centre of the wrist.
 //! Upper arm and forearm are then two links in a plane, and the wrist's angles follow from directions alone (subproblems
@@ -9,7 +9,7 @@ use super::{Chain, Wrist};
 use crate::arm::Frame;
 use glam::DVec3;
 
-/// The end of the forearm, asked for by joint 1 and, of an offset wrist, by joints 5 and 6.
+/// The end of the forearm, as required by joint 1 and, with an offset wrist, by joints 5 and 6.
 struct Wanted {
     q1: f64,
     /// Joints 5 and 6 where they are known already.
@@ -21,7 +21,7 @@ struct Wanted {
 }
 
 impl Chain {
-    /// All solutions for a chain whose axes are exactly parallel and meet exactly; near ones for others.
+    /// All solutions for a chain whose axes are exactly parallel and meet exactly; approximate ones for others.
     pub(super) fn closed_forms(&self, base_from_flange: &Frame) -> Vec<[f64; 6]> {
         let mut found = Vec::with_capacity(8);
         for wanted in self.wanted(base_from_flange).0 {
@@ -46,7 +46,7 @@ impl Chain {
         wanted.iter().map(miss).min_by(f64::total_cmp).unwrap_or(beside)
     }
 
-    /// Where the forearm may end, and how far the wrist lies too near to axis 1 for any, mm.
+    /// Where the forearm may end, and by how much the wrist is too near to axis 1 for any, mm.
     fn wanted(&self, base_from_flange: &Frame) -> (Vec<Wanted>, f64) {
         let [one, two, ..] = self.axes;
         let all = base_from_flange.then(&self.flange.inverse());
@@ -81,7 +81,7 @@ impl Chain {
         let [_, two, three, ..] = self.axes;
         let wanted = across(two.along, end - two.at);
         let [upper, fore] = self.links_across(0.0);
-        // |upper + fore|² is to be |wanted|².
+        // |upper + fore|² must be |wanted|².
         let height = (wanted.length_squared() - upper.length_squared() - fore.length_squared()) / 2.0;
         let both = |q3: f64| {
             let [upper, fore] = self.links_across(q3);
@@ -90,7 +90,7 @@ impl Chain {
         Wave::new(three.along, fore, upper, height).angles().into_iter().map(both).collect()
     }
 
-    /// Joints 4, 5 and 6 that do what is left.
+    /// Joints 4, 5 and 6 that do the rest.
     fn hands(&self, wanted: &Wanted, left: &Frame) -> Vec<[f64; 3]> {
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
         if let Some([q5, q6]) = wanted.hand {

@@ -1,6 +1,6 @@
 //! Arms as a chain of six turning joints, from Denavit-Hartenberg rows or a URDF file.
 //!
-//! Each joint is a line about which everything behind it turns (product of exponentials: Brockett 1984; Murray, Li and
+//! Each joint is a line about which everything beyond it turns (product of exponentials: Brockett 1984; Murray, Li and
 //! Sastry 1994). Two kinds of arm have closed forms (`inverse.rs`): axes 2 and 3 parallel with axes 4, 5 and 6 through
 //! one point, as most welding robots have, and axes 2, 3 and 4 parallel with axes 5 and 6 through one point, as the arms
 //! of Universal Robots have. A calibrated arm misses that by a little: its closed forms are polished (`polish.rs`).
@@ -15,16 +15,16 @@ use turn::{across, turned};
 
 /// Axes count as parallel where the sine of their angle is smaller: 0.3°.
 const PARALLEL: f64 = 5e-3;
-/// Axes count as meeting where they pass each other nearer, mm.
+/// Axes count as meeting where they pass each other nearer than this, mm.
 const MEETING_MM: f64 = 5.0;
-/// Links are longer, mm.
+/// Links are longer than this, mm.
 const LEAST_LINK_MM: f64 = 1.0;
 
 /// Why the joint angles of a chain cannot be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "its joints 2 and 3 must be parallel and across joint 1, and either joints 4, 5 and 6 meet in one point or joint 4 is \
-     parallel to them and joints 5 and 6 meet; {0}. Arms of other kinds cannot be walked"
+    "its joints 2 and 3 must be parallel and across joint 1, and either joints 4, 5 and 6 must meet in one point or joint 4 must \
+     be parallel to them and joints 5 and 6 must meet; {0}. Arms of other kinds cannot be walked"
 )]
 pub struct ChainError(&'static str);
 
@@ -117,7 +117,7 @@ impl Chain {
         Self::new(&joints, &before)
     }
 
-    /// Where the forearm ends while all joints are at 0°: a place that the joints behind it do not move.
+    /// Where the forearm ends while all joints are at 0°: a place that the joints beyond it do not move.
     fn forearm_end(&self) -> DVec3 {
         match self.wrist {
             Wrist::Spherical => self.centre,
@@ -143,7 +143,7 @@ impl Chain {
         self.moved(joints, 6).then(&self.flange)
     }
 
-    /// Volume that the axes of the wrist span: 0 where it is singular; its sign tells the two solutions apart.
+    /// Volume that the axes of the wrist span: 0 where it is singular; its sign distinguishes the two solutions.
     fn wrist_volume(&self, q5: f64) -> f64 {
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
         five.dot(four.cross(turned(five, q5, six)))

@@ -13,7 +13,7 @@ const NEAR_MM: f64 = 1e-4;
 /// Steps after which a start is given up; each squares the error.
 const STEPS: usize = 12;
 
-/// A solution from a near one, rad; `None` where there is none.
+/// A solution from a nearby one, rad; `None` where there is none.
 pub(super) fn polished(chain: &Chain, mut joints: [f64; 6], wanted: &Frame) -> Option<[f64; 6]> {
     let mut best = (f64::INFINITY, joints);
     for _ in 0..STEPS {
@@ -32,10 +32,10 @@ pub(super) fn polished(chain: &Chain, mut joints: [f64; 6], wanted: &Frame) -> O
     (best.0 < NEAR_MM).then_some(best.1)
 }
 
-/// What is missing to the wanted frame: a way and a turn, mm.
+/// What separates the frame from the wanted one: a shift and a turn, mm.
 fn error(now: &Frame, wanted: &Frame) -> [f64; 6] {
     let turn = wanted.rotation * now.rotation.conjugate();
-    // Of the two quaternions of a turn the one that turns less.
+    // Of the two quaternions of a turn, the one that turns less.
     let least = if turn.w < 0.0 { -turn } else { turn };
     join(wanted.position - now.position, least.to_scaled_axis() * LEVER_MM)
 }

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-/// A height may lie beyond what a turn can reach by this part of its amplitude: the turn then ends at its crest.
+/// A height may lie beyond what a turn can reach by this fraction of its amplitude: the turn then ends at its crest.
 const ROUNDING: f64 = 1e-12;
 
 /// `vector` turned about a unit axis.
@@ -21,7 +21,7 @@ pub(super) fn turn_onto(axis: DVec3, from: DVec3, to: DVec3) -> f64 {
     axis.dot(from.cross(to)).atan2(from.dot(to))
 }
 
-/// The height of a turning vector along a direction: `amplitude` · cos(angle − `crest`), and what it is to be.
+/// The height of a turning vector along a direction: `amplitude` · cos(angle − `crest`), and what it must be.
 pub(super) struct Wave {
     amplitude: f64,
     crest: f64,

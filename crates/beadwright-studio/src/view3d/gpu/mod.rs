@@ -51,7 +51,7 @@ pub(super) struct Quality {
     pub exact: bool,
     /// Whether ends and corners are round.
     pub caps: bool,
-    /// Of that many layers one is drawn, as high as all of them; the top one always is.
+    /// One of this many layers is drawn, as high as all of them; the top one always is.
     pub every: usize,
 }
 

@@ -70,7 +70,7 @@ impl Pipelines {
             [points(&POINT, VertexStepMode::Instance)],
             [buffer(12, VertexStepMode::Vertex, &PLAIN)],
         );
-        // Only what is cut pays for it: its fragments cannot be passed over before they are shaded.
+        // Only what is cut pays for it: its fragments cannot be skipped before they are shaded.
         let either = |whole, part| if cut { part } else { whole };
         let bead = either("bead", "cut_bead");
         let (line_colour, dot_colour) = (either("line_colour", "cut_line"), either("dot_colour", "cut_dot"));

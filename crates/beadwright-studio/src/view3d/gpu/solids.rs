@@ -1,4 +1,4 @@
-//! What stands around the part, as triangles: the plate below it, the torch, the arm.
+//! What is around the part, as triangles: the plate below it, the torch, the arm.
 
 use super::chunks::Point;
 use super::globals::role;

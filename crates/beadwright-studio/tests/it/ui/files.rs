@@ -85,28 +85,28 @@ fn a_project_is_kept_aside_until_the_end() {
         harness
     };
     let mut undecided = begin();
-    assert!(sees(&undecided, "Bring back"));
+    assert!(sees(&undecided, "Restore"));
     eframe::App::on_exit(undecided.state_mut());
     drop(undecided);
     let mut harness = begin();
-    click(&mut harness, "Bring back");
+    click(&mut harness, "Restore");
     wait(&mut harness);
     assert_eq!(harness.state().project(), &kept);
     assert_eq!(harness.state().plan().layers.len(), 8);
-    assert!(!sees(&harness, "Bring back"));
+    assert!(!sees(&harness, "Restore"));
     drop(harness);
 
     let mut harness = begin();
-    click(&mut harness, "Let go");
+    click(&mut harness, "Discard");
     assert!(harness.state().project().source.is_none());
     drop(harness);
     let mut harness = begin();
-    assert!(!sees(&harness, "Bring back"));
+    assert!(!sees(&harness, "Restore"));
     harness.state_mut().open_example("cross");
     wait(&mut harness);
     eframe::App::on_exit(harness.state_mut());
     drop(harness);
-    assert!(!sees(&begin(), "Bring back"), "nothing is lost after an end in peace");
+    assert!(!sees(&begin(), "Restore"), "nothing is lost after an end in peace");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn what_goes_wrong_again_is_said_once() {
         harness.run_steps(2);
     }
     let told: Vec<_> = harness.state().messages().iter().map(|message| &message.text).collect();
-    assert!(told.len() == 1 && told[0].starts_with("The project cannot be kept aside"), "{told:?}");
+    assert!(told.len() == 1 && told[0].starts_with("The project cannot be autosaved"), "{told:?}");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn changes_are_asked_about_before_they_are_lost() {
     };
     close(&mut harness);
     assert!(harness.query_by_label("Without saving they are lost.").is_some());
-    click(&mut harness, "Go on working");
+    click(&mut harness, "Keep working");
     assert!(harness.query_by_label("Without saving they are lost.").is_none());
     harness.state_mut().save_to(&folder.path().join("a.bwp"));
     close(&mut harness);

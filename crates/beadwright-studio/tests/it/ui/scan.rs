@@ -35,7 +35,7 @@ fn open(harness: &mut Window, path: &Path) {
 fn the_figures_of_a_scan_are_told_and_taken_away() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(&folder.path().join("store"), "cross");
-    assert!(!sees(&harness, "Take the scan away"));
+    assert!(!sees(&harness, "Close the scan"));
     open(&mut harness, &scan(folder.path(), |x, _| if x < 0.0 { -0.25 } else { 0.75 }));
     // 49 of the 99 columns are too low.
     let (low, high) = (49.0 / 99.0, 50.0 / 99.0);
@@ -47,7 +47,7 @@ fn the_figures_of_a_scan_are_told_and_taken_away() {
     harness.state_mut().set_value("fill.machining_allowance", "1.0");
     wait(&mut harness);
     assert!(sees(&harness, "within the allowance 0–1 mm: 51 %"));
-    click(&mut harness, "Take the scan away");
+    click(&mut harness, "Close the scan");
     assert!(!sees(&harness, "scan.csv") && harness.state().scan().is_none());
     // The next part has none either.
     open(&mut harness, &scan(folder.path(), |_, _| 0.5));

@@ -1,7 +1,7 @@
 //! A height map: a line `height_map x0=… y0=… step=…` in mm, then a line of heights for each row, the lowest y first.
 //!
-//! Heights are separated by commas, semicolons, tabs or spaces; where nothing was seen stands `nan`, `-` or, between commas,
-//! nothing.
+//! Heights are separated by commas, semicolons, tabs or spaces; where nothing was seen, there is `nan`, `-` or, between
+//! commas, nothing.
 
 use super::{ScanError, lines, number};
 use glam::DVec3;
@@ -9,7 +9,7 @@ use glam::DVec3;
 /// The word that the first line begins with.
 const WORD: &str = "height_map";
 
-/// The points; `None` where the text is no height map.
+/// The points; `None` where the text is not a height map.
 pub(super) fn read(text: &str) -> Result<Option<Vec<DVec3>>, ScanError> {
     let mut lines = lines(text);
     let Some((line, head)) = lines.next().filter(|(_, head)| head.starts_with(WORD)) else { return Ok(None) };
@@ -17,7 +17,7 @@ pub(super) fn read(text: &str) -> Result<Option<Vec<DVec3>>, ScanError> {
     let mut points = Vec::new();
     for (row, (line, heights)) in lines.enumerate() {
         for (column, field) in fields(heights).into_iter().enumerate() {
-            let reason = || format!("\"{}\" is no height in mm", field.trim());
+            let reason = || format!("\"{}\" is not a height in mm", field.trim());
             let z = number(field).ok_or_else(|| ScanError::Line { line, reason: reason() })?;
             points.push(DVec3::new(x0 + column as f64 * step, y0 + row as f64 * step, z));
         }
@@ -40,7 +40,7 @@ fn head_values(head: &str) -> Result<[f64; 3], String> {
     match values {
         [Some(x0), Some(y0), Some(step)] if step > 0.0 => Ok([x0, y0, step]),
         [_, _, Some(step)] if step <= 0.0 => Err(format!("the step must be above 0 mm, not {step}")),
-        _ => Err("it must tell x0, y0 and step in mm, such as height_map x0=-20 y0=0 step=0.5".to_owned()),
+        _ => Err("it must give x0, y0 and step in mm, such as height_map x0=-20 y0=0 step=0.5".to_owned()),
     }
 }
 

@@ -42,7 +42,7 @@ pub enum ScanError {
     Line {
         /// Number of the line, from 1.
         line: usize,
-        /// What was expected, and what stands there.
+        /// What was expected, and what is there.
         reason: String,
     },
     /// No points.
@@ -51,8 +51,9 @@ pub enum ScanError {
          that begins with a line such as height_map x0=0 y0=0 step=0.5."
     )]
     Empty,
-    /// A coordinate out of all bounds.
-    #[error("the scan has a point at {:.0}, {:.0}, {:.0} mm, farther than {reach:.0} m from the origin. Check its unit: mm is expected.", at.x, at.y, at.z, reach = model::MAX_REACH_MM / 1e3)]
+    /// A coordinate out of bounds.
+    #[error("the scan has a point at {:.0}, {:.0}, {:.0} mm, more than {reach:.0} m from the origin. Check its unit: mm is \
+             expected.", at.x, at.y, at.z, reach = model::MAX_REACH_MM / 1e3)]
     TooFar {
         /// The point, mm.
         at: DVec3,
@@ -65,7 +66,7 @@ impl From<Cancelled> for ScanError {
     }
 }
 
-/// Reads a scan; its content tells the format.
+/// Reads a scan; its content shows the format.
 ///
 /// # Errors
 /// [`ScanError`] with the line where one is at fault.
@@ -93,7 +94,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Scan, ScanError> {
     Ok(Scan { points, triangles, format, without_height })
 }
 
-/// The surface in a file of solids, which a scan need not close.
+/// The surface in a file of solids, which need not be closed in a scan.
 fn surface(bytes: &[u8], task: &Task) -> Result<Surface, ImportError> {
     let import = model::import_damaged(bytes, task)?;
     let millimetres = import.units.unwrap_or(Units::Millimetre).in_mm();
@@ -123,7 +124,7 @@ fn seen(points: Vec<DVec3>, triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]
 /// Points, triangles between them, and the format.
 type Surface = (Vec<DVec3>, Vec<[u32; 3]>, &'static str);
 
-/// Lines with their numbers, from 1, less comments and empty ones.
+/// Lines with their numbers, from 1, without comments and empty ones.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let numbered = (1..).zip(text.lines().map(str::trim));
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#') && !line.starts_with("//"))

@@ -1,8 +1,8 @@
-//! Lines of x, y, z: CSV with or without a header, XYZ, touched points. Further columns, such as colours, are passed over.
+//! Lines of x, y, z: CSV with or without a header, XYZ, touched points. Further columns, such as colours, are skipped.
 //!
 //! A header names the columns `x`, `y`, `z` in any order, with their unit if that is not mm: `x_m`, `z (in)`. Values are
 //! separated by commas, semicolons, tabs or spaces; with all but commas a decimal comma is understood. A first line with a
-//! single number, the count of points, is passed over.
+//! single number, the count of points, is skipped.
 
 use super::{ScanError, lines, number};
 use glam::DVec3;
@@ -25,7 +25,7 @@ pub(super) fn read(text: &str) -> Result<Vec<DVec3>, ScanError> {
         columns = Columns::named(&split.fields(head)).map_err(|reason| ScanError::Line { line, reason })?;
         lines.next();
     }
-    // The header may be separated otherwise.
+    // The header may be separated differently.
     let split = lines.peek().map_or(split, |(_, line)| Split::of(line));
     lines
         .map(|(line, text)| columns.point(&split.fields(text)).map_err(|reason| ScanError::Line { line, reason }))
@@ -77,7 +77,7 @@ impl Columns {
                 found.ok_or_else(|| format!("no column is named {name}. The header names {}", fields.join(", ")))?;
             let known = UNITS.iter().find(|(known, _)| *known == unit);
             let (_, millimetres) =
-                known.ok_or_else(|| format!("\"{unit}\" is no unit of {name}: mm, cm, m, um and in are"))?;
+                known.ok_or_else(|| format!("\"{unit}\" is not a unit of {name}: use mm, cm, m, um or in"))?;
             (columns.at[axis], columns.millimetres[axis]) = (at, *millimetres);
         }
         Ok(columns)
@@ -87,7 +87,7 @@ impl Columns {
         let mut point = DVec3::ZERO;
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let field = fields.get(self.at[axis]).ok_or_else(|| format!("{name} is missing"))?;
-            let value = number(field).ok_or_else(|| format!("\"{field}\" is no number for {name} in mm"))?;
+            let value = number(field).ok_or_else(|| format!("\"{field}\" is not a number for {name} in mm"))?;
             point[axis] = value * self.millimetres[axis];
         }
         Ok(point)

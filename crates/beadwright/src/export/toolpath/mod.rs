@@ -1,5 +1,5 @@
 //! The 3MF Toolpath extension, version 1.0 (namespace of 2026/03, with the production extension that it requires): a plan
-//! is written for other programs, and read back as a plan. Of files of others the deposition toolpaths are read.
+//! is written for other programs, and read back as a plan. From other programs' files, the deposition toolpaths are read.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -9,8 +9,8 @@
 //! | `read` | a package becomes a plan again |
 //! | `read_layer` | its layers |
 //!
-//! Coordinates are whole multiples of 0.1 µm, as in plan.json. What the extension has no words for stands in a namespace
-//! of ours, which other readers pass over: the kind of a pass, pace and wire feed, outlines, and the whole profile.
+//! Coordinates are whole multiples of 0.1 µm, as in plan.json. What the extension has no words for is in a namespace of our
+//! own, which other readers skip: the kind of a pass, pace and wire feed, outlines, and the whole profile.
 
 mod layer;
 mod read;
@@ -34,7 +34,7 @@ const OWN: &str = "https://github.com/beadwright/beadwright/3mf/2026/11";
 /// Length of a unit of coordinates, mm.
 const UNIT_MM: f64 = 1e-4;
 
-/// The tag of points that stand only where a closed pass overlaps its own beginning.
+/// The tag of points that are only there because a closed pass overlaps its own beginning.
 const OVERLAP: u32 = 1;
 
 /// The tag of points between those of the plan, where hot start or lead-out changes the speed.

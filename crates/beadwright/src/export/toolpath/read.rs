@@ -1,8 +1,8 @@
 //! A package with toolpaths becomes a plan.
 //!
-//! Of Beadwright's own files everything comes back. Of others, every pass becomes one with the width of its profile and the
-//! speed as its pace; waits belong to the profile of Beadwright that it is judged with. What cannot be followed exactly (a
-//! value that changes within a line, an unknown segment) is refused, as the extension demands.
+//! Beadwright's own files come back whole. From others, every pass becomes one with the width of its profile and the speed
+//! as its pace; waits belong to the Beadwright profile that it is judged with. What cannot be followed exactly (a value that
+//! changes within a line, an unknown segment) is refused, as the extension demands.
 
 use super::read_layer;
 use crate::layer::{Extent, Layer, Lit};
@@ -47,14 +47,14 @@ pub(super) struct Style {
 #[derive(Debug, Default)]
 pub(super) struct Resource {
     id: u32,
-    /// Millimetres a unit.
+    /// Millimetres per unit.
     pub(super) unit: f64,
     pub(super) styles: BTreeMap<String, Style>,
     /// Path and top (units) of each layer.
     layers: Vec<(String, Option<f64>)>,
     /// Bottom of the first layer, units.
     bottom: f64,
-    /// Part, strategy, profile and bounds, where Beadwright has written it.
+    /// Part, strategy, profile and bounds, if Beadwright wrote the file.
     pub(super) plan: Option<[String; 4]>,
 }
 
@@ -93,7 +93,7 @@ pub fn read(bytes: &[u8]) -> Result<PlanFile, ImportError> {
         return Err(broken("its toolpath has no layers"));
     }
     Lit::join(&mut layers).map_err(|index| {
-        broken(format!("layer {}: the arc goes on from layer to layer there, so it must have one segment", index + 1))
+        broken(format!("layer {}: the arc continues from layer to layer there, so it must have one segment", index + 1))
     })?;
     let [part, strategy, profile, bounds] = resource.plan.unwrap_or_default();
     let profile = if profile.is_empty() { None } else { Some(profile_of(&profile)?) };
@@ -159,7 +159,7 @@ fn model(package: &mut Package<'_>, path: &str) -> Result<Resource, ImportError>
     let found = resources.into_iter().find(|resource| wanted.is_none_or(|id| id == resource.id));
     found.filter(|_| wanted.is_some() || count == 1).ok_or_else(|| {
         broken(match (wanted, count) {
-            (Some(id), _) => format!("its build wants toolpath {id}, which is not there"),
+            (Some(id), _) => format!("its build names toolpath {id}, which does not exist"),
             (None, 0) => "it holds no toolpath".to_owned(),
             (None, count) => format!("it holds {count} toolpaths, and its build does not say which one is meant"),
         })
@@ -176,7 +176,7 @@ impl Style {
         let value = |key: &str| optional(element, key).map(|base| base.map(|base| Value { base, modifier: None }));
         let kind = element.attribute("kind").map(|name| {
             let quoted = serde_json::Value::String(name.clone());
-            serde_json::from_value(quoted).map_err(|_| broken(format!("no pass is of the kind \"{name}\"")))
+            serde_json::from_value(quoted).map_err(|_| broken(format!("there is no kind of pass \"{name}\"")))
         });
         Ok(Self {
             kind: kind.transpose()?,

@@ -28,12 +28,12 @@ struct Open<'a> {
     style: &'a Style,
     shape: String,
     closed: bool,
-    /// Wait before it, s, as Beadwright has written it.
+    /// Wait before it, s, as Beadwright wrote it.
     wait: f64,
     vertices: Vec<Vertex>,
 }
 
-/// Reads the file of the layer with an index; `slab` has its bottom and top (mm), where the model file tells them.
+/// Reads the file of the layer with an index; `slab` has its bottom and top (mm), where the model file gives them.
 pub(super) fn read(
     package: &mut Package<'_>,
     path: &str,
@@ -71,15 +71,15 @@ struct Reader<'a> {
     parts: Vec<u32>,
     /// Height of planar passes, mm.
     top: Option<f64>,
-    /// Top and thickness as Beadwright has written them, mm.
+    /// Top and thickness as Beadwright wrote them, mm.
     own: Option<[f64; 2]>,
-    /// Whether its arc goes on in the next layer.
+    /// Whether its arc continues in the next layer.
     goes_on: bool,
     islands: Vec<Polygon>,
     segments: usize,
     open: Option<Open<'a>>,
     passes: Vec<Pass>,
-    /// The thickness of beads, as a profile tells it, mm.
+    /// The thickness of beads, as a profile gives it, mm.
     height: Option<f64>,
 }
 
@@ -142,7 +142,7 @@ impl<'a> Reader<'a> {
         self.segments += 1;
         let shape = element.attribute("type").unwrap_or_default();
         if !["polyline", "loop", "hatch", "polyline3d", "polyline6d"].contains(&shape.as_str()) {
-            return Err(broken(format!("segments of the type \"{shape}\" are not known")));
+            return Err(broken(format!("segments of the type \"{shape}\" are unknown")));
         }
         let (profile, part): (u32, u32) =
             (element.number("profileid").map_err(broken)?, element.number("partid").map_err(broken)?);
@@ -163,14 +163,14 @@ impl<'a> Reader<'a> {
         let Some(open) = &mut self.open else { return Ok(()) };
         let number = |key: &str| element.number::<f64>(key).map_err(broken);
         let z = match element.name() {
-            "point" => top.ok_or_else(|| broken("the layer tells no height (ztop) for its flat segments"))?,
+            "point" => top.ok_or_else(|| broken("the layer gives no height (ztop) for its flat segments"))?,
             _ => number("z")? * unit,
         };
         if element.name() == "point6d" {
-            // Beadwright leans the torch by the profile; what cannot be an orientation is refused all the same.
+            // Beadwright leans the torch by the profile; what cannot be an orientation is refused anyway.
             let q = [number("i")?, number("j")?, number("k")?, number("w")?];
             if q.iter().map(|v| v * v).sum::<f64>() < 1e-12 {
-                return Err(broken("a point has an orientation (i, j, k, w) of 0, which is none"));
+                return Err(broken("a point has an orientation (i, j, k, w) of 0, which is not valid"));
             }
         }
         let at = DVec3::new(number("x")? * unit, number("y")? * unit, z);
@@ -184,7 +184,7 @@ impl<'a> Reader<'a> {
     fn hatch(&mut self, element: &Element) -> Result<(), ImportError> {
         let unit = self.resource.unit;
         let Some(open) = &self.open else { return Ok(()) };
-        let top = self.top.ok_or_else(|| broken("the layer tells no height (ztop) for its flat segments"))?;
+        let top = self.top.ok_or_else(|| broken("the layer gives no height (ztop) for its flat segments"))?;
         let number = |key: &str| element.number::<f64>(key).map(|units| units * unit).map_err(broken);
         let points = vec![DVec3::new(number("x1")?, number("y1")?, top), DVec3::new(number("x2")?, number("y2")?, top)];
         let (width, pace) = open.style.values(element)?;
@@ -218,21 +218,21 @@ impl<'a> Reader<'a> {
 impl Style {
     /// Width (mm) and pace (mm/s) of the line that an element closes.
     fn values(&self, element: &Element) -> Result<(f64, f64), ImportError> {
-        let width = self.width.ok_or_else(|| broken("its profile tells no beadwidth: it is not one of deposition"))?;
+        let width = self.width.ok_or_else(|| broken("its profile gives no beadwidth: it is not for deposition"))?;
         let pace = self.pace.or(self.speed);
-        let pace = pace.ok_or_else(|| broken("its profile tells no depositionspeed: it is not one of deposition"))?;
+        let pace = pace.ok_or_else(|| broken("its profile gives no depositionspeed: it is not for deposition"))?;
         Ok((width.on(element)?, pace.on(element)?))
     }
 }
 
 impl Open<'_> {
-    /// The pass of a chain of lines; in files of ours, what only welding has added is taken away again.
+    /// The pass of a chain of lines; in our own files, what only welding added is taken away again.
     fn pass(self, ours: bool) -> Pass {
         let Self { style, closed, shape, wait, mut vertices } = self;
         if ours {
             vertices.retain(|vertex| ![OVERLAP, BETWEEN].contains(&vertex.tag));
         }
-        // The values of a line stand at its end; those of the closing line of a loop at the first point.
+        // The values of a line are at its end; those of the closing line of a loop at the first point.
         let is_loop = shape == "loop";
         let returns = vertices.len() > 2 && vertices.first().zip(vertices.last()).is_some_and(|(a, b)| a.at == b.at);
         let last = vertices.pop_if(|_| closed && returns);

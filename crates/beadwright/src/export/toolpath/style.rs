@@ -1,7 +1,7 @@
 //! The profiles of a file: one for each kind of pass, thickness of layer and pair of waits.
 //!
 //! What changes along passes is written as a factor between the least and the greatest value of the whole plan, as the
-//! extension asks for: a machine that cannot go so far sees it before it begins.
+//! extension asks for: a machine that cannot go that far knows before it begins.
 
 use super::super::walk::Run;
 use crate::number::fixed;

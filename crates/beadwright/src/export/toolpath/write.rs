@@ -53,7 +53,7 @@ fn layer_path(index: usize) -> String {
     format!("/Toolpath/Layers/layer{:05}.xml", index + 1)
 }
 
-/// What the things of a file are known by: the same plan has the same ones.
+/// The identifiers in a file: the same plan has the same ones.
 struct Ids {
     file: Uuid,
     object: Uuid,

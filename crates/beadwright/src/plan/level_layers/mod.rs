@@ -5,8 +5,9 @@
 //! them, two 0.83 and ten 0.96 for ρ = 0.715. And a small part rises faster than its metal fills it, since its corners and
 //! its rim stay rounded. [`slabs`] looks at slices of the part, lays each on itself in the model, and places the layers as high
 //! as their beads fill them, where a wide layer is `layers.height` high. Within a layer [`share`] then shifts metal from beads
-//! that have neighbours to those that have none, by the pace: every piece of a pass fills the strip of the slice that lies nearest
-//! to it, from the metal below as the model builds it, and beads that become wider at the outline move inwards ([`rim`]).
+//! that have neighbours to those that have none, by the pace: every piece of a pass fills the strip of the slice that lies
+//! nearest to it, from the metal below as the model builds it, and beads that become wider at the outline move inwards
+//! ([`rim`]).
 
 mod rim;
 mod share;
@@ -28,12 +29,12 @@ use glam::DVec2;
 use planar::{Polygon, Region, Ring};
 use rayon::prelude::*;
 
-/// Number of heights at which a part is looked at, at most.
+/// Maximum number of heights at which a part is examined.
 const HEIGHTS: usize = 24;
-/// A layer is not thinner or thicker than this, in layers.height.
+/// Limits of a layer's thickness, as multiples of layers.height.
 const THICKNESS: std::ops::RangeInclusive<f64> = 0.5..=1.25;
 
-/// The layers of a mesh that stands on z = 0, each as high as its metal fills its slice.
+/// The layers of a mesh placed on z = 0, each as high as its metal fills its slice.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -85,7 +86,7 @@ fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec
     Layer { height, islands, passes, ..Layer::default() }
 }
 
-/// A layer is laid so many times on itself to see how high it is.
+/// A layer is laid on itself this many times to see how high it is.
 const REPEATED: usize = 6;
 
 /// How high a layer is whose beads hold what they need once it lies on others like it; `None` for one without beads.
@@ -109,9 +110,9 @@ fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
 /// narrower and leave voids; layers that are a little too high have humps, which the next layer remelts.
 const FILLED: f64 = 0.35;
 
-/// How high a layer is on what lies below: half way from the height to which most of its beads fill it ([`FILLED`]) to the lowest
-/// at which no more metal is laid than is needed, since a bead can hold no less than 1 / [`share::MOST`] of its own. If more is laid
-/// at the former, it is as much higher as takes it up.
+/// How high a layer is on what lies below: halfway from the height to which most of its beads fill it ([`FILLED`]) to the
+/// lowest at which no more metal is laid than is needed, since a bead can hold no less than 1 / [`share::MOST`] of its own.
+/// If more is laid at the former, it is higher by as much as takes up the surplus.
 fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
     let shares = share::shares(layer, Some(below), region, profile);
     let mut pieces: Vec<(f64, f64)> =
@@ -147,7 +148,7 @@ fn root(rising: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The value at a height between two that are known; beyond the first and the last, theirs.
+/// The value at a height between two that are known; beyond the first or the last, that one's value.
 fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
     let behind = known.partition_point(|(at, _)| *at < z);
     match (behind.checked_sub(1).and_then(|i| known.get(i)), known.get(behind)) {
@@ -158,17 +159,17 @@ fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
 
 /// Layers up to this factor higher than usual count as usual.
 const USUAL: f64 = 1.03;
-/// Rather than one more layer, usual ones are stretched by a rest of up to this part of a layer,
+/// Rather than adding one more layer, usual ones are stretched by a remainder of up to this part of a layer,
 const STRETCHED: f64 = 0.8;
 /// and others by one of up to this part.
 const STRETCHED_LESS: f64 = 0.3;
 
-/// Layers of about `usual` that rise as `rise` says of their middle, stretched or pressed to end at `top` (all mm).
+/// Layers of about `usual` that rise as `rise` says of their middle, stretched or compressed to end at `top` (all mm).
 fn stacked(top: f64, usual: f64, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let (mut slabs, mut z) = (Vec::new(), 0.0);
     while slabs.len() < MAX_LAYERS {
         let height = rise(z + usual / 2.0);
-        // Layers about as high as usual sooner than others: lower ones leave voids between their beads, higher ones are
+        // Layers about as high as usual rather than others: lower ones leave voids between their beads, higher ones are
         // overfilled.
         let is_usual = top <= USUAL * usual * slabs.len() as f64;
         let rest = if is_usual { STRETCHED } else { STRETCHED_LESS };

@@ -1,8 +1,8 @@
 //! Wider beads stay inside the outline.
 //!
-//! A bead along the outline is laid half its planned width inside. Where it gets more metal than planned it becomes wider,
-//! on both sides alike if it stayed: metal beside the part. Moved inwards by all of it, it would pile up on its neighbour.
-//! So it moves by [`INWARDS`] of what would lie outside.
+//! A bead along the outline is laid half its planned width inside. Where it gets more metal than planned it becomes wider.
+//! If it stayed, it would do so on both sides alike, with metal outside the part; if it moved inwards by all of it, it would
+//! pile up on its neighbour. So it moves by [`INWARDS`] of what would lie outside.
 
 use glam::DVec2;
 use planar::{Region, Ring};
@@ -11,7 +11,7 @@ use rstar::primitives::Line;
 
 /// A bead moves by this part of what would lie outside.
 const INWARDS: f64 = 0.6;
-/// What counts as no way at all, mm.
+/// Shorter distances count as none, mm.
 const NOTHING: f64 = 1e-6;
 /// A place in a corner is moved away from one side after the other, this often.
 const TURNS: usize = 4;

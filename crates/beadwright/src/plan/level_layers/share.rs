@@ -14,9 +14,9 @@ use planar::{Join, Region, polyline};
 pub(super) const MOST: f64 = 1.2;
 /// Pieces on which the metal is found, in widths of the nominal bead.
 const PIECE: f64 = 0.25;
-/// Metal is evened out over this distance before and behind a piece, in widths.
+/// Metal is evened out over this distance before and after a piece, in widths.
 const AROUND: f64 = 1.0;
-/// Pieces that need the same metal but for this fraction get the same.
+/// Pieces whose metal differs by no more than this fraction get the same.
 const ALIKE: f64 = 0.06;
 /// Shifts inwards are evened out over this distance, in widths.
 const EVEN: f64 = 0.5;
@@ -26,9 +26,9 @@ const STRAIGHT: f64 = 0.006;
 const REACH: f64 = 0.75;
 /// Grid points across a bead, if they are not more than [`MOST_POINTS`].
 const ACROSS: f64 = 8.0;
-/// Of what the metal below lacks, or has too much, a layer makes good this part.
+/// A layer makes up for this part of what the metal below lacks or has too much of.
 const GAIN: f64 = 0.5;
-/// A place is filled by no less and no more than this, in heights of the layer.
+/// A place is filled to no less and no more than this, in heights of the layer.
 const WANTED: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
 /// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those around it needs as a multiple of what
@@ -47,11 +47,11 @@ fn nominal(profile: &Profile) -> Nominal {
     crate::plan::deposit_settings(profile).nominal
 }
 
-/// What the passes of a layer hold and need, on what lies below; without it on a layer as planned.
+/// What the passes of a layer hold and need, on what lies below; without that, on a layer as planned.
 pub(super) fn shares(layer: &Layer, below: Option<&Stack>, region: &Region, profile: &Profile) -> Vec<Share> {
     let nominal = nominal(profile);
     let width = nominal.bead.width;
-    // A dot holds what its place needs already.
+    // A dot already holds what its place needs.
     let pieces = |pass: &Pass| if pass.kind == PassKind::Spot { Vec::new() } else { cut(pass, PIECE * width) };
     let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(pieces).collect();
     // Where beads lie side by side, their metal makes layers.height, whatever the profile says of the bead.
@@ -74,7 +74,7 @@ pub(super) fn shares(layer: &Layer, below: Option<&Stack>, region: &Region, prof
     layer.passes.iter().zip(pieces).map(share).collect()
 }
 
-/// What the beads of a layer should fill: its islands with what is milled off.
+/// What the beads of a layer should fill: its islands, including what is milled off.
 pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
     let region = Region::from_normalised(layer.islands.clone());
     match profile.fill.machining_allowance {
@@ -113,7 +113,7 @@ pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, profile: 
     layer.passes = uncrossed(moved, stayed);
 }
 
-/// Passes that would cross, once their beads moved inwards, stay where they were planned.
+/// Passes that would cross once their beads are moved inwards stay where they were planned.
 fn uncrossed(mut moved: Vec<Pass>, stayed: Vec<Pass>) -> Vec<Pass> {
     loop {
         let lines: Vec<Vec<DVec2>> = moved.iter().map(Pass::line).collect();
@@ -142,7 +142,7 @@ fn shifts(planned: &[Segment], wider: &[Segment], closed: bool, rim: &Rim, reach
     (0..planned.len()).map(even).collect()
 }
 
-/// Where pieces begin that are shifted, and where the last of an open pass ends.
+/// Where shifted pieces begin, and where the last one of an open pass ends.
 fn places(pieces: &[Segment], shifts: &[DVec2], closed: bool) -> Vec<DVec2> {
     let before = |k: usize| match k {
         0 if closed => shifts.len() - 1,
@@ -163,8 +163,9 @@ fn cut(pass: &Pass, longest: f64) -> Vec<Segment> {
     pass.segments().flat_map(parts).collect()
 }
 
-/// What fills the strip of the slice nearest to each piece, mm³: the height of the layer, more where the `ground` below (mm) lies
-/// too low and less where it lies too high. Where no bead reaches, and at the rim, which no bead fills, it counts as planned.
+/// What fills the strip of the slice nearest to each piece, mm³: the height of the layer, more where the `ground` below (mm)
+/// lies too low and less where it lies too high. Where no bead reaches, and at the rim, which no bead fills, it counts as
+/// planned.
 fn strips<'a>(
     layer: &Layer,
     ground: impl Fn(DVec2) -> Option<f64>,
@@ -216,13 +217,13 @@ fn strips<'a>(
             }
         }
     }
-    // Few points lie across a wall: each stands for as much as makes them the area of the slice.
+    // Few points lie across a wall: each counts for enough that they add up to the area of the slice.
     let each = if inside > 0.0 { region.area() / inside } else { 0.0 };
     strips.iter_mut().for_each(|strip| *strip *= each);
     strips
 }
 
-/// The pieces of a pass that end within a distance (mm) before and behind a piece, and the piece itself.
+/// The pieces of a pass that end within a distance (mm) before and after a piece, and the piece itself.
 fn around(piece: usize, lengths: &[f64], closed: bool, distance: f64) -> impl Iterator<Item = usize> {
     let count = lengths.len();
     let next = move |at: usize, forth: bool| match (forth, closed) {

@@ -30,7 +30,7 @@ pub(super) struct Cards<'a> {
 /// Sorts the lines into sections.
 ///
 /// # Errors
-/// [`IgesError`] when this is no IGES of fixed format, a card is broken or out of order, or the end is missing.
+/// [`IgesError`] when this is not IGES in fixed format, a card is broken or out of order, or the end is missing.
 pub(super) fn sort(bytes: &[u8]) -> Result<Cards<'_>, IgesError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(if bytes.is_empty() { IgesError::Empty } else { not_iges("it holds nothing but white space") });
@@ -102,7 +102,7 @@ fn bad_letter(bytes: &[u8], line: usize, text: &[u8]) -> IgesError {
     }
     let reason = match text.get(LETTER) {
         Some(&letter) => format!("column 73 holds \"{}\", not S, G, D, P or T", letter.escape_ascii()),
-        None => format!("it ends in column {}, and the section letter stands in column 73", text.len()),
+        None => format!("it ends in column {}, and the section letter belongs in column 73", text.len()),
     };
     IgesError::Card { line, reason }
 }

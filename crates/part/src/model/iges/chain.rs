@@ -1,6 +1,6 @@
 //! Puts the parts of a composite in sequence.
 //!
-//! The standard requires them in order and direction; some programs (Parasolid among them) write them otherwise.
+//! The standard requires them in order and direction; some programs (Parasolid among them) write them differently.
 
 use crate::curve::Nurbs;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 /// How the parts of a composite were found.
 pub(super) enum Chain {
-    /// As the standard wants them.
+    /// As the standard requires.
     InOrder(Vec<Nurbs>),
     /// They meet, but in another order or direction; here they are in the order in which they meet.
     Reordered(Vec<Nurbs>),

@@ -26,7 +26,7 @@ pub(super) struct Entry {
 /// Reads the directory section.
 ///
 /// # Errors
-/// [`IgesError::Card`] for a field that is no number or a lone card at the end.
+/// [`IgesError::Card`] for a field that is not a number or a lone card at the end.
 pub(super) fn read(cards: &[Card]) -> Result<Vec<Entry>, IgesError> {
     let (pairs, rest) = cards.as_chunks::<2>();
     if let Some(card) = rest.first() {

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Columns of a parameter card that hold data.
 const WIDTH: usize = 64;
 
-/// Most matrices in a chain, each placed by the next.
+/// Maximum number of matrices in a chain, each placed by the next.
 const MAX_CHAIN: usize = 32;
 
 /// Parts of a composite meet when their gap is no wider than this, mm (or ten times the file's own resolution).
@@ -50,7 +50,7 @@ fn check_announced(sections: &cards::Cards, warnings: &mut Vec<String>) {
         };
         if found != announced {
             warnings.push(format!(
-                "The last card announces {announced} {letter} cards, but {found} stand there: cards were lost or \
+                "The last card announces {announced} {letter} cards, but there are {found}: cards were lost or \
                  added. Export the drawing again if a curve is missing."
             ));
         }
@@ -109,7 +109,7 @@ impl Drawing<'_> {
     fn warn(&mut self, i: usize, reason: &str) {
         let reason = reason.trim_end_matches('.');
         let place = self.place(i);
-        self.warnings.push(format!("The {place} was not read: {reason}. Export it again, or draw it anew."));
+        self.warnings.push(format!("The {place} was not read: {reason}. Export it again, or redraw it."));
     }
 
     /// `circular arc at directory entry D19`.
@@ -163,13 +163,13 @@ impl Drawing<'_> {
             }
             let i = self.entry(pointer)?;
             if self.entries[i].entity != MATRIX {
-                return Err(format!("its matrix should stand at D{pointer}, where there is a {}", self.place(i)));
+                return Err(format!("its matrix should be at D{pointer}, where there is a {}", self.place(i)));
             }
             let own = self.parameters(i).and_then(|p| entities::matrix(&p));
             place = own.map_err(|reason| format!("its matrix at D{pointer} is broken: {reason}"))? * place;
             pointer = self.entries[i].matrix;
         }
-        Err("its matrices point to each other in a circle".to_owned())
+        Err("its matrices point to each other in a loop".to_owned())
     }
 
     /// A curve that is not a composite, in place.
@@ -223,7 +223,7 @@ impl Drawing<'_> {
         match chain::join(parts, GAP_MM.max(10.0 * self.global.resolution_mm) / unit) {
             Chain::InOrder(parts) => parts,
             Chain::Reordered(parts) => {
-                let text = format!("The parts of the {place} are not listed as they meet; they were put in order.");
+                let text = format!("The parts of the {place} are listed out of sequence; they were put in order.");
                 self.warnings.push(text);
                 parts
             }

@@ -36,7 +36,7 @@ pub(super) fn curve(entity: u32, form: i32, p: &Parameters) -> Read {
         110 => Ok((Nurbs::line(point(p, 1)?, point(p, 4)?).map_err(text)?, 6)),
         112 => parametric_spline(p),
         126 => spline(p),
-        _ => Err(format!("entity {entity} is no curve")),
+        _ => Err(format!("entity {entity} is not a curve")),
     }
 }
 
@@ -122,7 +122,7 @@ fn parametric_spline(p: &Parameters) -> Read {
     let knots = std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect();
     let curve = Nurbs::new(3, knots, vec![1.0; points.len()], points).map_err(text)?;
     if gap > GAP * curve.extent() {
-        return Err(format!("its pieces do not meet: they gape by {gap} units of the file"));
+        return Err(format!("its pieces do not meet: they are {gap} units of the file apart"));
     }
     Ok((curve, 5 + pieces + 12 * (pieces + 1)))
 }

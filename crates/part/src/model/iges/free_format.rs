@@ -22,7 +22,7 @@ enum Field {
     Word(String),
 }
 
-/// The parameters of a record, with the line each stands on.
+/// The parameters of a record, with the line that each is on.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
     fields: Vec<(Field, usize)>,
@@ -31,7 +31,7 @@ pub(super) struct Parameters {
 /// The columns of many cards as one text; cards shorter than `width` are padded with blanks.
 pub(super) struct Text {
     bytes: Vec<u8>,
-    /// Line of the first card and how many columns each has: card k stands on the k-th of the given lines.
+    /// Line of the first card and how many columns each has: card k is on the k-th of the given lines.
     lines: Vec<usize>,
     width: usize,
 }
@@ -79,7 +79,7 @@ impl Text {
         }
     }
 
-    /// The field from byte `at`, and where its delimiter stands.
+    /// The field from byte `at`, and where its delimiter is.
     fn field(&self, at: usize, delimiters: Delimiters) -> Result<(Field, usize), String> {
         let rest = self.bytes.get(at..).unwrap_or_default();
         let is_end = |b: &u8| *b == delimiters.parameter || *b == delimiters.record;
@@ -116,7 +116,7 @@ impl Parameters {
     /// Parameter `i` as a number; one left out is 0.
     ///
     /// # Errors
-    /// The reason, with number and line, when it is missing or no finite number.
+    /// The reason, with number and line, when it is missing or not a finite number.
     pub(super) fn real(&self, i: usize) -> Result<f64, String> {
         match self.get(i)? {
             (Field::Empty, _) => Ok(0.0),

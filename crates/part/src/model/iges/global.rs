@@ -11,7 +11,7 @@ const WIDTH: usize = 72;
 #[derive(Debug)]
 pub(super) struct Global {
     pub(super) delimiters: Delimiters,
-    /// Millimetres in one unit of the coordinates, the scale of the drawing taken out.
+    /// Millimetres in one unit of the coordinates, the scale of the drawing removed.
     pub(super) unit_mm: f64,
     /// Points closer than this coincide, mm.
     pub(super) resolution_mm: f64,
@@ -29,7 +29,7 @@ pub(super) fn read(cards: &[Card], warnings: &mut Vec<String>) -> Result<Global,
     let text = Text::new(cards, WIDTH);
     let (delimiters, at) = delimiters(text.bytes()).map_err(error)?;
     let Some(at) = at else {
-        return Err(error("it ends behind the delimiters".to_owned()));
+        return Err(error("it ends after the delimiters".to_owned()));
     };
     // The first field that is split here is global parameter 3.
     let global = text.split(at, delimiters).map_err(error)?;
@@ -58,7 +58,7 @@ fn delimiters(text: &[u8]) -> Result<(Delimiters, Option<usize>), String> {
         if end == expected || (known.is_some() && end == chosen) {
             return Ok((chosen, end));
         }
-        Err(format!("\"{}\" stands where the delimiter \"{}\" belongs", end.escape_ascii(), expected.escape_ascii()))
+        Err(format!("\"{}\" is where the delimiter \"{}\" belongs", end.escape_ascii(), expected.escape_ascii()))
     };
     let (parameter, _) = next(b',', None)?;
     let (record, end) = next(b';', Some(parameter))?;
@@ -87,7 +87,7 @@ fn scale(global: &Parameters, i: usize, warnings: &mut Vec<String>) -> Result<f6
     Ok(scale)
 }
 
-/// Units by flag: name and millimetres. Flag 3 stands for "see the name".
+/// Units by flag: name and millimetres. Flag 3 means "see the name".
 const UNITS: [(i64, &[&str], f64); 10] = [
     (1, &["IN", "INCH"], 25.4),
     (2, &["MM"], 1.0),
@@ -111,7 +111,7 @@ fn unit(global: &Parameters, flag: usize, name: usize, warnings: &mut Vec<String
     match (by_flag, by_name) {
         (Some(unit), Some(other)) if unit.0 != other.0 => {
             warnings.push(format!(
-                "The file's unit flag means {}, but its unit is called {name}; the flag was taken. \
+                "The file's unit flag means {}, but its unit is called {name}; the flag was used. \
                  Check the size of the part.",
                 unit.1[0]
             ));

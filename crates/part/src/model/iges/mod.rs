@@ -35,7 +35,7 @@ use crate::curve::Nurbs;
 /// What was read from an IGES file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct IgesFile {
-    /// All curves in the order of the directory, members of composites among them (they also stand in the parts of
+    /// All curves in the order of the directory, members of composites among them (they are also in the parts of
     /// their composite).
     pub curves: Vec<IgesCurve>,
     /// Every kind of entity in the file, by its number.
@@ -76,11 +76,11 @@ pub struct IgesCurve {
 /// The subordinate switch of an entity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dependence {
-    /// Stands for itself.
+    /// Independent of other entities.
     Independent,
     /// Part of another entity, which places it.
     Physical,
-    /// Member of another entity, and stands for itself.
+    /// Member of another entity, but also independent.
     Logical,
     /// Both.
     Both,
@@ -91,7 +91,7 @@ pub enum Dependence {
 pub struct EntityCount {
     /// Entity type number.
     pub entity: u32,
-    /// What it is, for people.
+    /// What it is, in words.
     pub name: &'static str,
     /// Those that were read and used.
     pub read: usize,
@@ -100,7 +100,7 @@ pub struct EntityCount {
 }
 
 impl IgesFile {
-    /// The curves that stand for themselves: shown, in space, and not part of another entity.
+    /// The independent curves: shown, in space, and not part of another entity.
     pub fn independent_curves(&self) -> impl Iterator<Item = &IgesCurve> {
         let stands = |d| matches!(d, Dependence::Independent | Dependence::Logical);
         self.curves.iter().filter(move |c| c.is_visible && !c.is_parametric && stands(c.dependence))
@@ -116,7 +116,7 @@ pub enum IgesError {
     /// Not an IGES file.
     #[error("this is not an IGES file: {reason}. Save the drawing as IGES (fixed format, ASCII) and try again.")]
     NotIges {
-        /// What speaks against it, with the line.
+        /// The reason, with the line.
         reason: String,
     },
     /// IGES, but not of 80-column cards.
@@ -136,7 +136,7 @@ pub enum IgesError {
     Card {
         /// Line number, from 1.
         line: usize,
-        /// What was expected and what stands there.
+        /// What was expected and what was found.
         reason: String,
     },
     /// The global section cannot be read.
@@ -144,12 +144,12 @@ pub enum IgesError {
     Global {
         /// Its first line.
         line: usize,
-        /// What was expected and what stands there.
+        /// What was expected and what was found.
         reason: String,
     },
     /// The unit is not known.
     #[error(
-        "the IGES file has the unit flag {flag} and the unit name \"{name}\", which is no known unit. Export it in mm."
+        "the IGES file has the unit flag {flag} and the unit name \"{name}\", which is not a known unit. Export it in mm."
     )]
     Unit {
         /// Global parameter 14.

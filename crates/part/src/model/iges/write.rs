@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// What a written file says in its head.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// Name of the file, as the file itself tells it. Default: `curves.igs`.
+    /// Name of the file, as the file itself states it. Default: `curves.igs`.
     pub file_name: String,
     /// Date as `YYYYMMDD.HHNNSS`. Default: `20000101.000000`, so that the same curves give the same bytes.
     pub date: String,
@@ -139,7 +139,7 @@ fn hollerith(text: &str) -> String {
     if text.is_empty() { text } else { format!("{}H{text}", text.len()) }
 }
 
-/// The shortest digits that give the same number again, with a point and a D before the exponent.
+/// The fewest digits that give the same number again, with a point and a D before the exponent.
 fn real(value: f64) -> String {
     let text = format!("{value:?}");
     match text.split_once('e') {

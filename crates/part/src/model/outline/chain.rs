@@ -10,7 +10,7 @@ const JOIN: f64 = 1e-5;
 /// A chain that does not close: its ends, in the units of the file.
 pub(super) struct Gap(pub(super) DVec2, pub(super) DVec2);
 
-/// The rings that pieces form, each of which has two points or more; a piece is used once.
+/// The rings that pieces form, each of which has two points or more; each piece is used once.
 pub(super) fn rings(pieces: Vec<Vec<DVec2>>) -> Result<Vec<Ring>, Gap> {
     let extent = Bounds::of(pieces.iter().flatten().copied()).map_or(0.0, |bounds| bounds.size().max_element());
     let mut ends = Ends { cells: HashMap::new(), step: (JOIN * extent).max(f64::MIN_POSITIVE), pieces };

@@ -1,5 +1,5 @@
 //! DXF drawings: LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE, with bulges. Curves that cannot be followed exactly are refused
-//! by name; texts, dimensions and the like are told and passed over.
+//! by name; texts, dimensions and similar entities are reported and passed over.
 
 use super::super::{ImportError, Units};
 use super::entity::{self, Entity, broken};
@@ -153,7 +153,7 @@ impl Found {
         }
     }
 
-    /// A polyline of points and the bulge of the piece that begins at each.
+    /// A polyline of points, each with the bulge of the piece that begins there.
     fn polyline(&mut self, vertices: &[(DVec2, f64)], closed: bool) {
         let Some(&first) = vertices.first() else { return };
         let mut points = vec![first.0];
@@ -197,7 +197,7 @@ fn bulged(from: DVec2, to: DVec2, bulge: f64) -> Vec<DVec2> {
     if bulge == 0.0 || chord == DVec2::ZERO {
         return vec![from, to];
     }
-    // The middle lies beside the chord's: r cos(sweep / 2) = c / 2 · (1 - b²) / 2b.
+    // The middle lies off the chord's: r cos(sweep / 2) = c / 2 · (1 - b²) / 2b.
     let centre = from + chord / 2.0 + chord.perp() * (1.0 - bulge * bulge) / (4.0 * bulge);
     let arm = from - centre;
     let mut points = arc(centre, arm.length(), arm.to_angle(), 4.0 * bulge.atan());

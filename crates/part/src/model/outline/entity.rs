@@ -1,4 +1,4 @@
-//! A DXF drawing as its text has it: pairs of lines, a code and a value, which form entities.
+//! A DXF drawing as it is in its text: pairs of lines, a code and a value, which form entities.
 
 use super::super::ImportError;
 use glam::DVec2;
@@ -13,7 +13,7 @@ pub(super) struct Entity<'a> {
     pub(super) groups: Vec<(i32, &'a str)>,
 }
 
-/// The entities of a drawing and the number that tells its unit.
+/// The entities of a drawing and the number that gives its unit.
 pub(super) struct Drawing<'a> {
     pub(super) entities: Vec<Entity<'a>>,
     pub(super) unit: i32,
@@ -23,10 +23,10 @@ pub(super) fn broken(reason: String) -> ImportError {
     ImportError::Broken { format: "DXF", reason }
 }
 
-/// Takes the text of a drawing apart.
+/// Splits the text of a drawing into entities.
 ///
 /// # Errors
-/// [`ImportError::Broken`] with the line that is no code.
+/// [`ImportError::Broken`] with the line that is not a code.
 pub(super) fn drawing(text: &str) -> Result<Drawing<'_>, ImportError> {
     let mut drawing = Drawing { entities: Vec::new(), unit: 0 };
     let (mut section, mut variable) = ("", "");
@@ -36,7 +36,7 @@ pub(super) fn drawing(text: &str) -> Result<Drawing<'_>, ImportError> {
         let code = code.trim();
         let code: i32 = code
             .parse()
-            .map_err(|_| broken(format!("line {number}: a code is expected, and \"{}\" stands there", shown(code))))?;
+            .map_err(|_| broken(format!("line {number}: a code is expected, but \"{}\" was found", shown(code))))?;
         let value = value.trim();
         match (code, section) {
             (0, _) if value == "ENDSEC" => section = "",

@@ -3,7 +3,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `dxf` | lines, arcs, circles and polylines of DXF drawings |
-//! | `entity` | the entities of a DXF drawing as its text has them |
+//! | `entity` | the entities of a DXF drawing as they are in its text |
 //! | `svg` | paths and shapes of SVG drawings, through `usvg` |
 //! | `chain` | loose pieces are joined end to end |
 //!
@@ -24,15 +24,15 @@ use planar::{Bounds, FillRule, Region, Ring};
 pub struct Outlines {
     /// Outlines and holes, in the units of the file, y upwards.
     pub rings: Vec<Ring>,
-    /// The format, for people.
+    /// The format, in words.
     pub format: &'static str,
-    /// The unit of the coordinates, where the file tells it.
+    /// The unit of the coordinates, where the file states it.
     pub units: Option<Units>,
     /// What the drawing holds besides outlines, as sentences.
     pub notes: Vec<String>,
 }
 
-/// What a drawing looks like, for people; `None` for anything else.
+/// What a drawing looks like, in words; `None` for anything else.
 pub fn drawing(bytes: &[u8]) -> Option<&'static str> {
     [(dxf::is_dxf(bytes), "a DXF drawing"), (svg::is_svg(bytes), "an SVG drawing")]
         .into_iter()
@@ -67,7 +67,7 @@ fn check_points(count: usize, format: &'static str) -> Result<(), ImportError> {
     if count <= MOST_POINTS {
         return Ok(());
     }
-    let reason = format!("its outlines have more than {MOST_POINTS} points, with curves divided; draw them simpler");
+    let reason = format!("its outlines have more than {MOST_POINTS} points, with curves divided; simplify them");
     Err(ImportError::Broken { format, reason })
 }
 
@@ -84,7 +84,7 @@ impl Outlines {
         points.map(|p| p.abs().max_element()).fold(0.0, |a, b| if b <= a { a } else { b })
     }
 
-    /// What lies within the outlines and outside of the holes, mm, where a unit of the file has `factor` mm.
+    /// What lies within the outlines and outside the holes, mm, where a unit of the file has `factor` mm.
     pub fn region(&self, factor: f64) -> Region {
         let scaled = |ring: &Ring| Ring::new(ring.points().iter().map(|p| *p * factor).collect());
         Region::from_rings(&self.rings.iter().map(scaled).collect::<Vec<_>>(), FillRule::EvenOdd)

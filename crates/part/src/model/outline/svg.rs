@@ -1,7 +1,7 @@
 //! SVG drawings: what is filled, and closed lines, as `usvg` resolves them (shapes, styles, transforms, units).
 //!
 //! y runs downwards in SVG and upwards in a part. Where the picture's width is given in mm, cm or inches, the coordinates
-//! are; otherwise one unit of the picture is one unit of the file, and the user tells which.
+//! are; otherwise one unit of the picture is one unit of the file, and the user says which.
 
 use super::super::{ImportError, Units};
 use super::{Outlines, check_points};
@@ -10,10 +10,10 @@ use planar::{FillRule, MAX_COORDINATE_MM, Region, Ring};
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{Group, Node, Path, Tree};
 
-/// Curves lie within this fraction of the picture's extent beside their chords.
+/// Curves lie within this fraction of the picture's extent from their chords.
 const FLATNESS: f64 = 2e-5;
 
-/// Pixels in a millimetre, as CSS has it.
+/// Pixels in a millimetre, according to CSS.
 const PX_PER_MM: f64 = 96.0 / 25.4;
 
 /// A line ends where it began if it comes this near, as a fraction of the picture's extent.
@@ -40,7 +40,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     Ok(Outlines { rings: reader.rings.into_iter().map(scaled).collect(), format: "SVG", units, notes: notes(bytes) })
 }
 
-/// No picture within the drawing is read, least of all from the disk.
+/// No picture within the drawing is read, least of all from disk.
 fn options() -> usvg::Options<'static> {
     let image_href_resolver =
         usvg::ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
@@ -88,7 +88,7 @@ impl Reader {
 
     fn path(&mut self, path: &Path) -> Result<(), ImportError> {
         let placed = path.data().clone().transform(path.abs_transform());
-        let placed = placed.ok_or_else(|| broken(format!("the path \"{}\" lies out of all bounds", path.id())))?;
+        let placed = placed.ok_or_else(|| broken(format!("the path \"{}\" lies out of bounds", path.id())))?;
         let mut lines =
             Lines { height: self.height, flatness: self.flatness, done: Vec::new(), open: Vec::new(), points: 0 };
         for segment in placed.segments() {
@@ -113,9 +113,9 @@ impl Reader {
                     self.height - last.y
                 )));
             }
-            // Beyond, the grid of the plane ends.
+            // Beyond this, the grid of the plane ends.
             if points.iter().any(|p| p.abs().max_element() > MAX_COORDINATE_MM) {
-                return Err(broken(format!("the path \"{}\" lies out of all bounds", path.id())));
+                return Err(broken(format!("the path \"{}\" lies out of bounds", path.id())));
             }
             rings.push(Ring::new(points));
         }
@@ -168,7 +168,7 @@ impl Lines {
         }
     }
 
-    /// Adds a curve as so many chords that they lie within the flatness: by the second differences of its points.
+    /// Adds a curve as enough chords to lie within the flatness: by the second differences of its points.
     fn cubic(&mut self, a: DVec2, b: DVec2, c: DVec2) {
         let from = self.open.last().copied().unwrap_or(a);
         let bend = (from - 2.0 * a + b).length().max((a - 2.0 * b + c).length());
@@ -183,7 +183,7 @@ impl Lines {
 
     fn end(&mut self, closed: bool) {
         let points = std::mem::take(&mut self.open);
-        // After a close a path goes on from its beginning.
+        // After a close command a path goes on from its beginning.
         let first = points.first().copied().filter(|_| closed);
         if points.len() > 1 {
             self.done.push((points, closed));

@@ -22,7 +22,7 @@ pub enum LibraryError {
     Cell {
         /// Line number, from 1.
         line: usize,
-        /// Name of the column as it stands in the header.
+        /// Name of the column as in the header.
         column: String,
         /// What is wrong and what would be right.
         reason: String,
@@ -58,8 +58,8 @@ pub enum LibraryError {
         /// Rows needed for the full second-order fit.
         full: usize,
     },
-    /// The text is no bead library, or its values do not fit each other.
-    #[error("this is no bead library: {reason}")]
+    /// The text is not a bead library, or its values are inconsistent.
+    #[error("this is not a bead library: {reason}")]
     File {
         /// What is wrong.
         reason: String,
@@ -90,7 +90,7 @@ pub enum LibraryError {
         /// Greatest measured value.
         max: f64,
     },
-    /// Every value is in its range, but nothing like their combination was measured.
+    /// Every value is in its range, but no similar combination was measured.
     #[error(
         "the combination {point} lies outside what was measured: its leverage {leverage:.3} is above {limit:.3}, the \
          largest of the measured beads. The nearest of these is {nearest}."
@@ -106,7 +106,9 @@ pub enum LibraryError {
         nearest: String,
     },
     /// The fit predicts an impossible bead.
-    #[error("at {point} the fit gives a bead of {width:.3} × {height:.3} mm, which cannot be; measure beads nearby.")]
+    #[error(
+        "at {point} the fit gives a bead of {width:.3} × {height:.3} mm, which is impossible; measure beads nearby."
+    )]
     NoBead {
         /// The values.
         point: String,

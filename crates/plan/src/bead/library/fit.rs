@@ -129,7 +129,7 @@ fn kept(
             return Err(LibraryError::Inputs { reason });
         }
         notes.push(format!(
-            "the measured beads do not tell the term {} from the others: it is left out.",
+            "the measured beads do not distinguish the term {} from the others: it is left out.",
             names.join(" × ")
         ));
     }

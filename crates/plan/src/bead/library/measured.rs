@@ -56,7 +56,7 @@ pub struct Measured {
 
 /// A column of the header.
 struct Column {
-    /// As it stands in the file.
+    /// As written in the file.
     header: String,
     name: String,
     unit: String,
@@ -137,7 +137,7 @@ fn check_roles(
     }
     if inputs.is_empty() {
         return Err(LibraryError::Inputs {
-            reason: "no column is left as an input: only width and height are there.".into(),
+            reason: "no column is left as an input: only width and height are present.".into(),
         });
     }
     Ok(())
@@ -152,7 +152,7 @@ fn split(text: &str) -> Result<(char, Vec<Record>), LibraryError> {
     Ok((separator, records.collect::<Result<_, LibraryError>>()?))
 }
 
-/// The fields of a line. A quoted field may hold separators; two quotes inside it stand for one.
+/// The fields of a line. A quoted field may hold separators; two quotes inside it mean one.
 fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut letters = line.chars().peekable();
@@ -183,7 +183,7 @@ fn header(head: &Record) -> Result<Vec<Column>, LibraryError> {
             return Err(LibraryError::Line { line, reason: format!("column {} has no name.", i + 1) });
         }
         if field.parse::<f64>().is_ok() {
-            let reason = format!("{field} stands where the name of a column belongs, such as current_a.");
+            let reason = format!("{field} is where the name of a column belongs, such as current_a.");
             return Err(LibraryError::Line { line, reason });
         }
         if columns.iter().any(|c| c.name == name) {
@@ -206,7 +206,7 @@ fn name_and_unit(field: &str) -> (String, String) {
     found.filter(|(name, _)| !name.is_empty()).map_or((lower.clone(), String::new()), |(n, u)| (n, u.to_owned()))
 }
 
-/// The column of a name, given with or without its unit.
+/// The column with a name, given with or without its unit.
 fn find(header: &[Column], name: &str) -> Result<usize, LibraryError> {
     let bare = name_and_unit(name).0;
     header.iter().position(|c| c.header == name).or_else(|| header.iter().position(|c| c.name == bare)).ok_or_else(
@@ -229,7 +229,7 @@ impl Cells<'_> {
     fn number(&self, i: usize) -> Result<f64, LibraryError> {
         let (expect, found) = (self.header.len(), self.record.fields.len());
         if expect != found {
-            let reason = format!("{found} values stand here, but the header names {expect} columns.");
+            let reason = format!("there are {found} values here, but the header names {expect} columns.");
             return Err(LibraryError::Line { line: self.record.line, reason });
         }
         let field = &self.record.fields[i];
@@ -239,7 +239,7 @@ impl Cells<'_> {
             _ if text.is_empty() => Err(self.refuse(i, "the value is missing.".into())),
             _ => Err(self.refuse(
                 i,
-                format!("\"{field}\" is not a number. A column that is no input is left out by naming the inputs."),
+                format!("\"{field}\" is not a number. To leave out a column that is not an input, name the inputs."),
             )),
         }
     }
@@ -249,7 +249,7 @@ impl Cells<'_> {
         if value > 0.0 {
             Ok(value)
         } else {
-            Err(self.refuse(i, format!("{value} mm is no size of a bead: it must be above 0 mm.")))
+            Err(self.refuse(i, format!("{value} mm is not the size of a bead: it must be above 0 mm.")))
         }
     }
 

@@ -51,7 +51,7 @@ pub struct Response {
     pub coefficients: Vec<f64>,
     /// Share of the variance that the fit explains.
     pub r_squared: f64,
-    /// The same, corrected for the number of terms: less what so many terms would explain by chance.
+    /// The same, corrected for the number of terms: less what this many terms would explain by chance.
     pub adjusted_r_squared: f64,
     /// Standard deviation of the residuals, mm.
     pub residual: f64,
@@ -150,7 +150,7 @@ impl BeadLibrary {
     /// Reads a library.
     ///
     /// # Errors
-    /// [`LibraryError::File`] where the text is no library or its values do not fit each other.
+    /// [`LibraryError::File`] where the text is not a library or its values are inconsistent.
     pub fn parse(text: &str) -> Result<Self, LibraryError> {
         let refuse = |reason: String| LibraryError::File { reason };
         let library: Self = toml::from_str(text).map_err(|e| {
@@ -182,7 +182,7 @@ impl BeadLibrary {
             ),
             (response(&self.width) && response(&self.height), "the coefficients do not fit the terms."),
             (self.measured.len() > p && self.measured.iter().all(sample), "the measured beads do not fit the terms."),
-            (self.largest_leverage.is_finite(), "the largest leverage is no number."),
+            (self.largest_leverage.is_finite(), "the largest leverage is not a number."),
         ];
         checks.into_iter().find(|(fine, _)| !fine).map(|(_, reason)| reason)
     }
@@ -239,7 +239,7 @@ impl BeadLibrary {
         self.inputs.iter().map(find).collect()
     }
 
-    /// Index of the input of that name, with or without its unit.
+    /// Index of the input with this name, with or without its unit.
     ///
     /// # Errors
     /// [`LibraryError::Unknown`].

@@ -17,7 +17,7 @@ pub const PREFERRED_RATIOS: (f64, f64) = (2.5, 3.0);
 const PULL: (f64, f64) = (1e-4, 1e-5);
 /// Weight of the penalty for leaving the measured region.
 const BARRIER: f64 = 10.0;
-/// Most points of the grid, and how many of them are followed.
+/// Maximum number of points of the grid, and how many of them are followed.
 const GRID: usize = 5000;
 const STARTS: usize = 12;
 /// A coded value this close to a bound counts as lying on it.
@@ -26,7 +26,7 @@ const TOUCHES: f64 = 1e-6;
 /// What a layer height means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layering {
-    /// A wall of one bead a layer: the rise h_n of [`WallBead`].
+    /// A wall of one bead per layer: the rise h_n of [`WallBead`].
     SinglePass,
     /// A closed layer of neighbouring beads: the rise of the [`Bead`](crate::bead::Bead) at this stepover, mm.
     Overlapping {
@@ -36,7 +36,7 @@ pub enum Layering {
 }
 
 impl Layering {
-    /// Layer height that a predicted bead gives, mm; 0 where the prediction is no bead.
+    /// Layer height that a predicted bead gives, mm; 0 where the prediction is not a bead.
     pub fn height(self, found: &Prediction) -> f64 {
         let bead = found.bead();
         match self {
@@ -73,7 +73,7 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// A wish for a wall of one bead a layer, met within 0.5 %.
+    /// A wish for a wall of one bead per layer, met within 0.5 %.
     pub fn new(width: f64, layer_height: f64) -> Self {
         Self { width, layer_height, layering: Layering::SinglePass, limits: Vec::new(), tolerance: 0.005 }
     }
@@ -96,14 +96,14 @@ impl BeadLibrary {
     /// Parameters inside the measured range and the limits that lay the wanted bead.
     ///
     /// # Errors
-    /// [`LibraryError::OutOfReach`] names the bounds that block and the nearest bead; [`LibraryError::Outside`] a limit
+    /// [`LibraryError::OutOfReach`] names the blocking bounds and the nearest bead; [`LibraryError::Outside`] a limit
     /// that shares nothing with the measured range.
     pub fn solve(&self, wish: &Wish) -> Result<Recipe, LibraryError> {
         for (name, value) in [("width", wish.width), ("layer height", wish.layer_height), ("tolerance", wish.tolerance)]
         {
             if !(value.is_finite() && value > 0.0) {
                 return Err(LibraryError::Wish {
-                    reason: format!("a {name} of {value} cannot be: it must be above 0."),
+                    reason: format!("a {name} of {value} is impossible: it must be above 0."),
                 });
             }
         }

@@ -12,10 +12,10 @@ use strip::{Disc, Span, Strip, union};
 
 /// Rows in a bead's width.
 const ROWS: f64 = 6.0;
-/// The rows run aslant, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
-/// at which they measure the region itself [`WELL`], or at the best.
+/// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
+/// at which they measure the region itself [`WELL`], or at the best one.
 const ASLANT: [f64; 4] = [0.3, 1.1, 1.9, 2.7];
-/// Part of a region's area.
+/// Fraction of a region's area.
 const WELL: f64 = 0.002;
 /// Beads count as wider by this fraction: neighbours that just touch leave nothing.
 const TOUCHING: f64 = 0.01;
@@ -48,7 +48,7 @@ pub struct Coverage {
 struct Grid {
     /// The angle at which they run, radians.
     angle: f64,
-    /// Height of the first row and distance of the rows, mm.
+    /// Height of the first row and distance between the rows, mm.
     first: f64,
     step: f64,
     count: usize,
@@ -146,7 +146,7 @@ fn gaps(span: Range<f64>, covered: &[Span]) -> impl Iterator<Item = Range<f64>> 
 
 /// What is covered of each row, so far.
 struct Rows {
-    /// Height of the first row and distance of the rows, mm.
+    /// Height of the first row and distance between the rows, mm.
     first: f64,
     step: f64,
     /// Rows in a millimetre.
@@ -234,7 +234,7 @@ impl Rows {
         }
     }
 
-    /// Rounds an end of a strip: of a short one with the strip itself, else at once.
+    /// Rounds an end of a strip: for a short one with the strip itself, otherwise at once.
     fn end(&mut self, strip: &mut Strip, end: usize) {
         if strip.is_short() {
             strip.round[end] = true;
@@ -245,7 +245,7 @@ impl Rows {
 
     /// The rows from one height to another.
     fn within(&self, (low, high): (f64, f64)) -> Range<usize> {
-        // The first row above a height; casts round what is not negative down.
+        // The first row above a height; casts round down what is not negative.
         let from = |y: f64| ((y - self.first) * self.per_mm + 1.0).max(0.0) as usize;
         let to = from(high).min(self.last.len());
         from(low).min(to)..to
@@ -346,7 +346,7 @@ impl Rows {
     }
 }
 
-/// Cosine of a turn that is little: on its outer side strips meet 1 % of a radius beyond the round join.
+/// Cosine of a turn that counts as slight: on its outer side strips meet 1 % of a radius beyond the round join.
 const LITTLE: f64 = 0.96;
 
 #[cfg(test)]

@@ -5,10 +5,10 @@ use glam::DVec2;
 /// From one place on a row to another, mm.
 pub(super) type Span = (f64, f64);
 
-/// Shorter pieces are covered one by one, in radii: they link scan lines, whose run goes on behind them.
+/// Shorter pieces are covered one by one, in radii: they link scan lines, whose run continues after them.
 const SHORT: f64 = 8.0;
 
-/// Strips of a run overlap by this part of their width at least, and lean alike to this part of it.
+/// Strips of a run overlap by at least this fraction of their width, and lean alike to within this fraction of it.
 const OVERLAP: f64 = 1e-3;
 
 /// The strip that a straight piece covers.
@@ -85,13 +85,13 @@ impl Strip {
         }
     }
 
-    /// Whether another strip lies beside this one, parallel, as wide, and overlapping: then, whether towards greater x.
+    /// Whether another strip lies next to this one, parallel, equally wide, and overlapping: then, whether towards greater x.
     pub(super) fn beside(&self, other: &Self) -> Option<bool> {
         let reach = self.length.max(other.length) + self.from.distance(other.from);
         let parallel = self.way.perp_dot(other.way).abs() * reach < OVERLAP * self.radius;
         let apart = self.way.perp_dot(other.from - self.from);
         let near = (OVERLAP..2.0 - OVERLAP).contains(&(apart.abs() / self.radius));
-        // To the left of an upward way x decreases.
+        // To the left of an upward direction x decreases.
         (parallel && near && self.radius == other.radius).then_some((apart > 0.0) != (self.way.y > 0.0))
     }
 }
@@ -106,7 +106,7 @@ impl Disc {
     #[inline]
     pub(super) fn on(&self, y: f64) -> Span {
         let up = y - self.middle.y;
-        // Not a number where the row passes it by.
+        // Not a number where the row misses it.
         let half = (self.radius * self.radius - up * up).sqrt();
         (self.middle.x - half, self.middle.x + half)
     }
@@ -124,7 +124,7 @@ pub(super) struct Slab {
     pub(super) y: f64,
     pub(super) low: f64,
     pub(super) high: f64,
-    /// How it moves with the height.
+    /// How it shifts with the height.
     pub(super) lean: f64,
 }
 

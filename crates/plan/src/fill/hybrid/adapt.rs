@@ -8,13 +8,13 @@ use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::Polygon;
 
-/// Neighbours are looked for up to this far away, in stepovers; a side without one counts as a stepover.
+/// Neighbours are searched for up to this far away, in stepovers; a side without one counts as a stepover.
 const SIGHT: f64 = 1.6;
 /// Distance between the places where the width is set, in bead widths.
 const STEP: f64 = 0.35;
 /// Widths are multiples of this fraction of a bead width, so that the speed seldom changes.
 const GRAIN: f64 = 0.05;
-/// Stands for the outline among the numbers of the passes.
+/// Represents the outline among the numbers of the passes.
 const OUTLINE: usize = usize::MAX;
 
 /// Gives every pass the widths that its neighbours leave room for; no bead reaches beyond the island and its allowance.

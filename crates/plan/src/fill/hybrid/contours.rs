@@ -73,7 +73,7 @@ fn join_at(first: DVec2, pieces: &mut Vec<Vec<DVec2>>) {
     }
 }
 
-/// Where two sides of the outermost contour would be closer than this, in stepovers, one bead is laid along the middle.
+/// Where two sides of the outermost contour would be closer together than this, in stepovers, one bead is laid along the middle.
 const THIN: f64 = 0.6;
 
 /// The places, long enough for a pass, where both sides of a contour lie too close together.
@@ -96,7 +96,7 @@ fn capped(region: &Region, settings: &FillSettings) -> Region {
     let r = CAP / 2.0 * settings.stepover;
     let blunt = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
     let mut tips = region.difference(&blunt).into_polygons();
-    // The tip of an angle θ stands r (1/sin(θ/2) − 1) above its cap: r at 60°.
+    // The tip of an angle θ lies r (1/sin(θ/2) − 1) above its cap: r at 60°.
     let grown = blunt.offset(r, settings.hybrid.join());
     tips.retain(|tip| tip.outer.points().iter().any(|p| !grown.contains(*p)));
     if tips.is_empty() {

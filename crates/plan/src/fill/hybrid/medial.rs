@@ -25,7 +25,7 @@ const JOIN: f64 = 1.6;
 /// A short line across a piece must lie inside it for at least this fraction of the shortest pass.
 const SHORTEST_PART: f64 = 0.6;
 
-/// The passes of a narrow piece. `laid` holds the lines already laid and takes in these too; `outermost` is where
+/// The passes of a narrow piece. `laid` holds the lines already laid, to which these are added; `outermost` is where
 /// centre-lines may lie.
 pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut LineIndex, settings: &FillSettings) -> Vec<Path> {
     let spacing = settings.bead.width / SAMPLES;
@@ -196,7 +196,7 @@ fn thinned(ladder: &Ladder, step: f64) -> Vec<Rung> {
     rungs
 }
 
-/// Number of beads across each rung; stretches too short to be worth a change take the number beside them.
+/// Number of beads across each rung; stretches too short to be worth a change take the neighbouring number.
 fn counts(rungs: &[Rung], settings: &FillSettings) -> Vec<usize> {
     let across = |rung: &Rung| rung.thickness + 2.0 * settings.hybrid.least_gap;
     let count = |rung: &Rung| ((across(rung) / settings.stepover - 1.0).round().max(1.0)) as usize;

@@ -11,15 +11,15 @@
 //! | regions filled | [`skeleton`] | 1.2 |
 //! | widths that follow the room (ours) | [`adapt`] | |
 //!
-//! Joins are round in both modes. The paper has square corners come back whole from in and out, as mitred joins do; with
+//! Joins are round in both modes. In the paper square corners survive moving in and back out, as with mitred joins; with
 //! round ones their pocket is 0.44 w long and its filter drops it. Mitred joins of any limit break its propeller into 16 to
-//! 24 passes a layer instead of 12.
+//! 24 passes per layer instead of 12.
 //!
 //! The default goes beyond the paper ([`HybridSettings::literal`] follows it to the letter): corners whose pocket is
 //! not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from
 //! the remaining contours, since it fills what lies outside their neighbourhood; narrow regions get a few beads along
 //! their medial axis instead of short strokes across; the ends of cut contours reach into the fill, and beads are linked to
-//! contours that end near them. It never takes more passes than contours alone: the smallest regions are left to the
+//! contours that end near them. It never needs more passes than contours alone: the smallest regions are left to the
 //! contours.
 
 pub mod adapt;
@@ -117,9 +117,9 @@ impl Strategy for Hybrid {
     }
 }
 
-/// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this part of its width.
+/// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this fraction of its width.
 const HIGH: f64 = 0.8;
-/// Parts of the skeleton regions that are tried, the largest regions first.
+/// Fractions of the skeleton regions that are tried, the largest regions first.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// The results of all steps for one island, to be tested and drawn.
@@ -131,7 +131,7 @@ pub struct Steps {
     pub regions: Region,
     /// The contours, complete and cut.
     pub contours: Contours,
-    /// The contours joined to passes.
+    /// The contours joined into passes.
     pub chains: Vec<Path>,
     /// The fill of the skeleton regions.
     pub skeleton: Vec<Path>,
@@ -186,7 +186,7 @@ impl Steps {
         Self { levels, regions, contours, chains, skeleton }
     }
 
-    /// Leaves out passes that end before the arc is steady, and the shortest ones until at most so many are left, those of
+    /// Leaves out passes that end before the arc is steady, and the shortest ones until at most `most` are left, those of
     /// the skeleton first.
     fn keep_longest(&mut self, most: usize, settings: &FillSettings) {
         let keep = |passes: &mut Vec<Path>, most: usize| {

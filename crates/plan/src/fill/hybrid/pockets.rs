@@ -102,7 +102,7 @@ fn less_kept(whole: &Region, pockets: &[Pocket]) -> Region {
     if kept.is_empty() { whole.clone() } else { whole.difference(&Region::from_normalised(kept)) }
 }
 
-/// Tells the kind of a pocket and whether it is kept: channels always, corners and arms from a certain length on.
+/// Determines the kind of a pocket and whether it is kept: channels always, corners and arms from a certain length on.
 fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket {
     let hybrid = &settings.hybrid;
     let near = 3.0 * hybrid.tolerance;
@@ -163,7 +163,7 @@ fn length(shape: &Polygon, openings: &[Vec<DVec2>], edge: &[(DVec2, DVec2)], set
     let along = (last - first).normalize_or_zero();
     let own = shape.outer.edges().flat_map(|(a, b)| densified(a, b, settings.bead.width));
     let own = own.filter(|p| distance_to(edge, *p) > near);
-    // The cosine of the angle to the opening is 0 where a vector stands square to it.
+    // The cosine of the angle to the opening is 0 where a vector is perpendicular to it.
     let slant = |p: &DVec2| (*p - middle).normalize_or_zero().dot(along).abs();
     let square = own.min_by(|a, b| slant(a).total_cmp(&slant(b)).then(far(middle, b).total_cmp(&far(middle, a))));
     square.map_or(0.0, |p| p.distance(middle))

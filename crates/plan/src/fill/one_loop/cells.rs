@@ -46,7 +46,7 @@ fn set_widths_of(line: &mut Line, areas: &[f64], room: &Room, settings: &LoopSet
     }
 }
 
-/// Sums over `reach` values before and behind each.
+/// Sums over `reach` values before and after each.
 fn windowed(values: &[f64], reach: usize, closed: bool) -> Vec<f64> {
     let n = values.len();
     let sum = |i: usize| match closed {

@@ -92,7 +92,7 @@ impl<'a> Field<'a> {
         heights
     }
 
-    /// Adds a short piece, taken as a pool that stands still at its middle.
+    /// Adds a short piece, treated as a pool at rest at its middle.
     fn stamp(&self, heights: &mut [f32], at: DVec2, length: f64, width: f64, settings: &LoopSettings) {
         let Lattice { columns, rows, step, .. } = *self.lattice;
         let (at, radius) = (self.lattice.in_steps(at), width / 2.0 / step);
@@ -174,7 +174,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The first whole number from here on, 0 or more: casts are quicker than `ceil` where processors of all ages are served.
+/// The first whole number from here on, 0 or more: casts are quicker than `ceil` in builds for processors of all ages.
 fn from(x: f64) -> usize {
     let whole = x.max(0.0) as usize;
     whole + usize::from((whole as f64) < x)

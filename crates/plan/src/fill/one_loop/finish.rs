@@ -19,7 +19,7 @@ const GRID: f64 = 1e-6;
 /// Beads may reach this many bead widths beyond the outline: too low there to count as outside in the deposit model.
 const OUT: f64 = 0.005;
 
-/// Where lines lie so close that they would cross, they deviate by no more than these fractions of that.
+/// Where lines lie so close that they would cross, they deviate by no more than these fractions of the tolerance.
 const CLOSER: [f64; 3] = [1.0, 0.3, 0.05];
 
 /// The lines, made of few pieces; lines that do not cross do not cross afterwards.

@@ -1,7 +1,7 @@
-//! Flat beads fitted edge to edge: an edge beside a gap moves out, one that lies over its neighbour moves back.
+//! Flat beads fitted edge to edge: an edge next to a gap moves out, one that lies over its neighbour moves back.
 //!
 //! Every point looks to both sides, as far as the next bead or the outline. A gap or an overlap is made up by a move
-//! and a change of width together, so that each edge does its part. In a corner of the outline a bead goes deeper and
+//! and a change of width together, so that each edge contributes its share. In a corner of the outline a bead goes deeper and
 //! gets narrower.
 
 use super::LoopSettings;
@@ -15,7 +15,7 @@ const OVERLAP: f64 = 0.028;
 /// Fraction of a gap that an edge closes in a round, and fraction of an overlap that it takes back.
 const CLOSE: f64 = 1.0;
 const BACK: f64 = 0.1;
-/// Overlaps count as at most this deep, and gaps are looked for up to this reach, in bead widths.
+/// Overlaps count as at most this deep, and gaps are searched for up to this reach, in bead widths.
 const DEEPEST: f64 = 0.3;
 const REACH: f64 = 0.35;
 /// Each round a point is pulled this fraction of the way to the midpoint of its neighbours.
@@ -123,7 +123,7 @@ fn corner(free: &[Free; 2], half: f64, room: f64, narrowest: f64, settings: &Loo
     Some((if side == 0 { by } else { -by }, -NARROWS * by))
 }
 
-/// A look to both sides of a line.
+/// The view to both sides of a line.
 struct Sight {
     from: DVec2,
     /// To the left.

@@ -20,11 +20,11 @@ const MOST: f64 = 0.3;
 const APART: f64 = 2.2;
 /// Side of the squares in which layers take turns to place flips, in stepovers.
 const FIELD: f64 = 4.0;
-/// After this many layers it is a square's turn again.
+/// After this many layers a square has its turn again.
 pub(super) const TURNS: i64 = 3;
 /// No other ring comes closer to the middle between two rings than this fraction of their distance.
 const BETWEEN: f64 = 0.35;
-/// Where a link is looked at, and how far it stays from the outline, in widths of the narrowest bead.
+/// Where a link is checked, and how far it stays from the outline, in widths of the narrowest bead.
 const LINK: [f64; 3] = [0.25, 0.5, 0.75];
 const NARROWEST: f64 = 0.45;
 
@@ -32,7 +32,7 @@ const NARROWEST: f64 = 0.45;
 #[derive(Debug, Clone, PartialEq)]
 struct Flip {
     rings: [usize; 2],
-    /// From one end to the other; the first points lie beside each other, and the last.
+    /// From one end to the other; the first points lie next to each other, and so do the last.
     stretches: [Vec<usize>; 2],
     place: DVec2,
     /// The lower the better.
@@ -72,7 +72,7 @@ pub fn join(rings: &[Ring], room: &Room, settings: &LoopSettings) -> Joined {
     Joined { loops: points.joined(&chosen), flips: places }
 }
 
-/// Which rings hang together (union–find).
+/// Which rings are connected (union–find).
 struct Groups(Vec<usize>);
 
 impl Groups {
@@ -286,7 +286,7 @@ fn flip(points: &Points, i: usize, j: usize, settings: &LoopSettings) -> Option<
     let gaps: Vec<f64> = gaps.collect();
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
     let spread = (gaps.iter().map(|gap| (gap - mean).powi(2)).sum::<f64>() / gaps.len() as f64).sqrt();
-    // How far a ring turns over the stretch and as much before and behind it.
+    // How far a ring turns over the stretch and as much before and after it.
     let turn = |middle: usize| {
         let around = (-pieces - half..=pieces + half).map(|k| points.way[points.further(middle, k)]);
         1.0 - around.map(|way| way.dot(points.way[middle])).fold(1.0, f64::min)

@@ -69,7 +69,7 @@ impl Line {
         self.pieces().fold(0.0, |sum, (a, b, _)| sum + a.distance(b))
     }
 
-    /// Half the wider of the pieces before and behind a point, mm.
+    /// Half the width of the wider of the pieces before and after a point, mm.
     pub fn half_width(&self, i: usize) -> f64 {
         let last = self.count().saturating_sub(1);
         self.widths[i.min(last)].max(self.widths[self.before(i).min(last)]) / 2.0

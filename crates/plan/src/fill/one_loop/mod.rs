@@ -5,7 +5,7 @@
 //! | parts with room for two beads, and walls for one | [`thin`](super::thin) |
 //! | the room: distances and the middle of walls | [`room`] |
 //! | how many rings lie on each side of the middle | [`counts`] |
-//! | a phase that is whole on rings and half-way between in the middle | [`phase`] |
+//! | a phase that is whole on rings and half-way between them in the middle | [`phase`] |
 //! | rings: lines of whole phase | [`rings`] |
 //! | rings joined by flips, or into a spiral | [`flips`], [`spiral`] |
 //! | walls for one bead tied in | [`tie`] |
@@ -280,7 +280,7 @@ impl<'a> LoopSettings<'a> {
         self.law.width_of_area(&self.bead, self.bead.rise(self.stepover) * cell)
     }
 
-    /// Height of a bead of that width, in nominal bead heights.
+    /// Height of a bead of this width, in nominal bead heights.
     pub fn height_of(&self, width: f64) -> f64 {
         self.law.bead(&self.bead, width).height / self.bead.height
     }

@@ -2,7 +2,7 @@
 //! the middle of every wall.
 //!
 //! u = (D − e + φ)/d + ½, with D the distance from the outline. φ is harmonic, 0 on the outline, and in the middle
-//! pulled softly towards what is missing to a whole number of rings. Where the room is a whole number of beads wide, φ
+//! pulled softly towards what is missing for a whole number of rings. Where the room is a whole number of beads wide, φ
 //! is 0 and the rings are plain offsets.
 
 use super::LoopSettings;

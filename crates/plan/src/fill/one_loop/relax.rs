@@ -21,7 +21,7 @@ const ACROSS: f64 = 0.8;
 const TENSION: f64 = 0.08;
 /// Factor by which the stride falls from round to round.
 const STRIDE_FALL: f64 = 0.95;
-/// Widths change by the ratio of wanted to present height, raised to this power.
+/// Widths change by the ratio of wanted to current height, raised to this power.
 const GAIN: f64 = 0.5;
 /// Factor by which the gain falls from round to round.
 const GAIN_FALL: f64 = 0.8;

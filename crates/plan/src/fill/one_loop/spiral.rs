@@ -15,11 +15,11 @@ const RAMP: f64 = 3.0;
 const MOST: f64 = 0.4;
 /// Neighbouring rings are at most this many stepovers apart, averaged along the ring.
 const FARTHEST: f64 = 1.3;
-/// The ends of the path reach this far into the ramp beside them, as a fraction of the ramp.
+/// The ends of the path reach this far into the ramp next to them, as a fraction of the ramp.
 const END: f64 = 0.45;
 /// Places for the ramps are tried this many stepovers apart.
 const TRIES: f64 = 1.0;
-/// At most this many places are looked at.
+/// At most this many places are tried.
 const MOST_TRIES: usize = 64;
 
 /// The open path through nested rings, from the outermost to the innermost; none if not nested or fewer than three.
@@ -64,7 +64,7 @@ fn mean_distance(points: &[DVec2], others: &[DVec2]) -> f64 {
     some.clone().map(distance).sum::<f64>() / some.count() as f64
 }
 
-/// The rings rotated so that they begin beside each other.
+/// The rings rotated so that they begin next to each other.
 struct Aligned {
     rings: Vec<Vec<DVec2>>,
     ramps: Vec<f64>,

@@ -13,8 +13,8 @@ const ATTEMPTS: u32 = 4;
 /// What is done after each round to lines as they are, given how they were before it.
 pub type Mend = fn(&mut [Line], &[Line]);
 
-/// Moves lines in rounds, so that lines that do not cross do not cross afterwards: first without a look at crossings, which
-/// takes its time, and once more with one where that tangles them.
+/// Moves lines in rounds, so that lines that do not cross do not cross afterwards: first without checking for crossings, which
+/// takes time, and once more with the check where that tangles them.
 pub fn moved(lines: &[Line], rounds: impl Fn(Vec<Line>, Mend) -> Vec<Line>) -> Vec<Line> {
     let quick = rounds(lines.to_vec(), |_, _| {});
     if tangled(&quick) && !tangled(lines) { rounds(lines.to_vec(), untangle) } else { quick }
@@ -25,7 +25,7 @@ pub fn tangled(lines: &[Line]) -> bool {
     !crossing_pieces(&paths(lines)).is_empty()
 }
 
-/// Takes points back to where they were `before`, with the widths beside them, until no line crosses another or itself; the
+/// Moves points back to where they were `before`, with the neighbouring widths, until no line crosses another or itself; the
 /// lines have the same points in the same order, and did not cross before.
 fn untangle(lines: &mut [Line], before: &[Line]) {
     for attempt in 0..ATTEMPTS {
@@ -46,7 +46,7 @@ fn paths(lines: &[Line]) -> Vec<Vec<DVec2>> {
 }
 
 impl Line {
-    /// Takes the points around a piece back.
+    /// Moves back the points around a piece.
     fn take_back(&mut self, before: &Self, piece: usize, around: usize) {
         let n = self.points.len();
         for k in 0..=2 * around + 1 {

@@ -1,4 +1,4 @@
-//! Thin walls: the parts of an island in which there is room for one bead only.
+//! Thin walls: the parts of an island with room for only one bead.
 //!
 //! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches
 //! is *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]).
@@ -25,7 +25,7 @@ pub struct ThinLimits {
     pub bead_width: f64,
     /// The narrowest and the widest single bead.
     pub single: (f64, f64),
-    /// Thinner walls get no bead; from here to the narrowest bead they get that, which reaches beyond them.
+    /// Thinner walls get no bead; from here up to the narrowest bead they get that bead, which reaches beyond them.
     pub thinnest: f64,
     /// From this thickness on there is room for two beads.
     pub double: f64,
@@ -51,7 +51,7 @@ pub enum End {
     Mouth(Vec<Node>),
 }
 
-/// An island taken apart.
+/// An island split into parts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Split {
     /// The parts with room for two beads or more.
@@ -64,7 +64,8 @@ pub struct Split {
 
 /// Minimum length of a wall that is attached at one end only, or tapers to nothing, in bead widths.
 const SHORTEST: f64 = 1.5;
-/// Minimum length of a neck thinner than the narrowest bead, as between two holes, in bead widths: passes go around shorter ones.
+/// Minimum length of a neck thinner than the narrowest bead, such as one between two holes, in bead widths: passes go around
+/// shorter ones.
 const NECK: f64 = 3.0;
 /// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
@@ -80,7 +81,7 @@ const ACCURACY: f64 = 0.005;
 const ROOMY: f64 = 0.8;
 /// A neck gets two beads if it is at least this fraction as wide as two beads need.
 const NEARLY_DOUBLE: f64 = 0.94;
-/// The same of a neck so short that two beads touch nowhere else.
+/// The same for a neck so short that two beads touch nowhere else.
 const DOUBLE_IF_SHORT: f64 = 0.8;
 /// The middle of a wall is followed this far into the thick part, in bead widths.
 const TAIL: f64 = 1.5;
@@ -172,7 +173,7 @@ fn is_thick(island: &Polygon, centres: &Region, limits: &ThinLimits) -> bool {
     island.is_roomy_for_disc(limits.double / 2.0, centres, SMALLEST * limits.bead_width * limits.bead_width)
 }
 
-/// Takes an island apart.
+/// Splits an island.
 pub fn split(island: &Polygon, limits: &ThinLimits) -> Split {
     split_by(island, &centres(island, limits), limits)
 }
@@ -208,7 +209,7 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
         let thick = Some(island.clone()).filter(|island| needs_two(&island)).into_iter().collect();
         return Split { thick, thin, open };
     }
-    // A little more is cut off: edges that lie on each other take long to resolve.
+    // A little more is cut off: edges that coincide take long to resolve.
     let rest = whole.difference(&Region::from_normalised(pieces).offset(ACCURACY * limits.bead_width, round(limits)));
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
 }
@@ -261,12 +262,12 @@ fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     // The piece is extended beyond its mouths, so that the axis runs straight through them.
     let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round(limits));
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
-    // Teeth and bumps: they would cut the wall on which they stand in short pieces.
+    // Teeth and bumps: they would cut the wall that they are on into short pieces.
     let is_spur = |nodes: &[Node]| length(nodes) < SHORTEST * limits.bead_width;
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER).without_spurs(is_spur)
 }
 
-/// What is known of the necks of a thin piece.
+/// What is known about the necks of a thin piece.
 #[derive(Debug, Clone, Copy)]
 struct Neck {
     /// The piece is a neck between two thick parts, and hardly longer than thick.
@@ -309,7 +310,7 @@ fn walls_along(branch: &Branch, piece: &Polygon, neck: Neck, limits: &ThinLimits
     };
     let long: Vec<Range<usize>> = stretches(&thinner).into_iter().filter(is_long).collect();
     long.into_iter().flatten().for_each(|k| fits[k] = true);
-    // A neck may be shorter than the distance of two nodes.
+    // A neck may be shorter than the distance between two nodes.
     let longer = |stretch: Range<usize>| match neck.short && stretch.len() < 2 {
         true => stretch.start.saturating_sub(1)..(stretch.end + 1).min(nodes.len()),
         false => stretch,
@@ -360,7 +361,7 @@ fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
 }
 
 /// Drops walls with one free end that are hardly longer than wide: they are corners. The junctions where they ended may
-/// then be junctions no more.
+/// then no longer be junctions.
 fn drop_stubs(walls: &mut Vec<ThinWall>, limits: &ThinLimits) {
     loop {
         let mut degrees = std::collections::BTreeMap::new();

@@ -27,7 +27,7 @@ const MOST: f64 = 0.45;
 pub struct TieSettings {
     /// Which walls are thin.
     pub limits: ThinLimits,
-    /// How far an end stays away from the pass that goes on there, in bead widths.
+    /// How far an end stays away from the pass that continues there, in bead widths.
     pub end_gap: f64,
     /// Passes are made at least this long where possible, mm.
     pub shortest: f64,

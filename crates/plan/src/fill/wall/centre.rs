@@ -10,7 +10,7 @@ use planar::{Bounds, Polygon};
 const BUMP: f64 = 0.015;
 /// Nodes are at least this fraction of the spacing apart.
 const CLOSEST: f64 = 0.5;
-/// How far from a turn the walls that meet there are looked for, in disc radii.
+/// How far from a turn the walls that meet there are searched for, in disc radii.
 const SIGHT: f64 = 1.5;
 
 /// The centre-lines, with half the wall thickness along them, sampled about `spacing` (mm) apart. A disc has no
@@ -77,7 +77,7 @@ fn placed(nodes: &[Node], closed: bool) -> Vec<Node> {
     nodes
 }
 
-/// Indices of nodes where two straight walls meet at a corner: the disc there is larger than before and behind, and
+/// Indices of nodes where two straight walls meet at a corner: the disc there is larger than before and after, and
 /// the line turns.
 fn corners(branch: &Branch) -> Vec<usize> {
     let nodes = &branch.nodes;

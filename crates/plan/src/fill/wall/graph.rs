@@ -1,6 +1,6 @@
 //! Centre-lines joined into a graph.
 //!
-//! Lines are cut where they cross and where another line ends beside them (T and L). Ends within the tolerance become
+//! Lines are cut where they cross and where another line ends next to them (T and L). Ends within the tolerance become
 //! one node, so that two T-junctions that nearly face each other become one X; pieces shorter than the tolerance vanish
 //! in their node. A node where only two pieces meet without a kink is removed, and they become one edge.
 
@@ -139,7 +139,7 @@ impl Graph {
         }
         let mut edges: Vec<Option<Edge>> = edges.into_iter().map(Some).collect();
         for node in 0..places.len() {
-            // A loop at the node stands there twice.
+            // A loop at the node is there twice.
             let [a, b] = at[node][..] else { continue };
             let (Some(first), Some(second)) = (&edges[a], &edges[b]) else { continue };
             let toward = |edge: &Edge| edge.direction(edge.from == node, tolerance);

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | the medial axis without corner branches, cut at corners | [`centre`] |
 //! | a graph of nodes and edges | [`graph`] |
-//! | edges led straight into their nodes, and fitted smooth | [`smooth`] |
+//! | edges led straight into their nodes, and smoothed by fitting | [`smooth`] |
 //! | one bead or more along every edge, by its thickness | [`strand`] |
 //! | the fewest trails that lay all strands and never cross | [`trails`] |
 //! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
@@ -13,7 +13,7 @@
 //!
 //! With one bead everywhere, a graph needs max(1, odd/2) arc starts per layer (odd: its nodes where an odd number of
 //! edges meet), the fewest possible. Where beads lie side by side, a path never turns from one into its neighbour to
-//! save an arc start, except at the end of a wall: that would lay two hairpins beside each other.
+//! save an arc start, except at the end of a wall: that would lay two hairpins next to each other.
 
 pub mod centre;
 pub mod graph;

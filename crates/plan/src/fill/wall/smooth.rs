@@ -26,7 +26,7 @@ const MOST: f64 = 0.45;
 const STEP: f64 = 0.5;
 /// Steps between two nodes at most.
 const MOST_STEPS: f64 = 1000.0;
-/// A fitted curve that strays from the nodes by more than this many tolerances is not taken.
+/// A fitted curve that strays from the nodes by more than this many tolerances is not used.
 const STRAY: f64 = 4.0;
 
 /// Straightens the ends of all edges at nodes where edges meet, and moves the nodes there.
@@ -129,7 +129,7 @@ pub fn fit(graph: &mut Graph, error: f64) {
     }
 }
 
-/// A smooth line near nodes, as nodes; `None` where there is none that stays near them all the way.
+/// A smooth line near nodes, as nodes; `None` where there is none that stays near them throughout.
 fn fitted(nodes: &[Node], closed: bool, error: f64) -> Option<Vec<Node>> {
     let mut points: Vec<DVec3> = dense(nodes).map(|node| node.at.extend(2.0 * node.radius)).collect();
     if closed {
@@ -141,7 +141,7 @@ fn fitted(nodes: &[Node], closed: bool, error: f64) -> Option<Vec<Node>> {
     stays_near(&smooth, nodes, STRAY * error).then_some(smooth)
 }
 
-/// The nodes with more of them between those that lie far apart: between its points a fitted curve goes where it likes.
+/// The nodes with more of them between those that lie far apart: between its points a fitted curve is not constrained.
 fn dense(nodes: &[Node]) -> impl Iterator<Item = Node> + '_ {
     let between = nodes.windows(2).flat_map(|w| {
         let (a, b) = (w[0], w[1]);

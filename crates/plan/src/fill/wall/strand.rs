@@ -50,7 +50,7 @@ pub fn strands(graph: &Graph, settings: &FillSettings) -> (Vec<Strand>, Network)
         let [out, back] = [true, false].map(|forward| edge.direction(forward, reach).to_angle());
         let ring = graph.is_ring(edge, &degrees);
         for j in 0..count {
-            // From the right to the left of the edge; seen from its far end the other way round.
+            // From the right to the left of the edge; seen from its far end, the other way round.
             let side = j as f64 - (count - 1) as f64 / 2.0;
             let dart = 2 * strands.len();
             stars[edge.from].push((dart, (out, side)));

@@ -49,7 +49,7 @@ struct Joint {
 pub type Way = Vec<(usize, End)>;
 
 impl<'a> Weave<'a> {
-    /// Finds the sub-regions and where they meet. `stepover` is the distance of the lines, mm.
+    /// Finds the sub-regions and where they meet. `stepover` is the distance between the lines, mm.
     pub fn new(scan: &'a Scan, stepover: f64) -> Self {
         let mut weave = Self { scan, stepover, regions: Vec::new(), joints: Vec::new() };
         let count = scan.spans().len();
@@ -171,7 +171,7 @@ impl<'a> Weave<'a> {
         self.scan.chain_up(span, end).filter(|chain| !self.hugs_a_line(span, end, chain))
     }
 
-    /// Whether a long link runs beside one of the two scan lines that it joins, so that the metal would be laid
+    /// Whether a long link runs along one of the two scan lines that it joins, so that the metal would be laid
     /// twice there: its mean distance from the lines it passes is too small.
     fn hugs_a_line(&self, span: usize, end: End, chain: &Chain) -> bool {
         let (from, to) = (self.scan.end(span, end), self.scan.end(chain.to, end));

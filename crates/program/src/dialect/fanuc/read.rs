@@ -38,10 +38,10 @@ const HARMLESS: [&str; 22] = [
     "BREAK",
 ];
 
-/// Most lines of a program.
+/// Maximum number of lines of a program.
 const MAX_LINES: usize = 9_999;
 
-/// Longest name of a program.
+/// Longest program name.
 const MAX_NAME: usize = 36;
 
 /// Branches and loops.
@@ -102,9 +102,9 @@ struct Reader<'a> {
     registers: HashMap<String, f64>,
     /// Whether the offset of motions is known to be 0.
     unshifted: bool,
-    /// How the last move goes over into the next, if it does not end exactly.
+    /// How the last move blends into the next, if it does not end exactly.
     blended: Option<String>,
-    /// Frequency at which the torch weaves, Hz; 0 where a schedule tells it.
+    /// Frequency at which the torch weaves, Hz; 0 where a schedule gives it.
     weave: Option<f64>,
     /// Pitch of the weave in this pass, mm.
     pitch: Option<f64>,
@@ -135,7 +135,7 @@ impl Reader<'_> {
             }
         }
         if statements.len() > MAX_LINES {
-            let text = format!("the program has {} lines; controllers take {MAX_LINES}.", statements.len());
+            let text = format!("the program has {} lines; controllers accept {MAX_LINES}.", statements.len());
             let place = Some(self.trace.place(1));
             self.trace.faults.add(&TOO_LARGE, place, text);
         }
@@ -144,9 +144,8 @@ impl Reader<'_> {
         let legal = |b: u8| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_';
         let begins = name.starts_with(|c: char| c.is_ascii_uppercase());
         if name.len() > MAX_NAME || !begins || !name.bytes().all(legal) {
-            let text = format!(
-                "\"{name}\" is no name of a program: at most {MAX_NAME} letters, digits and _, a letter first."
-            );
+            let text =
+                format!("\"{name}\" is not a program name: at most {MAX_NAME} letters, digits and _, a letter first.");
             self.trace.faults.add(&BAD_NAME, None, text);
         }
         self.trace.module = caller;
@@ -182,8 +181,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// By how many statements `IF R[1]>5,JMP LBL[3]` goes on, 0 where it does not jump; `None` for all else, conditions of
-    /// which nothing is known, and labels that do not come behind.
+    /// How many statements `IF R[1]>5,JMP LBL[3]` jumps ahead, 0 where it does not jump; `None` for anything else, conditions
+    /// of which nothing is known, and labels that do not come after it.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
         let flat = compact(text);
         let (taken, label) = match flat.strip_prefix("JMP") {
@@ -255,7 +254,7 @@ impl Reader<'_> {
             let place = Some(self.trace.place(line));
             if let Some(end) = self.blended.as_ref().filter(|_| on != self.trace.arc) {
                 let what = if on { "struck" } else { "ended" };
-                let text = format!("the arc is {what} behind a move with {end}.");
+                let text = format!("the arc is {what} after a move with {end}.");
                 self.trace.faults.add(&BLENDED_SWITCH, place.clone(), text);
             }
             self.pitch = None;
@@ -274,7 +273,7 @@ impl Reader<'_> {
         };
     }
 
-    /// The way along the pass in which the torch swings once follows from speed and frequency.
+    /// The distance along the pass over which the torch swings once follows from speed and frequency.
     fn pitch(&mut self, speed: f64, line: usize) {
         let Some(hertz) = self.weave.filter(|hertz| *hertz > 0.0 && speed > 0.0 && self.trace.arc) else { return };
         let pitch = speed / hertz;
@@ -282,7 +281,7 @@ impl Reader<'_> {
         if (pitch / first - 1.0).abs() > 0.1 {
             let place = Some(self.trace.place(line));
             let text = format!(
-                "the weave has {first:.1} mm a swing at first and {pitch:.1} mm here: its frequency stays as it was."
+                "the weave has {first:.1} mm per swing at first and {pitch:.1} mm here: its frequency stays as it was."
             );
             self.trace.faults.add(&WEAVE_PITCH, place, text);
         }
@@ -327,7 +326,7 @@ impl Reader<'_> {
         let speed = rest.split_whitespace().next().unwrap_or_default();
         let speed = if word == "J" { Some(0.0) } else { mm_per_second(speed) };
         if speed.is_none() {
-            self.trace.note("a speed", "is no plain length a time and was read as unknown", line);
+            self.trace.note("a speed", "is not a plain length per time and was read as unknown", line);
         }
         if ["A", "S"].contains(&word) {
             self.trace.note(word, "is a curve through several points and was read as straight moves", line);
@@ -337,7 +336,7 @@ impl Reader<'_> {
             self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "the joints move with the arc on.");
         }
         if self.weave.is_some() && !self.trace.arc {
-            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
+            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves while moving without the arc.");
         }
         self.pitch(speed.unwrap_or(0.0), line);
         self.blended =

@@ -45,11 +45,11 @@ pub(super) struct FanucTp {
     wire_feed_speed: f64,
     digits: usize,
     main: Program,
-    /// Label behind the present pass.
+    /// Label after the current pass.
     skip: Option<usize>,
-    /// Label behind the way from the pass before.
+    /// Label after the moves from the previous pass.
     way: Option<usize>,
-    /// How the torch swings at present, as it is written.
+    /// How the torch swings at the moment, as it is written.
     weaving: Option<String>,
 }
 
@@ -131,7 +131,7 @@ impl FanucTp {
         self.values.expand(template).for_each(|line| program.line(&format!("  {line}")));
     }
 
-    /// Begins what a program begun later than `number` leaves out; returns the label where it goes on.
+    /// Begins what a program begun later than `number` leaves out; returns the label where it continues.
     fn begin_skippable(&self, program: &mut Program, number: usize) -> Option<usize> {
         let label = self.program.restart.then(|| program.label())?;
         program.line(&format!("  IF R[{}]>{number},JMP LBL[{label}]", self.fanuc.restart_register));
@@ -148,7 +148,7 @@ impl FanucTp {
         label.into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, program: &mut Program, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(program, number);
@@ -169,7 +169,7 @@ impl FanucTp {
         self.lines(program, &self.fanuc.hooks.pass_start);
     }
 
-    /// Swings the torch so that a period is as long at any speed (mm/s).
+    /// Swings the torch so that a period has the same length at any speed (mm/s).
     fn weave_at(&mut self, program: &mut Program, speed: f64) {
         let Some(weave) = &self.weave else { return };
         let [hertz, amplitude] = [speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
@@ -199,7 +199,7 @@ impl FanucTp {
         }
     }
 
-    /// What a motion ends with where its layer has a height to be added.
+    /// What ends a motion where its layer has a height to be added.
     fn offset_word(&self) -> &'static str {
         if self.program.layer_offsets { " Offset" } else { "" }
     }

@@ -2,7 +2,7 @@
 
 use crate::dialect::reading::words::Patterns;
 
-/// Most codes of one letter in a block; further ones are dropped, as no control accepts more.
+/// Maximum number of codes of one letter in a block; further ones are dropped, as no control accepts more.
 const MAX_CODES: usize = 12;
 
 /// G or M codes in tenths: G92.1 is 921.
@@ -48,7 +48,7 @@ pub(super) enum Line<'a> {
     Words,
     /// A named command (Klipper), or a line in another language.
     Macro,
-    /// A word whose value is no number.
+    /// A word whose value is not a number.
     Malformed(&'a [u8]),
 }
 
@@ -73,7 +73,7 @@ impl Block {
         self.set & bit(letter) != 0
     }
 
-    /// Whether the letter stands there, with or without a value.
+    /// Whether the letter is present, with or without a value.
     pub(super) fn names(&self, letter: u8) -> bool {
         (self.set | self.bare) & bit(letter) != 0
     }
@@ -124,7 +124,7 @@ impl Block {
         }
         let value = parse(&line[start..start + digits])?;
         *i = start + digits;
-        // An address with a number, such as `Q1=5.0`, is an axis or a parameter besides those that move the torch.
+        // An address with a number, such as `Q1=5.0`, is an axis or a parameter other than those that move the torch.
         if let Some((b'=', rest)) = line[*i..].split_first() {
             *i += 1 + rest.iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'+' | b'-')).count();
             return Some(true);

@@ -1,4 +1,4 @@
-//! Branches as far as their conditions are known: O words of LinuxCNC, and jumps down of Fanuc (`IF[#100GT0]GOTO1`), Siemens
+//! Branches as far as their conditions are known: O words of LinuxCNC, and forward jumps of Fanuc (`IF[#100GT0]GOTO1`), Siemens
 //! (`IF R90>0 GOTOF LB1`) and TwinCAT NC I (`@126 R90 K0 K1`).
 
 use crate::dialect::reading::loops::holds;
@@ -43,7 +43,7 @@ pub(super) fn without_number(line: &[u8]) -> &[u8] {
     if digits > 0 && own { behind } else { line }
 }
 
-/// Whether a line may be a branch, a label or an assignment, and no block.
+/// Whether a line may be a branch, a label or an assignment, rather than a block.
 fn begins_branch(line: &[u8]) -> bool {
     let word = |word: &[u8]| line.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word));
     match line.first() {
@@ -87,7 +87,7 @@ fn at_jump(text: &str) -> Option<(Option<String>, String)> {
 }
 
 impl Branches {
-    /// Looks at a line before it is read.
+    /// Examines a line before it is read.
     pub(super) fn see(&mut self, line: &[u8]) -> Seen {
         let line = line.trim_ascii_start();
         if let Some(target) = &self.target {

@@ -17,14 +17,14 @@ pub enum GcodeControl {
     Twincat,
 }
 
-/// Names that Sinumerik and Windows keep for themselves.
+/// Names that Sinumerik and Windows reserve.
 const TAKEN: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
 
 /// Names of programs have this many characters at most (SINUMERIK ONE, Programming Manual, 12/2019).
 const MAX_NAME: usize = 24;
 
 impl GcodeControl {
-    /// Whether the control takes a name of a program, without its extension.
+    /// Whether the control accepts a program name, without its extension.
     pub(super) fn takes(self, name: &str) -> bool {
         self.file_name(name).eq_ignore_ascii_case(name)
     }
@@ -61,12 +61,12 @@ impl GcodeControl {
         format!("{}{sign}0", self.variable())
     }
 
-    /// Whether its jumps go to numbers of blocks, so that no other block may have one.
+    /// Whether its jumps go to block numbers, so that no other block may have one.
     pub(super) fn jumps_to_numbers(self) -> bool {
         matches!(self, Self::Fanuc | Self::Twincat)
     }
 
-    /// A jump down to a label where the variable is above a number; `None` where there are blocks instead of jumps.
+    /// A forward jump to a label where the variable is above a number; `None` where there are blocks instead of jumps.
     pub(super) fn jump_if_above(self, number: usize, label: usize) -> Option<String> {
         let variable = self.variable();
         match self {
@@ -77,7 +77,7 @@ impl GcodeControl {
         }
     }
 
-    /// A jump down to a label where the variable is 0.
+    /// A forward jump to a label where the variable is 0.
     pub(super) fn jump_if_zero(self, label: usize) -> Option<String> {
         let variable = self.variable();
         match self {
@@ -88,7 +88,7 @@ impl GcodeControl {
         }
     }
 
-    /// A jump down to a label.
+    /// A forward jump to a label.
     pub(super) fn jump(self, label: usize) -> Option<String> {
         match self {
             Self::Linuxcnc => None,
@@ -108,7 +108,7 @@ impl GcodeControl {
         }
     }
 
-    /// The block that adds a height (mm, as text) to what follows; 0 takes it away.
+    /// The block that adds a height (mm, as text) to what follows; 0 removes it.
     pub(super) fn raise(self, height: &str) -> String {
         match self {
             Self::Linuxcnc | Self::Fanuc => format!("G52 X0.0 Y0.0 Z{height}"),

@@ -17,7 +17,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// Inch in mm.
 const INCH: f64 = 25.4;
 
-/// What becomes of offsets that a program sets.
+/// What happens to offsets that a program sets.
 const SHIFTS: &str = "shifts what follows, which is not applied";
 
 /// Codes in tenths that affect neither position nor metal.
@@ -71,12 +71,11 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
         }
     }
     if hints.printer && options.filament_diameter.is_none() && hints.diameter.is_none() && !hints.volumetric {
-        reader.trace.note("the filament's diameter", "is not told and was taken as 1.75 mm", 1);
+        reader.trace.note("the filament's diameter", "is not given and was taken as 1.75 mm", 1);
     }
     if let Some(line) = reader.lit_without_speed.filter(|_| review::is_linuxcnc(text)) {
         let place = Some(reader.trace.place(line));
-        let text =
-            "M3 without S: a spindle without a speed does not turn, so its output stays off and the arc is never lit.";
+        let text = "M3 without S: a spindle without a speed does not turn, so its output stays off and the arc is never struck.";
         reader.trace.faults.add(&NO_OUTPUT, place, text);
     }
     if !hints.printer {
@@ -268,7 +267,7 @@ impl Reader {
             self.trace.note("A, B or C", "turns an axis, which is not followed", line);
         }
         if self.printer && block.get(b'T').is_some_and(|t| t != 0.0) {
-            self.trace.note("T", "takes another tool, which was read as the first one", line);
+            self.trace.note("T", "selects another tool, which was read as the first one", line);
         }
     }
 
@@ -297,7 +296,7 @@ impl Reader {
         }
     }
 
-    /// Remembers an M code, since any M code of a machine may light its arc.
+    /// Remembers an M code, since any M code of a machine may strike its arc.
     fn seen(&mut self, code: i32, block: &Block) {
         if !self.printer {
             let more = block.get(b'P').map_or(String::new(), |p| format!(" P{p}"));
@@ -307,7 +306,7 @@ impl Reader {
 
     /// Seconds of a G4.
     fn dwell(&self, block: &Block) -> f64 {
-        // On Fanuc controls a P with a decimal point is in seconds, and nobody waits for fewer than 10 ms.
+        // On Fanuc controls a P with a decimal point is in seconds, and nobody waits for less than 10 ms.
         let milliseconds = |p: f64| self.printer || (self.fanuc && p >= 10.0 && p.fract() == 0.0);
         let p = block.get(b'P').map(|p| if milliseconds(p) { p / 1000.0 } else { p });
         let seconds = [block.get(b'S'), p, block.get(b'X'), block.get(b'F')].into_iter().flatten().next();
@@ -373,7 +372,7 @@ impl Reader {
         let across = arc || to.truncate() != start.truncate();
         let metal = match laid > 0.0 && across {
             true => Metal::Volume(laid),
-            // Whatever the arc does, no bead is laid in a rapid.
+            // Whatever the arc does, no bead is laid in a rapid move.
             false if motion == 0 && !self.printer => Metal::Off,
             false => self.trace.metal(),
         };
@@ -400,7 +399,7 @@ impl Reader {
         }
     }
 
-    /// Machine coordinates of the axes named, mm.
+    /// Machine coordinates of the named axes, mm.
     fn target(&self, block: &Block) -> [Option<f64>; 3] {
         let mut target = [None; 3];
         for (axis, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {

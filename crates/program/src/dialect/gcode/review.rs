@@ -47,7 +47,7 @@ pub(super) fn program(trace: &mut Trace, text: &str, options: &Options) {
         .and_then(|file| file.rsplit_once('.'))
         .filter(|(_, end)| ["mpf", "spf"].iter().any(|own| end.eq_ignore_ascii_case(own)));
     if let Some((name, end)) = siemens.filter(|(name, _)| !GcodeControl::Siemens.takes(name)) {
-        let text = format!("\"{name}.{end}\": names have two letters first, then letters, digits and _, 24 at most.");
+        let text = format!("\"{name}.{end}\": names begin with two letters, then letters, digits and _, 24 at most.");
         trace.faults.add(&BAD_NAME, None, text);
     }
 }

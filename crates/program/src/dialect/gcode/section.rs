@@ -26,7 +26,7 @@ pub struct Gcode {
     pub percent_signs: bool,
     /// O number of the program (Fanuc); default none.
     pub program_number: Option<u32>,
-    /// Height to which the torch goes before its first move across, in the part's coordinates, mm: above clamps, and
+    /// Height to which the torch moves before its first horizontal move, in the part's coordinates, mm: above clamps, and
     /// above the part where a program begins in its middle; default 100.
     #[serde(default = "hundred")]
     pub safe_z: f64,
@@ -54,12 +54,12 @@ pub struct Gcode {
     #[serde(default)]
     pub crater: Vec<String>,
     /// Address of an auxiliary axis that feeds the wire along with the torch, such as `Q1=` (TwinCAT NC I) or `E`: weld
-    /// moves tell the length of wire that is fed until their end, mm from the beginning of the program. It follows the
+    /// moves give the length of wire that is fed until their end, mm from the beginning of the program. It follows the
     /// wire feed without `wire_feed` lines. Default none: blocks of the templates switch the wire.
     pub wire_axis: Option<String>,
     /// Blocks at the end of the program.
     pub footer: Vec<String>,
-    /// The control, in whose own language branches, heights of layers and file names are written: `linuxcnc`, `fanuc`, `siemens`
+    /// The control in whose language branches, heights of layers and file names are written: `linuxcnc`, `fanuc`, `siemens`
     /// or `twincat` (NC I, classic interpreter). Needed for `program.restart` and `program.layer_offsets`; default none.
     pub control: Option<GcodeControl>,
     /// Lines at other places of the program; default none.
@@ -113,7 +113,7 @@ impl Section for Gcode {
             return Some(Broken::text("gcode.extension", &self.extension, "letters and digits only."));
         }
         if let Some(axis) = self.wire_axis.as_ref().filter(|axis| !is_axis(axis)) {
-            let reason = "it is one letter, which no other word has, or a letter, a number and =, such as \"Q1=\".";
+            let reason = "it must be one letter that no other word uses, or a letter, a number and =, such as \"Q1=\".";
             return Some(Broken::text("gcode.wire_axis", axis, reason));
         }
         let coarse = program.arcs && self.decimals < 3;
@@ -135,7 +135,7 @@ impl Section for Gcode {
 
     fn supports(&self, extra: Extra) -> bool {
         match extra {
-            // An axis of the wire would feed at once what was left out.
+            // A wire axis would feed at once what was left out.
             Extra::Restart => self.control.is_some() && self.wire_axis.is_none(),
             Extra::LayerOffsets => self.control.is_some(),
             Extra::Weave => true,

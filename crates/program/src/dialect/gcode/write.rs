@@ -10,7 +10,7 @@ use crate::program::{Circle, Instruction, LayerProgram, ProgramSettings};
 use bead_plan::layer::Extent;
 use glam::DVec3;
 
-/// Highest number of a block that a jump finds.
+/// Highest block number that a jump finds.
 const MAX_LABEL: usize = 99_999;
 
 /// Block numbers start again after this one.
@@ -93,7 +93,7 @@ impl CncGcode {
     fn blocks(&mut self, text: &mut String, template: &[String]) {
         let lines: Vec<String> = self.values.expand(template).collect();
         for line in lines {
-            // LinuxCNC takes no number before an O word; parameters are set alike.
+            // LinuxCNC accepts no number before an O word; parameters are set in the same way.
             if !line.starts_with(['O', '#']) {
                 self.begin_block(text);
             }
@@ -102,7 +102,7 @@ impl CncGcode {
         }
     }
 
-    /// A line that is no block: an O word, or a jump.
+    /// A line that is not a block: an O word, or a jump.
     fn line(&self, text: &mut String, line: &str) {
         text.push_str(line);
         text.push('\n');
@@ -146,7 +146,7 @@ impl CncGcode {
         }
     }
 
-    /// Ends the branch that began last; nothing is known of what it did.
+    /// Ends the branch that began last; nothing is known about what it did.
     fn end_branch(&mut self, text: &mut String) {
         if let Some(end) = self.open.pop() {
             self.line(text, &end);
@@ -154,14 +154,14 @@ impl CncGcode {
         }
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number, 1);
         let Some(control) = self.restarts() else { return };
         let (way, behind) = (self.new_label(), self.new_label());
         let word = number * 10 + 2;
-        // What stands between the two ways, and behind both.
+        // What comes between the two branches, and after both.
         let jumps = (control.jump_if_zero(way), control.jump(behind), control.label(way), control.label(behind));
         let (begin, between, end) = match jumps {
             (Some(unless), Some(jump), Some(way), Some(behind)) => (unless, vec![jump, way], behind),
@@ -209,7 +209,7 @@ impl CncGcode {
         self.motion(text, word, to, None, feed);
     }
 
-    /// The machine may stand anywhere at first: to the safe height, across, and down.
+    /// The machine may be anywhere at first: to the safe height, across, and down.
     fn approach(&mut self, text: &mut String, to: DVec3) {
         let safe = self.gcode.safe_z.max(to.z);
         self.begin_block(text);
@@ -252,7 +252,7 @@ impl CncGcode {
         self.at = Some(to);
     }
 
-    /// Moves the axis of the wire, if there is one, as far as it goes in that time.
+    /// Moves the wire axis, if there is one, as far as it goes in that time.
     fn feed_wire(&mut self, text: &mut String, seconds: f64) {
         if let Some(axis) = &self.gcode.wire_axis {
             self.wire += self.wire_speed() * seconds;
@@ -266,7 +266,7 @@ impl CncGcode {
         self.wire_feed_speed * self.feed_ratio * 1000.0 / 60.0
     }
 
-    /// Fills a crater: an axis of the wire goes on alone, at its own speed, where others wait.
+    /// Fills a crater: a wire axis continues alone, at its own speed, where others wait.
     fn fill(&mut self, text: &mut String, seconds: f64) {
         if self.gcode.wire_axis.is_none() {
             return self.wait(text, seconds);

@@ -2,7 +2,7 @@
 //!
 //! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options.
 //! Consecutive MOVC are one chain to the controller. Three of them are an arc; `FPT` on the last, or a MOVL to it, ends
-//! that arc and lets the next one begin there, which Yaskawa's manuals ask for where the circle changes. Without either,
+//! that arc and lets the next one begin there, which Yaskawa's manuals require where the circle changes. Without either,
 //! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
 //! circle, so a chain that leaves its circle is noted).
 
@@ -21,10 +21,10 @@ const HARMLESS: [&str; 19] = [
     "SUB", "ARCSET", "MSG", "SPEED",
 ];
 
-/// Most instructions of a job.
+/// Maximum number of instructions of a job.
 const MAX_INSTRUCTIONS: usize = 9_999;
 
-/// Longest name of a job.
+/// Longest job name.
 const MAX_NAME: usize = 32;
 
 /// Branches and loops.
@@ -33,7 +33,7 @@ const CONTROL: [&str; 8] = ["JUMP", "IF", "IFTHENEXP", "ELSE", "FOR", "WHILE", "
 /// A MOVC this close to the torch's position begins a new arc, mm.
 const ON_THE_SPOT_MM: f64 = 0.005;
 
-/// A chain that goes on this far from its circle has left it, mm.
+/// A chain that continues this far from its circle has left it, mm.
 const OFF_CIRCLE_MM: f64 = 0.1;
 
 /// A job: instructions with their lines, and positions by name; `None` for positions in pulses.
@@ -75,16 +75,16 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
     reader.trace.finish(super::DIALECT.language)
 }
 
-/// How far a chain of arcs has come.
+/// How far a chain of arcs has got.
 #[derive(Clone, Copy)]
 enum Circle {
     /// No chain.
     None,
-    /// The torch stands where an arc begins.
+    /// The torch is where an arc begins.
     At,
-    /// A point on the way is known.
+    /// A point along the arc is known.
     Via(DVec3, Step),
-    /// The torch stands on an arc, behind these two points of its chain.
+    /// The torch is on an arc, after these two points of its chain.
     On([DVec3; 2]),
 }
 
@@ -101,7 +101,7 @@ struct Reader<'a> {
     variables: HashMap<String, f64>,
     /// Whether the shift that may be switched on is known to be 0.
     unshifted: bool,
-    /// How the last move goes over into the next, if it does not end exactly.
+    /// How the last move blends into the next, if it does not end exactly.
     blended: Option<String>,
     weaves: bool,
     /// Whether moves are shifted.
@@ -125,14 +125,15 @@ impl Reader<'_> {
             }
         }
         if instructions.len() > MAX_INSTRUCTIONS {
-            let text = format!("the job has {} instructions; controllers take {MAX_INSTRUCTIONS}.", instructions.len());
+            let text =
+                format!("the job has {} instructions; controllers accept {MAX_INSTRUCTIONS}.", instructions.len());
             let place = Some(self.trace.place(1));
             self.trace.faults.add(&TOO_LARGE, place, text);
         }
         let name = text.lines().find_map(|line| line.trim().strip_prefix("//NAME")).map(str::trim).unwrap_or_default();
         let legal = |b: u8| b.is_ascii_uppercase() || b.is_ascii_digit() || b"_-".contains(&b);
         if name.is_empty() || name.len() > MAX_NAME || !name.bytes().all(legal) {
-            let text = format!("\"{name}\" is no name of a job: at most {MAX_NAME} capital letters, digits, _ and -.");
+            let text = format!("\"{name}\" is not a job name: at most {MAX_NAME} capital letters, digits, _ and -.");
             self.trace.faults.add(&BAD_NAME, None, text);
         }
         self.trace.module = caller;
@@ -170,8 +171,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// By how many instructions `JUMP *L1 IF D090>5` goes on, 0 where it does not jump; `None` for all else, conditions of
-    /// which nothing is known, and labels that do not come behind.
+    /// How many instructions `JUMP *L1 IF D090>5` jumps ahead, 0 where it does not jump; `None` for anything else, conditions
+    /// of which nothing is known, and labels that do not come after it.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
         let jump = text.strip_prefix("JUMP ")?;
         let (label, condition) = jump.split_once(" IF ").unwrap_or((jump, "0=0"));
@@ -198,7 +199,7 @@ impl Reader<'_> {
                 self.trace.faults.add(
                     &BLENDED_SWITCH,
                     place.clone(),
-                    format!("the arc is {what} behind a move with {level}."),
+                    format!("the arc is {what} after a move with {level}."),
                 );
             }
             self.end_circle();
@@ -229,7 +230,7 @@ impl Reader<'_> {
         } else if word == "SFTON" {
             self.shifts = true;
             if !self.unshifted {
-                self.trace.note("SFTON", "shifts the moves behind it, which is not applied", line);
+                self.trace.note("SFTON", "shifts the moves after it, which is not applied", line);
             }
         } else if CONTROL.contains(&word) {
             self.trace.note(word, "is not followed: its lines were read once", line);
@@ -270,7 +271,7 @@ impl Reader<'_> {
             self.trace.faults.add(&RAPID_WITH_ARC, Some(place.clone()), "the joints move with the arc on.");
         }
         if self.weaves && !self.trace.arc {
-            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves on its way without the arc.");
+            self.trace.faults.add(&WEAVE_LEFT_ON, Some(place), "the torch weaves while moving without the arc.");
         }
         self.blended =
             words.iter().find(|word| word.starts_with("PL=") && **word != "PL=0").map(|word| (*word).to_owned());
@@ -279,7 +280,7 @@ impl Reader<'_> {
         }
         let speed = words.iter().find_map(|w| w.strip_prefix("V=")).and_then(number).map(|v| v * self.unit);
         if speed.is_none() && kind != "J" {
-            self.trace.note("a speed", "is no plain V= and was read as unknown", line);
+            self.trace.note("a speed", "is not a plain V= and was read as unknown", line);
         }
         let step = Step { speed: speed.unwrap_or(0.0), metal: self.trace.metal(), width: None, line };
         let Some((to, _)) = position.flatten() else {
@@ -303,7 +304,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The next point of a chain of arcs; an arc ends where `last`.
+    /// The next point of a chain of arcs; an arc ends where `last` is set.
     fn arc(&mut self, to: DVec3, step: Step, last: bool) {
         self.circle = match self.circle {
             Circle::None => {
@@ -319,13 +320,13 @@ impl Reader<'_> {
             }
             Circle::On(_) if self.trace.at.distance(to) < ON_THE_SPOT_MM => {
                 let fate = "was read as the start of a new arc; a controller needs FPT there, or a MOVL between";
-                self.trace.note("a MOVC on the spot of the one before it", fate, step.line);
+                self.trace.note("a MOVC at the place of the one before it", fate, step.line);
                 Circle::At
             }
             Circle::On(points) => {
                 if self.trace.off_circle(points, to) > OFF_CIRCLE_MM {
-                    let fate = "goes on to another circle with neither FPT nor a MOVL between: each further point was read on \
-                                the circle through it and the two before, which your controller may do otherwise";
+                    let fate = "continues on another circle with neither FPT nor a MOVL between: each further point was read on \
+                                the circle through it and the two before, which your controller may do differently";
                     self.trace.note("a chain of MOVC", fate, step.line);
                 }
                 let at = self.trace.at;

@@ -1,8 +1,8 @@
 //! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; a long
 //! layer continues in `NAME-L001-2.jbi`.
 //!
-//! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first stands where the arc
-//! begins, so the robot does not move for it. MOVC in a row are one chain to the controller, so a MOVL to the shared
+//! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first is where the arc
+//! begins, so the robot does not move for it. Consecutive MOVC are one chain to the controller, so a MOVL to the shared
 //! point separates an arc from the next.
 
 use super::section::{Inform, InformSpeed};
@@ -20,7 +20,7 @@ const MAX_COMMENT: usize = 32;
 /// Longest wait of one timer, s.
 const MAX_WAIT: f64 = 600.0;
 
-/// Room for `-L`, and for the number of a split layer (which short names go without as long as they can).
+/// Room for `-L`, and for the number of a split layer (which short names do without as long as they can).
 const SUFFIX: usize = 2;
 
 /// Writes INFORM.
@@ -42,9 +42,9 @@ pub(super) struct YaskawaInform {
     at: DVec3,
     /// Whether the last move was along an arc.
     in_arc: bool,
-    /// Label behind the present pass.
+    /// Label after the current pass.
     skip: Option<usize>,
-    /// Label behind the way from the pass before.
+    /// Label after the moves from the previous pass.
     way: Option<usize>,
 }
 
@@ -103,7 +103,7 @@ impl YaskawaInform {
         }
     }
 
-    /// Begins what a program begun later than `number` leaves out; returns the label where it goes on.
+    /// Begins what a program begun later than `number` leaves out; returns the label where it continues.
     fn begin_skippable(&self, job: &mut JobText, number: usize) -> Option<usize> {
         let label = self.program.restart.then(|| job.label())?;
         job.line(&format!("JUMP *L{label} IF D{:03}>{number}", self.inform.restart_variable));
@@ -120,7 +120,7 @@ impl YaskawaInform {
         label.into_iter().for_each(|label| job.line(&format!("*L{label}")));
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, job: &mut JobText, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.skip = self.begin_skippable(job, number);

@@ -2,7 +2,7 @@
 //!
 //! A form moves to its point and switches there: ARCON moves to the start and ignites, ARCOFF moves to the end and fills the
 //! crater. What lies between are plain motions with their own `$VEL.CP`; where the wire feed changes, and a channel holds it,
-//! the motion before is an ARCSWI, which takes about 1.5 kB. ARCOFF moves at the speed of the seam that the form before has
+//! the motion before is an ARCSWI, which takes about 1.5 kB. ARCOFF moves at the speed of the seam that the preceding form has
 //! set: that of the last piece. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for
 //! each form, and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, and the
 //! package ArcTech Advanced.
@@ -32,7 +32,7 @@ impl Form {
         }
     }
 
-    /// How the package calls its steps.
+    /// What the package calls its steps.
     fn name(self) -> &'static str {
         match self {
             Self::On => "ArcOn",
@@ -115,15 +115,15 @@ pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), D
     if krl.motion == KrlMotion::Slin {
         return cannot(
             "krl.motion = \"slin\" with arc = \"arctech\"",
-            "Take motion = \"lin\": the forms move by LIN and CIRC.",
+            "Use motion = \"lin\": the forms move by LIN and CIRC.",
         );
     }
     if job.weld.ends.wire_retract > 0.0 {
-        let remedy = "Take krl.arctech.crater.burnback_time instead.";
+        let remedy = "Use krl.arctech.crater.burnback_time instead.";
         return cannot("a start_stop.wire_retract with arc = \"arctech\"", remedy);
     }
     if job.program.layer_offsets {
-        let remedy = "The forms set the base anew by its number: take layer_offsets out, or arc = \"outputs\".";
+        let remedy = "The forms set the base again by its number: remove layer_offsets, or use arc = \"outputs\".";
         return cannot("program.layer_offsets with arc = \"arctech\"", remedy);
     }
     let lacks = |key: &str, why: &str, remedy: &str| {
@@ -178,7 +178,7 @@ impl Forms {
         }
     }
 
-    /// Moves to the start of a pass and lights the arc.
+    /// Moves to the start of a pass and strikes the arc.
     pub(super) fn on(&mut self, text: &mut String, to: &str, seam: Seam) {
         let ArcTech { strike, .. } = &self.arctech;
         let set = format!(
@@ -194,7 +194,7 @@ impl Forms {
         self.form(text, Form::On, Target { via: None, to }, set);
     }
 
-    /// Moves on along the pass and switches at the end of the move to what comes behind it.
+    /// Moves on along the pass and switches at the end of the move to what follows it.
     pub(super) fn switch(&mut self, text: &mut String, target: Target<'_>, seam: Seam) {
         let set = self.weld_set(seam);
         self.form(text, Form::Switch, target, set);
@@ -301,7 +301,7 @@ impl Forms {
         let help = via.map_or(String::new(), |via| format!("P{via} "));
         let parameter = via.map_or(String::new(), |via| format!(" Kuka.HelpPointName=P{via};"));
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
-        // The way to the start has a speed of its own; the seam has that of its data.
+        // The move to the start has a speed of its own; the seam has that of its data.
         let speed = if form == Form::On {
             format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.'))
         } else {
@@ -355,7 +355,7 @@ fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
     }
 }
 
-/// How the torch swings; the lengths of no pattern are those of the package.
+/// How the torch swings; without a pattern the lengths are those of the package.
 fn pattern(weave: Option<&Weave>) -> String {
     let (name, length, amplitude, dwell) = match weave {
         Some(weave) => ("Triangle", weave.length, weave.amplitude, weave.dwell),

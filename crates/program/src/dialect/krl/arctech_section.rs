@@ -122,7 +122,7 @@ impl ArcTech {
                     value,
                     (-1e5, 1e5),
                     "(as the channel is configured)",
-                    "the welding package takes no other values",
+                    "the welding package accepts no other values",
                 )
             }));
         }
@@ -136,7 +136,7 @@ impl ArcTech {
         }
         if !WRITTEN.iter().any(|version| self.version.starts_with(version)) {
             let reason =
-                "forms of 3.3 and 3.4 are written, and this version may run others (3.6 does). Take arc = \"outputs\".";
+                "forms of 3.3 and 3.4 are written, and this version may run others (3.6 does). Use arc = \"outputs\".";
             return Some(Broken::text("krl.arctech.version", &self.version, reason));
         }
         let texts = [

@@ -1,8 +1,8 @@
 //! KUKA KRL: motions to Cartesian positions, named or written out, and the subprograms that a program calls.
 //!
-//! Positions are in `$BASE`. The arc is lit by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes in the
+//! Positions are in `$BASE`. The arc is struck by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes in the
 //! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read as
-//! they are; how SPL curves only the controller knows, so it is refused where it welds.
+//! they are; only the controller knows how SPL curves, so it is refused where it welds.
 
 use super::review;
 use super::words::{MOTIONS, Target, number_before, with_speed};
@@ -70,16 +70,16 @@ pub(super) struct Source {
     arc_data: HashMap<String, ArcData>,
 }
 
-/// What an ArcTech data set says of speed and time.
+/// What an ArcTech data set says about speed and time.
 #[derive(Clone, Copy)]
 struct ArcData {
     /// Weld speed, mm/s.
     speed: Option<f64>,
-    /// Time for which the torch stands while the arc starts or ends, s.
+    /// Time for which the torch stands still while the arc starts or ends, s.
     stands: f64,
 }
 
-/// Times of an ArcTech data set for which the torch stands, at the start and at the end of a seam.
+/// Times of an ArcTech data set for which the torch stands still, at the start and at the end of a seam.
 const STANDS: [&str; 5] = ["PreFlowTime", "StartTime", "CraterTime", "BurnBackTime", "PostflowTime"];
 
 /// Whether a line can occur only in KRL.
@@ -149,9 +149,9 @@ pub(super) struct Reader<'a> {
     interrupts: HashMap<u32, String>,
     /// Outputs that are on.
     outputs: BTreeSet<u32>,
-    /// Outputs that were on while the arc burned by them.
+    /// Outputs that were on while the arc burned through them.
     lit_with: BTreeSet<u32>,
-    /// Whether forms of ArcTech light the arc.
+    /// Whether forms of ArcTech strike the arc.
     pub(super) forms: bool,
     /// Whether the last line was CONTINUE.
     runs_on: bool,
@@ -240,7 +240,7 @@ impl Reader<'_> {
         }
     }
 
-    /// How often the block that begins with a line turns.
+    /// How often the block that begins with a line runs.
     fn block(&mut self, lines: &[&str], i: usize, number: usize) -> Next {
         let (word, rest) = name(lines[i]);
         let known = if word.eq_ignore_ascii_case("FOR") {
@@ -292,7 +292,7 @@ impl Reader<'_> {
             return Ok(());
         }
         let flat = compact(line);
-        // An output stops the advance run, unless CONTINUE stands before it.
+        // An output stops the advance run, unless CONTINUE comes before it.
         let runs_on = std::mem::replace(&mut self.runs_on, flat == "CONTINUE");
         if self.runs_on {
             return Ok(());
@@ -322,7 +322,7 @@ impl Reader<'_> {
         self.other(line, &flat, number, source, depth)
     }
 
-    /// Statements that move nothing themselves.
+    /// Statements that themselves move nothing.
     fn other(&mut self, line: &str, flat: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
         let (word, rest) = name(line);
         let is = |name: &&str| name.eq_ignore_ascii_case(word);
@@ -370,7 +370,7 @@ impl Reader<'_> {
         };
     }
 
-    /// Whether the statement switches the arc, and if so, does it.
+    /// Whether the statement switches the arc; if so, switches it.
     fn arc(&mut self, flat: &str, line: &str, number: usize, source: usize) -> Result<bool, ReadError> {
         let starts = |words: [&str; 2]| words.iter().any(|w| flat.starts_with(w));
         let holds = |words: [&str; 2]| words.iter().any(|w| flat.contains(w));
@@ -418,7 +418,7 @@ impl Reader<'_> {
         let flat = compact(line);
         if self.forms && (self.on.matches(&flat) || self.off.matches(&flat)) {
             let place = Some(self.trace.place(number));
-            let text = format!("$OUT[{output}] is switched beside the forms of ArcTech.");
+            let text = format!("$OUT[{output}] is switched alongside the forms of ArcTech.");
             self.trace.faults.add(&TWO_SWITCHES, place, text);
         }
     }
@@ -446,7 +446,7 @@ impl Reader<'_> {
             (Some(speed), _) => speed * 1000.0,
             (None, Some(speed)) if text.starts_with("GARC") => speed,
             _ => {
-                self.trace.note("a speed", "is set to no plain number and was read as unknown", number);
+                self.trace.note("a speed", "is not set to a plain number and was read as unknown", number);
                 0.0
             }
         };

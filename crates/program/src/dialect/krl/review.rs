@@ -8,7 +8,7 @@ use crate::dialect::reading::trace::Trace;
 use crate::dialect::reading::words::{before_comment, compact, strip_word};
 use std::collections::{BTreeSet, HashMap};
 
-/// Longest name of a module.
+/// Longest module name.
 const MAX_NAME: usize = 24;
 
 /// Looks through all programs that were read; `lit_with` are the outputs that are on while the arc burns.
@@ -22,13 +22,13 @@ pub(super) fn program(
     for (i, source) in sources.iter().enumerate() {
         trace.module.clone_from(&source.module);
         for (k, (_, byte, line)) in source.programs.iter().enumerate() {
-            // What stands behind the main program runs while a pass is welded.
+            // What follows the main program runs while a pass is welded.
             let before = if i == 0 && k > 0 { lit_with.clone() } else { BTreeSet::new() };
             routine(trace, &source.text[*byte..], *line, before, lit_with);
         }
         for (name, ..) in &source.programs {
             if name.len() > MAX_NAME {
-                let text = format!("{name} has {} characters; KRL takes {MAX_NAME}.", name.len());
+                let text = format!("{name} has {} characters; KRL accepts {MAX_NAME}.", name.len());
                 trace.faults.add(&BAD_NAME, None, text);
             }
         }
@@ -38,12 +38,12 @@ pub(super) fn program(
     // Number 3 is the controller's own, IR_STOPM, which switches no outputs of a process.
     let covered = interrupts.iter().any(|(number, condition)| *number != 3 && stops(condition));
     if trace.watch.by_outputs && !covered {
-        let text = "no interrupt on $STOPMESS ends the arc where something stops the robot.";
+        let text = "no interrupt on $STOPMESS ends the arc when something stops the robot.";
         trace.faults.add(&STOP_LEAVES_ON, None, text);
     }
     if let Some(most) = options.max_megabytes.filter(|most| trace.bytes as f64 > most * 1e6) {
         let text = format!(
-            "the program has {:.1} MB with its modules; the controller takes {most:.1} MB.",
+            "the program has {:.1} MB with its modules; the controller accepts {most:.1} MB.",
             trace.bytes as f64 / 1e6
         );
         trace.faults.add(&TOO_LARGE, None, text);
@@ -55,7 +55,7 @@ pub(super) fn program(
     }
 }
 
-/// Follows the outputs through the lines of a program, and looks at what its halts and waits leave on.
+/// Follows the outputs through the lines of a program, and checks what its halts and waits leave on.
 fn routine(trace: &mut Trace, text: &str, first: usize, before: BTreeSet<u32>, lit_with: &BTreeSet<u32>) {
     let mut on = before;
     for (i, raw) in text.lines().enumerate() {

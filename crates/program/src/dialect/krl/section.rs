@@ -25,7 +25,7 @@ pub struct Krl {
     pub home: String,
     /// Orientation of the tool: A, B and C, °.
     pub orientation: [f64; 3],
-    /// Index of the turn table in `MACHINE_DEF` of `$config.dat`, 2 to 16: 2 where it is the first machine beside the robot.
+    /// Index of the turn table in `MACHINE_DEF` of `$config.dat`, 2 to 16: 2 where it is the first machine besides the robot.
     /// The base then turns with it: `$BASE = EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,BASE_DATA[1])`, so `BASE_DATA` is
     /// the place of the part on the table. Needed for `program.table_angle` and `program.table_side`.
     pub table_machine: Option<u32>,
@@ -38,9 +38,9 @@ pub struct Krl {
     /// Maximum number of moves in one module; longer layers are cut between passes; default 2000.
     #[serde(default = "two_thousand")]
     pub max_points: usize,
-    /// Most that one program with its modules may take of the controller's memory, MB; larger ones come in volumes, each
-    /// with a main program of its own, which are loaded and run one after another. A pass that alone is larger is cut and
-    /// lit again. Default 4.
+    /// The most memory of the controller that one program with its modules may take, MB; larger ones come in volumes, each
+    /// with a main program of its own, which are loaded and run one after another. A pass that is larger by itself is cut and
+    /// struck again. Default 4.
     #[serde(default = "four")]
     pub max_megabytes: f64,
     /// How the pieces of a pass are run: `lin` (LIN and CIRC, blended by C_DIS) or `slin` (SLIN and SCIRC, blended by C_SPL,
@@ -73,7 +73,7 @@ pub struct Krl {
     pub crater: Vec<String>,
     /// Lines at the end of the main program.
     pub end: Vec<String>,
-    /// Lines of subprograms that the other lines call, behind the main program; default none.
+    /// Lines of subprograms that the other lines call, after the main program; default none.
     #[serde(default)]
     pub routines: Vec<String>,
     /// Lines at other places of the program; default none.
@@ -98,7 +98,8 @@ fn four() -> f64 {
 }
 
 /// How the controller knows the turn table.
-const TABLE: &str = "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine beside the robot: the base must turn with it.";
+const TABLE: &str = "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine besides \
+                     the robot: the base must turn with it.";
 
 fn two_thousand() -> usize {
     2000
@@ -113,7 +114,7 @@ impl Section for Krl {
             "krl.table_axis": self.table_axis.unwrap_or(1).into(), 1.0, 6.0, "(external axis)", CONTROLLER;
             "krl.ptp_speed": self.ptp_speed, 1.0, 100.0, "%", CONTROLLER;
             "krl.blend": self.blend, 0.0, 50.0, "mm", CONTROLLER;
-            "krl.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "a controller has some megabytes for programs";
+            "krl.max_megabytes": self.max_megabytes, 0.001, 1000.0, "MB", "a controller has a few megabytes for programs";
             "krl.max_points": self.max_points as f64, 10.0, 50_000.0, "moves per module",
                 "the pendant cannot show longer modules";
         };
@@ -172,7 +173,7 @@ impl Section for Krl {
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
         let crater = &self.arctech.as_ref().filter(|_| self.arc == KrlArc::Arctech)?.crater;
-        // The filling of `[start_stop]` is counted elsewhere, and takes the place of the section's.
+        // The filling of `[start_stop]` is counted elsewhere, and replaces the section's.
         let filling = if weld.ends.crater_fill_time > 0.0 { 0.0 } else { crater.time };
         Some(filling + crater.burnback_time + weld.process.gas_postflow)
     }

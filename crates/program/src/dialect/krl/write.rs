@@ -2,7 +2,7 @@
 //!
 //! One module per layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The arc
 //! is switched at exact stops only; points inside a pass are blended with `C_DIS`. With `arc = "arctech"` the inline
-//! forms of ArcTech Basic switch the arc; their data are in a `.dat` beside each layer's module.
+//! forms of ArcTech Basic switch the arc; their data are in a `.dat` next to each layer's module.
 
 use super::arctech::{Filling, Forms, Seam, Target};
 use super::arctech_section::KrlArc;
@@ -49,7 +49,7 @@ pub(super) struct KukaKrl {
     /// Speed set last in the module, mm/s.
     speed: f64,
     volumes: Volumes,
-    /// Name of the main program of the present volume.
+    /// Name of the main program of the current volume.
     main: String,
 }
 
@@ -163,7 +163,7 @@ impl KukaKrl {
         }
     }
 
-    /// The part's frame, turned with the table where there is one, and moved by what is written behind it.
+    /// The part's frame, turned with the table where there is one, and moved by what is written after it.
     fn base(&self, moved: &str) -> String {
         let data = format!("BASE_DATA[{}]{moved}", self.krl.base);
         match self.krl.table_machine.filter(|_| self.table.is_some()) {
@@ -172,7 +172,7 @@ impl KukaKrl {
         }
     }
 
-    /// The axes beside the robot's with their numbers: the linear axis (mm) and the turn table (°).
+    /// The axes other than the robot's with their numbers: the linear axis (mm) and the turn table (°).
     fn external(&self, table: Option<f64>) -> impl Iterator<Item = (u32, f64)> + use<> {
         let linear = self.program.linear_axis.map(|place| (1, place));
         let free = if linear.is_some() { 2 } else { 1 };
@@ -180,7 +180,7 @@ impl KukaKrl {
         linear.into_iter().chain(table)
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
@@ -201,7 +201,7 @@ impl KukaKrl {
         self.lines(text, &self.krl.hooks.pass_start);
     }
 
-    /// Torch and table stand from here on as an instruction says.
+    /// Sets the attitude of torch and table from here on, as an instruction says.
     fn stand(&mut self, instruction: &Instruction) {
         if let Some(attitude) = instruction.attitude() {
             self.orientation = orientation::zyx(self.krl.orientation, Turn::Attitude(attitude));
@@ -235,7 +235,7 @@ impl KukaKrl {
                 if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
                     forms.on(text, &self.aggregate(to), self.seam(&all[i..]));
                 }
-                // A form leaves its own speed behind.
+                // A form leaves its own speed set.
                 self.speed = 0.0;
             }
             Instruction::Weld { to, circle, last: true, .. } => {
@@ -273,7 +273,7 @@ impl KukaKrl {
         Seam { speed: speed.unwrap_or(self.process.deposition_speed), feed: self.feed, job: self.job() }
     }
 
-    /// Job of the power source in the present layer.
+    /// Job of the power source in the current layer.
     fn job(&self) -> u32 {
         self.process.at_layer(self.layer).job
     }
@@ -412,7 +412,7 @@ impl KukaKrl {
         chunks
     }
 
-    /// The axes at home; those beside the robot's stand as in the program, a table that turns at 0, unless the profile says
+    /// The axes at home; those other than the robot's are as in the program, a table that turns at 0, unless the profile says
     /// otherwise.
     fn home(&self) -> String {
         let table = self.program.table_angle.or(self.program.table_side.map(|_| 0.0));
@@ -459,7 +459,7 @@ impl KukaKrl {
         vec![Chunk::new(format!("{}.src", self.main), text)]
     }
 
-    /// The modules of a layer, and their calls; each that has no room in the volume begins another.
+    /// The modules of a layer, and their calls; each that does not fit in the volume begins another.
     fn modules(&mut self, program: &LayerProgram) -> Vec<Chunk> {
         let parts = split::passes(&program.instructions, self.krl.max_points);
         let (count, mut all) = (parts.len(), Vec::new());

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Marlin {
     /// File name extension without the dot.
     pub extension: String,
-    /// Whether E counts anew for every move (M83), which keeps small moves exact; otherwise it counts up over a layer
+    /// Whether E starts afresh for every move (M83), which keeps small moves exact; otherwise it counts up over a layer
     /// (M82).
     pub relative_extrusion: bool,
     /// Length of filament drawn back before a travel, mm; 0 for none.
@@ -73,7 +73,7 @@ impl Bed {
             BedOrigin::Corner => bed.truncate() / 2.0,
             BedOrigin::Centre => DVec2::ZERO,
         };
-        // Whole micrometres, so that what is round in the part stays round.
+        // Whole micrometres, so that round numbers in the part stay round.
         Ok(((middle - (part.low + part.high).truncate() / 2.0) * 1e3).round() / 1e3)
     }
 }
@@ -113,7 +113,7 @@ impl Section for Marlin {
             return cannot("a start_stop.crater_fill_time", "Strands have no craters: leave it out.");
         }
         if job.weld.ends.wire_retract > 0.0 && !job.dry_run {
-            return cannot("a start_stop.wire_retract", "Take marlin.retract_length instead.");
+            return cannot("a start_stop.wire_retract", "Use marlin.retract_length instead.");
         }
         Ok(Box::new(MarlinGcode::new(job, self.clone())))
     }

@@ -129,7 +129,7 @@ impl MarlinGcode {
         self.at = Some(to);
     }
 
-    /// Adds filament and writes E; what rounding takes from one move it gives to the next.
+    /// Adds filament and writes E; what rounding takes from one move, it gives to the next.
     fn push_e(&mut self, text: &mut String, filament: f64) {
         let step = 10_f64.powi(-(E_DECIMALS as i32));
         let place = |e: f64| (e / step).round() * step;

@@ -7,7 +7,7 @@ use minijinja::value::{Enumerator, Object};
 use minijinja::{Error, ErrorKind, Value};
 use std::sync::Arc;
 
-/// Placeholders of the other dialects that are no values of a whole job.
+/// Placeholders of the other dialects that are not values of a whole job.
 const CHANGING: [&str; 11] = [
     "program",
     "layer",
@@ -22,7 +22,7 @@ const CHANGING: [&str; 11] = [
     "wire_feed_ratio",
 ];
 
-/// What is the same all through a program.
+/// What is the same throughout a program.
 pub(super) fn job(job: &Job<'_>) -> Vec<(&'static str, Value)> {
     let number = |text: String| text.parse::<f64>().map_or_else(|_| Value::from(text), Value::from);
     let mut values = vec![
@@ -41,7 +41,7 @@ pub(super) fn job(job: &Job<'_>) -> Vec<(&'static str, Value)> {
     values
 }
 
-/// Makes steps of instructions, remembering where the torch stands.
+/// Turns instructions into steps, remembering where the torch is.
 #[derive(Debug, Clone)]
 pub(super) struct Steps {
     at: Option<DVec3>,
@@ -113,7 +113,7 @@ impl Step {
         }
     }
 
-    /// Length of a move, mm; 0 for the first one, which comes from anywhere.
+    /// Length of a move, mm; 0 for the first one, which may begin anywhere.
     fn length(&self, to: DVec3, circle: Option<Circle>) -> f64 {
         circle.map_or_else(|| self.from.map_or(0.0, |from| from.distance(to)), |circle| circle.length())
     }
@@ -210,7 +210,7 @@ impl<const N: usize> Object for Fields<N> {
     }
 }
 
-/// A value that says, as soon as it is used, that there is none of this name.
+/// A value that says, as soon as it is used, that there is none with this name.
 fn unknown(owner: &str, key: &str, keys: &[&str]) -> Value {
     let reason = format!("{owner} has no \"{key}\"; it has {}", keys.join(", "));
     Value::from(Error::new(ErrorKind::InvalidOperation, reason))

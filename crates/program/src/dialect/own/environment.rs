@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// How deep templates may include and call each other.
 const DEPTH: usize = 60;
 
-/// Work that a template may take besides its steps; about so many operations, or 64 bytes of text each.
+/// Work that a template may take apart from its steps; about this many operations, or 64 bytes of text each.
 pub(super) const FUEL: u64 = 1_000_000;
 /// Work that it may take for each step.
 pub(super) const FUEL_PER_STEP: u64 = 10_000;
@@ -47,15 +47,15 @@ fn fixed(value: f64, decimals: usize) -> Result<String, Error> {
     Err(Error::new(ErrorKind::InvalidOperation, format!("{value} cannot be written with {decimals} decimals")))
 }
 
-/// Prints text and whole numbers. A number with decimals must be told how many, since none of its own would fit a
+/// Prints text and whole numbers. For a number with decimals, their count must be given, since no default would fit every
 /// controller.
 fn print(out: &mut Output, state: &mut State, value: &Value) -> Result<(), Error> {
     let problem = match value.kind() {
         // An invalid value carries its own explanation.
         ValueKind::String | ValueKind::Undefined | ValueKind::Invalid => None,
         ValueKind::Number if value.is_integer() => None,
-        ValueKind::Number => Some("a number with decimals must be told how many: {{ … | fixed(3) }}".to_owned()),
-        ValueKind::None => Some("there is no value here: ask for it first, with {% if … %}".to_owned()),
+        ValueKind::Number => Some("a number with decimals needs their count: {{ … | fixed(3) }}".to_owned()),
+        ValueKind::None => Some("there is no value here: test for it first, with {% if … %}".to_owned()),
         kind => Some(format!("a {kind} cannot be written; name a part of it, such as {{{{ step.x | fixed(3) }}}}")),
     };
     match problem {
@@ -70,8 +70,7 @@ pub(super) fn sentence(fault: &Error) -> String {
     match fault.kind() {
         ErrorKind::SyntaxError => format!("the template cannot be read: {detail}."),
         ErrorKind::OutOfFuel => {
-            "the template takes too long: it goes around too often, or writes too much. Go through the steps once."
-                .to_owned()
+            "the template takes too long: it loops too often, or writes too much. Go through the steps once.".to_owned()
         }
         ErrorKind::TemplateNotFound => format!("{detail}; only files of this folder can be included or imported."),
         kind if detail.is_empty() => format!("{kind}."),

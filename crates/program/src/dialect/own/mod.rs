@@ -1,4 +1,4 @@
-//! Dialects of one's own: a folder of templates, written without a line of Rust (`docs/dialects/your-own.md`).
+//! Users' own dialects: a folder of templates, written without a line of Rust (`docs/dialects/your-own.md`).
 //!
 //! | file of the folder | what it is |
 //! | --- | --- |
@@ -9,7 +9,7 @@
 //! | others | templates that these include or import |
 //!
 //! The library reads no folder: [`Own::new`] takes its texts, which `files::posts` fetches. A dialect is rehearsed
-//! before anything is written (`rehearse`): a broken template, or one that would lose a part of the job, is refused
+//! before anything is written (`rehearse`): a broken template, or one that would lose part of the job, is refused
 //! with its file and line.
 
 mod data;
@@ -33,7 +33,7 @@ const SETTINGS: &str = "dialect.toml";
 const FILE: &str = "dialect.toml, file";
 const LAYER_FILE: &str = "dialect.toml, layer_file";
 
-/// A dialect of one's own.
+/// A user's own dialect.
 #[derive(Debug, Clone)]
 pub struct Own {
     folder: String,
@@ -41,7 +41,7 @@ pub struct Own {
     environment: Environment<'static>,
 }
 
-/// What is wrong with a dialect of one's own.
+/// What is wrong with a user's own dialect.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{folder}, {file}{at}: {reason}", at = line.map_or(String::new(), |line| format!(", line {line}")))]
 pub struct OwnError {
@@ -69,7 +69,7 @@ impl Own {
         };
         for (needed, what) in [(SETTINGS, "the names of the files to be written"), (LAYER, "the template of a layer")] {
             if !files.contains_key(needed) {
-                let reason = format!("this file is missing; it holds {what}. docs/dialects/your-own.md tells how.");
+                let reason = format!("this file is missing; it holds {what}. docs/dialects/your-own.md explains how.");
                 return Err(error(needed, reason));
             }
         }

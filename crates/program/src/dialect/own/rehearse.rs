@@ -1,4 +1,4 @@
-//! Rehearses a dialect of one's own before anything is written: with a small program that has every kind of step, and
+//! Rehearses a user's own dialect before anything is written: with a small program that has every kind of step, and
 //! by asking, for all that the job needs, whether the text changes with it.
 
 use super::write::OwnWriter;
@@ -11,19 +11,19 @@ use bead_plan::process::Follow;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// Refuses templates that are broken, or that would lose a part of the job.
+/// Refuses templates that are broken, or that would lose part of the job.
 pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     let refuse = |file: &str, reason: String| {
         Err(DialectError::Own(OwnError { folder: own.folder.clone(), file: file.to_owned(), line: None, reason }))
     };
     if job.program.external_axes() {
-        let reason = "a dialect of one's own writes no external axes (program.linear_axis, program.table_angle, \
-                      program.table_side). Take the key out, and move the axis by hand.";
+        let reason = "a dialect of your own writes no external axes (program.linear_axis, program.table_angle, \
+                      program.table_side). Remove the key, and move the axis by hand.";
         return refuse(SETTINGS, reason.to_owned());
     }
     if job.program.tilts() {
         let reason =
-            "a dialect of one's own writes no orientation. Take out program.follow_wall and program.travel_angle.";
+            "a dialect of your own writes no orientation. Remove program.follow_wall and program.travel_angle.";
         return refuse(SETTINGS, reason.to_owned());
     }
     names(own, job)?;
@@ -60,7 +60,7 @@ fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>]) -> Result<String, 
     }
 }
 
-/// Refuses names that no template knows, also where the rehearsal does not come.
+/// Refuses names that no template knows, even where the rehearsal does not reach.
 fn names(own: &Own, job: &Job<'_>) -> Result<(), OwnError> {
     let writer = OwnWriter::new(own, job);
     let environment = writer.environment();
@@ -88,7 +88,7 @@ fn names(own: &Own, job: &Job<'_>) -> Result<(), OwnError> {
     Ok(())
 }
 
-/// The first line, from 1, in which a word stands.
+/// The first line, from 1, that contains a word.
 fn line_of(text: &str, word: &str) -> Option<usize> {
     let part = |c: char| c.is_alphanumeric() || c == '_';
     let has = |line: &str| line.split(|c| !part(c)).any(|found| found == word);
@@ -158,7 +158,7 @@ struct Probe {
     programs: [Vec<Instruction>; 2],
 }
 
-/// All that the job needs.
+/// Everything that the job needs.
 fn probes(job: &Job<'_>) -> Vec<Probe> {
     let (ends, burns) = (&job.weld.ends, !job.dry_run);
     let (arcs, crater) = (job.program.arcs, burns && ends.crater_fill_time > 0.0);

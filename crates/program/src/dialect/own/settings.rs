@@ -1,4 +1,4 @@
-//! The settings of a dialect of one's own: its `dialect.toml`.
+//! The settings of a user's own dialect: its `dialect.toml`.
 
 use serde::Deserialize;
 
@@ -13,7 +13,7 @@ pub(super) struct Settings {
     /// How lines end.
     #[serde(default)]
     pub(super) line_ends: LineEnds,
-    /// By how much `block()` counts on.
+    /// By how much `block()` counts up.
     #[serde(default = "step")]
     pub(super) block_step: usize,
     /// After this number `block()` starts again.

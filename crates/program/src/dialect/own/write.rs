@@ -1,4 +1,4 @@
-//! Writes programs from the templates of a dialect of one's own, a layer at a time.
+//! Writes programs from the templates of a user's own dialect, a layer at a time.
 
 use super::data::Steps;
 use super::environment::{FUEL, FUEL_PER_STEP};
@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Longest name of a file.
+/// Longest file name.
 const LONGEST_NAME: usize = 120;
 
 /// Writes the program of a part.
@@ -25,7 +25,7 @@ pub(super) struct OwnWriter {
     steps: Steps,
     /// The names of the layers' files.
     layer_files: Vec<String>,
-    /// All names of files, in lower case: Windows takes names for the same that differ in case only.
+    /// All names of files, in lower case: Windows treats names that differ only in case as the same.
     taken: BTreeSet<String>,
     failure: Option<OwnError>,
 }
@@ -75,7 +75,7 @@ impl OwnWriter {
         OwnError { folder: self.folder.clone(), file: file.to_owned(), line: None, reason }
     }
 
-    /// The name of a file: one that stays in the folder of the plan, and is none of the plan's own.
+    /// The name of a file: one that stays in the folder of the plan, and is not one of the plan's own files.
     fn file(&mut self, template: &str, data: Value) -> Result<String, OwnError> {
         let name = self.render(template, 0, data)?;
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-+. ".contains(c);

@@ -6,7 +6,7 @@ use crate::program::{ProgramSettings, Weave};
 use bead_plan::process::Process;
 use glam::DVec3;
 
-/// The external axes of a target: a linear axis (mm), and a turn table (°) in its place, as far as they are there.
+/// The external axes of a target: a linear axis (mm), and a turn table (°) in its place, as far as there are any.
 pub(super) fn external_axes(program: &ProgramSettings, table: Option<f64>, rapid: &Rapid) -> String {
     let mut axes = [const { None }; 6];
     axes[0] = program.linear_axis;
@@ -108,8 +108,8 @@ pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, 
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
 }
 
-/// Weavedata for a speed, mm/s: a zigzag with all axes, whose length is a way along the seam at any speed. RobotWare counts
-/// its width from side to side, and what it stays there as a way too, mm.
+/// Weavedata for a speed, mm/s: a zigzag with all axes, whose length is a distance along the seam at any speed. RobotWare counts
+/// its width from side to side, and its dwell there as a distance too, mm.
 pub(super) fn weave(weave: &Weave, speed: f64) -> String {
     let [length, width, dwell] = [weave.length, 2.0 * weave.amplitude, weave.dwell * speed].map(|v| fixed(v, 3));
     format!("[1,0,{length},{width},0,{dwell},0,{dwell},0,0,0,0,0,0,0]")

@@ -44,11 +44,11 @@ pub(super) enum Value {
     Joints([Option<f64>; 6]),
     /// Whether a work object moves with a mechanical unit.
     WorkObject(bool),
-    /// Length and stay at the left side of a weave, mm; the length is a frequency for some types.
+    /// Length, and dwell at the left side, of a weave, mm; the length is a frequency for some types.
     Weave([f64; 2]),
     /// Speed, mm/s, or a plain number.
     Speed(f64),
-    /// Times for which the torch stands at the start and at the end of a seam, s.
+    /// Times for which the torch stands still at the start and at the end of a seam, s.
     Seam([f64; 2]),
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Target {
     /// mm
     pub(super) at: DVec3,
     pub(super) stated: Stated,
-    /// Whether its configuration is all 0, as where it is not known.
+    /// Whether its configuration is all 0, as it is where it is not known.
     pub(super) unconfigured: bool,
 }
 
@@ -108,7 +108,7 @@ impl Module {
         self.statements.iter().filter_map(declaration).collect()
     }
 
-    /// Whether the array of that name has zeros only.
+    /// Whether the array with this name has only zeros.
     pub(super) fn zeros(&self, array: &str) -> bool {
         let of = |(range, _): &(Range<usize>, usize)| {
             let (left, value) = self.text[range.clone()].split_once(":=")?;
@@ -128,7 +128,7 @@ impl Module {
     }
 }
 
-/// Replaces comments (`! ..` up to the line's end) by blanks, so that all else keeps its position.
+/// Replaces comments (`! ..` up to the line's end) by blanks, so that everything else keeps its position.
 fn without_comments(text: &str) -> String {
     let (mut quoted, mut comment) = (false, false);
     let blank = |b: u8| {
@@ -210,8 +210,8 @@ pub(super) fn first_number(text: &str) -> Option<f64> {
     number(text.trim_start().trim_start_matches('[').split([',', ']']).next()?)
 }
 
-/// The times for which the torch stands at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
-/// drawn back, gas), s; `None` where the seamdata have other components than those of RobotWare Arc 6.
+/// The times for which the torch stands still at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
+/// drawn back, gas), s; `None` where the seamdata have components other than those of RobotWare Arc 6.
 pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     const PARTS: usize = 48;
     let numbers = text.split([',', '[', ']']).filter(|part| !part.trim().is_empty()).map(number);
@@ -221,12 +221,12 @@ pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
 }
 
-/// A value of 9E9 or more is an axis that is not there.
+/// A value of 9E9 or more is an axis that does not exist.
 fn axis(value: f64) -> Option<f64> {
     (value < 9e8).then_some(value)
 }
 
-/// A robtarget as a literal, or the text that is not a number; what stands behind its place may be left out.
+/// A robtarget as a literal, or the text that is not a number; what follows its place may be left out.
 pub(super) fn target(text: &str) -> Result<Target, &str> {
     let at = DVec3::from_array(three_numbers(text)?);
     let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
@@ -254,7 +254,7 @@ pub(super) fn moves_with_unit(text: &str) -> Option<bool> {
     Some(fixed.eq_ignore_ascii_case("FALSE"))
 }
 
-/// Length and stay at the left side of weavedata as a literal.
+/// Length, and dwell at the left side, of weavedata as a literal.
 pub(super) fn weave(text: &str) -> Option<[f64; 2]> {
     let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
     Some([*numbers.get(2)?, *numbers.get(5)?])

@@ -1,6 +1,6 @@
 //! ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
 //!
-//! Positions are in the work object. The arc is lit by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the codes
+//! Positions are in the work object. The arc is struck by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the codes
 //! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
 
 use super::module::{Module, Target, Value};
@@ -82,10 +82,10 @@ const HARMLESS: [&str; 58] = [
 /// Branches and loops.
 const CONTROL: [&str; 6] = ["IF", "WHILE", "TEST", "GOTO", "RETURN", "EXIT"];
 
-/// Statements that only wait or tell, up to the end of their block.
+/// Statements that only wait or report, up to the end of their block.
 const WAITING: [&str; 7] = ["TPWrite", "ErrWrite", "Stop", "EXIT", "WaitTime", "ENDIF", "ENDWHILE"];
 
-/// Where handlers begin: they run on errors only.
+/// Where handlers begin: they run only on errors.
 const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
 
 /// How an instruction moves.
@@ -93,7 +93,7 @@ const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
 enum Weld {
     /// Lays metal if the arc is on.
     No,
-    /// Moves without metal, then lights the arc.
+    /// Moves without metal, then strikes the arc.
     Start,
     /// Lays metal.
     Seam,
@@ -159,21 +159,21 @@ struct Reader<'a> {
     off: Patterns,
     /// Numbers of variables that were assigned, in upper case.
     values: HashMap<String, f64>,
-    /// Flags that waits set where their time is over, in upper case.
+    /// Flags that waits set when they time out, in upper case.
     in_time: HashSet<String>,
-    /// Whether the robot holds to the configurations of joint moves, and watches those of others.
+    /// Whether the robot enforces the configurations of joint moves, and monitors those of others.
     configured: [bool; 2],
-    /// Interrupts on an input that goes off, in upper case, and whether they are awake.
+    /// Interrupts on an input that goes off, in upper case, and whether they are active.
     interrupts: HashMap<String, bool>,
-    /// Whether RobotWare Arc lights the arc.
+    /// Whether RobotWare Arc strikes the arc.
     package: bool,
     /// Whether a stop of the program ends the arc.
     stops: bool,
-    /// Outputs that were on while the arc burned by them, in upper case.
+    /// Outputs that were on while the arc burned through them, in upper case.
     lit_with: BTreeSet<String>,
     /// Outputs that are on, in upper case.
     outputs: BTreeSet<String>,
-    /// For the length of each weave, the least and greatest time that the torch stays at a side, s.
+    /// For the length of each weave, the least and greatest time that the torch dwells at a side, s.
     weaves: HashMap<String, [f64; 2]>,
 }
 
@@ -234,7 +234,7 @@ impl Reader<'_> {
                 let waits = || inside().all(|text| begins_with(text, &WAITING)).then_some(false);
                 let next = match (strip_word(text, "IF"), strip_word(text, "WHILE")) {
                     (Some(condition), _) => Next::taken(self.holds(condition, module).or_else(waits)),
-                    // A loop that goes on while something is late.
+                    // A loop that continues while something is late.
                     (_, Some(condition)) => Next::taken(self.goes_on(condition).or_else(waits)),
                     _ => turns(text, "FROM", Counting::Towards).map_or(Next::On, Next::Turns),
                 };
@@ -261,7 +261,7 @@ impl Reader<'_> {
         holds(&condition, value)
     }
 
-    /// Whether a loop goes on whose condition asks flags of waits that may come too late, and outputs: while all is well none
+    /// Whether a loop continues whose condition tests flags of waits that may time out, and outputs: while all is well none
     /// does, and outputs are as they were set.
     fn goes_on(&self, condition: &str) -> Option<bool> {
         truth(without_end(condition, "DO"), &|part| {
@@ -323,7 +323,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// What a statement means for those who watch the arc, and for how the robot moves.
+    /// What a statement means for the watch over the arc, and for how the robot moves.
     fn watched(&mut self, word: &str, rest: &str, flat: &str, line: usize) {
         let is = |name: &str| name.eq_ignore_ascii_case(word);
         let first = || arguments(rest).first().copied().unwrap_or_default().to_ascii_uppercase();
@@ -362,7 +362,7 @@ impl Reader<'_> {
             };
             if self.package && (self.on.matches(flat) || self.off.matches(flat)) {
                 let place = Some(self.trace.place(line));
-                let text = format!("{output} is switched beside RobotWare Arc.");
+                let text = format!("{output} is switched alongside RobotWare Arc.");
                 self.trace.faults.add(&TWO_SWITCHES, place, text);
             }
         }
@@ -425,7 +425,7 @@ impl Reader<'_> {
             self.trace.note("an assignment", "is not followed", line);
             return Ok(());
         }
-        // With arguments it may just as well be an instruction of a RobotWare option.
+        // With arguments it may equally be an instruction of a RobotWare option.
         if rest.is_empty() || self.find(word, module).is_some() {
             return self.call(word, line, module, depth);
         }
@@ -545,7 +545,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// What a motion states beside its place, before it is made.
+    /// What a motion states besides its place, before it is made.
     fn before_motion(&mut self, target: &Target, joint: bool, rest: &str, module: &Module, line: usize) {
         let wobj = rest.split_once("\\WObj:=").map(|(_, wobj)| name(wobj).0);
         if let Some(Value::WorkObject(moves)) = wobj.and_then(|wobj| self.value(wobj, module)) {
@@ -555,7 +555,7 @@ impl Reader<'_> {
         let controlled = self.configured[usize::from(!joint)];
         if target.unconfigured && controlled {
             let (word, kind) = if joint { ("ConfJ", "joint moves") } else { ("ConfL", "straight moves and arcs") };
-            let text = format!("targets have the configuration [0,0,0,0], and {word} holds {kind} to it.");
+            let text = format!("targets have the configuration [0,0,0,0], and {word} enforces it for {kind}.");
             self.trace.faults.add(&CONFIGURATION, Some(place.clone()), text);
         }
         if joint && self.trace.arc {
@@ -570,7 +570,7 @@ impl Reader<'_> {
         self.trace.stand(&target.stated, target.at, "a target", line);
     }
 
-    /// The time for which a weave stays at a side follows from its way and the speed.
+    /// The time for which a weave dwells at a side follows from its distance and the speed.
     fn weaving(&mut self, rest: &str, speed: f64, module: &Module, line: usize) {
         let weave = rest.split_once("\\Weave:=").map(|(_, weave)| name(weave).0);
         let Some(Value::Weave([length, stay])) = weave.and_then(|weave| self.value(weave, module)) else { return };
@@ -582,7 +582,7 @@ impl Reader<'_> {
         *times = [times[0].min(time), times[1].max(time)];
         if times[1] > 1.1 * times[0] {
             let text = format!(
-                "the weave stays at its sides for {:.3} to {:.3} s: a way of its data, not a time.",
+                "the weave dwells at its sides for {:.3} to {:.3} s: its data give a distance, not a time.",
                 times[0], times[1]
             );
             let place = Some(self.trace.place(line));
@@ -632,7 +632,7 @@ impl Reader<'_> {
     }
 }
 
-/// Where a block begins or ends. An `IF` with a statement behind its condition is no block.
+/// Where a block begins or ends. An `IF` with a statement after its condition is not a block.
 fn mark(text: &str) -> Option<Mark> {
     let is = |word: &str| strip_word(text, word).is_some();
     let ends =
@@ -646,7 +646,7 @@ fn mark(text: &str) -> Option<Mark> {
     }
 }
 
-/// An argument without the optional ones behind it, as in `weld1\Weave:=wv`.
+/// An argument without the optional ones after it, as in `weld1\Weave:=wv`.
 fn strip_option(piece: &str) -> &str {
     piece.split('\\').next().unwrap_or_default().trim()
 }

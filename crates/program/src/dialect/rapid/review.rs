@@ -43,7 +43,7 @@ pub(super) fn program(trace: &mut Trace, main: &Module, stops: bool, lit_with: &
         }
     }
     if !stops {
-        let text = "no TriggStopProc ends the arc where the program is stopped.";
+        let text = "no TriggStopProc ends the arc when the program is stopped.";
         trace.faults.add(&STOP_LEAVES_ON, None, text);
     }
 }

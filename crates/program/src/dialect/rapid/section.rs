@@ -124,7 +124,7 @@ pub struct Rapid {
     pub crater: Vec<String>,
     /// Statements at the end of the main program.
     pub end: Vec<String>,
-    /// Lines of subprograms that the other lines call, in the main module, behind `main`; lines before the first of them
+    /// Lines of subprograms that the other lines call, in the main module, after `main`; lines before the first of them
     /// declare data. Default none.
     #[serde(default)]
     pub routines: Vec<String>,
@@ -226,7 +226,7 @@ impl Section for Rapid {
         for (key, name) in [("rapid.tool", &self.tool), ("rapid.wobj", &self.wobj)] {
             let taken = names::OWN.iter().any(|own| own.eq_ignore_ascii_case(name));
             if taken || !names::is_identifier(name) {
-                let reason = "at most 32 letters, digits and _, a letter first; no word and no data of the system.";
+                let reason = "at most 32 letters, digits and _, a letter first; no reserved word and no system data.";
                 return broken(key, format!("\"{name}\""), reason);
             }
         }
@@ -297,7 +297,7 @@ impl Section for Rapid {
         if job.program.table_side.is_some() && self.part_frame.is_some_and(|[x, y, ..]| x != 0.0 || y != 0.0) {
             return Err(DialectError::Cannot {
                 dialect: "rapid",
-                what: "a part beside the axis of a table that turns with the torch (program.table_side)",
+                what: "a part off the axis of a table that turns with the torch (program.table_side)",
                 remedy: "The table turns about x = 0, y = 0 of the part: set the first two numbers of rapid.part_frame to 0.",
             });
         }

@@ -154,7 +154,7 @@ impl AbbRapid {
         }
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, number);
@@ -172,7 +172,7 @@ impl AbbRapid {
         self.hook(text, &self.rapid.hooks.pass_start);
     }
 
-    /// The mechanical unit that turns under the part, if one does.
+    /// The mechanical unit that turns under the part, if there is one.
     fn table(&self) -> Option<&str> {
         self.rapid.table_unit.as_deref().filter(|_| self.program.has_table())
     }
@@ -193,7 +193,7 @@ impl AbbRapid {
         }
     }
 
-    /// Lines where the torch stands, if there are any.
+    /// Lines for when the torch stands still, if there are any.
     fn hook(&self, text: &mut String, lines: &[String]) {
         if !lines.is_empty() {
             self.switch(text, lines);
@@ -278,7 +278,7 @@ impl AbbRapid {
         text.push_str(&format!(",{between},{zone},{}\\WObj:={};\r\n", self.rapid.tool, self.rapid.wobj));
     }
 
-    /// The torch goes home.
+    /// Moves the torch home.
     fn home(&self, text: &mut String) {
         statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
     }
@@ -337,7 +337,7 @@ impl AbbRapid {
         }
     }
 
-    /// Lights the arc where the travel before ended, with the data of the first piece.
+    /// Strikes the arc where the previous travel ended, with the data of the first piece.
     fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
         if !self.with_arc() {
             self.switch(text, &self.rapid.arc_on);
@@ -361,7 +361,7 @@ impl AbbRapid {
         self.motion_over(text, word, via, to, &between, !last);
     }
 
-    /// The welddata of that number, and the weavedata where the torch swings.
+    /// The welddata with this number, and the weavedata where the torch swings.
     fn weld_data(&self, number: usize) -> String {
         let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
         format!("wd{number}{}", weave.unwrap_or_default())
@@ -409,7 +409,7 @@ impl AbbRapid {
 }
 
 impl AbbRapid {
-    /// The data that the profile's subprograms declare, which RAPID wants before all routines, and the subprograms.
+    /// The data that the profile's subprograms declare, which RAPID requires before all routines, and the subprograms.
     fn behind_main(&self) -> (Vec<String>, Vec<String>) {
         let (mut data, mut routines) = (Vec::new(), Vec::new());
         for lines in [&self.rapid.hooks.watch_routines, &self.rapid.routines] {
@@ -451,7 +451,7 @@ impl Writer for AbbRapid {
         }
         self.behind_main().0.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
         text.push_str("  PROC main()\r\n");
-        // The robot takes the posture nearest to the one that it has: configurations are unknown here.
+        // The robot chooses the posture nearest to the one that it has: configurations are unknown here.
         statement(&mut text, "ConfL \\Off;");
         statement(&mut text, "ConfJ \\Off;");
         statement(&mut text, "SingArea \\Wrist;");

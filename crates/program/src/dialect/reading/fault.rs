@@ -45,43 +45,43 @@ macro_rules! kinds {
         $($(#[$doc])* pub(in crate::dialect) static $constant: FaultKind =
             FaultKind { name: $name, what: $what, why: $why, remedy: $remedy };)*
 
-        /// The kinds of dangerous lines that are looked for.
+        /// The kinds of dangerous lines that are searched for.
         pub static FAULTS: &[&FaultKind] = &[$(&$constant),*];
     };
 }
 
 kinds! {
     STATIC_FRAME "static-frame"
-        "an axis under the part that moves while the arc burns, and a frame of the part that stands still"
-        "the table turns away below the path, so the bead is laid beside the part"
+        "an axis under the part that moves while the arc burns, and a part frame that does not move"
+        "the table turns away below the path, so the bead is laid off the part"
         "let the frame turn with the table: krl.table_machine, rapid.table_unit"
     MISSING_AXIS "missing-axis"
         "targets, home included, some of which state an axis that others leave out"
         "the axis stays where it was, or the controller refuses the target"
         "state the axis in every target and at home"
     TURNING_TORCH "turning-torch"
-        "a torch that turns with the tangent of an arc, or by more than 5° at over 30° a mm, with the arc on"
+        "a torch that turns with the tangent of an arc, or by more than 5° at over 30° per mm, with the arc on"
         "the wrist swings while metal is laid, and has to swing back in the next move"
         "hold the orientation along arcs: mode=0, $CIRC_TYPE = #BASE, CirPathMode \\ObjectFrame"
     BLENDED_SWITCH "blended-switch"
-        "an arc that is struck or ended behind a blended move"
+        "an arc that is struck or ended after a blended move"
         "the interpreter runs ahead: the arc is switched before the torch is there"
         "stop exactly at the point before the arc is switched"
     UNWATCHED_ARC "unwatched-arc"
-        "an arc that outputs light and nothing watches"
-        "where the arc goes out, the wire is fed on into the part"
+        "an arc that is struck by outputs and that nothing watches"
+        "if the arc goes out, the wire is fed on into the part"
         "arm an interrupt or a thread on the input of the burning arc: hooks.watch, hooks.arc_established"
     UNWATCHED_START "unwatched-start"
-        "a watch that is armed, and no look at the input of the arc behind it"
+        "a watch that is armed without checking the arc's input afterwards"
         "interrupts act on the edge of a signal: an arc that went out before is never seen"
-        "look at the input once more when the watch is armed"
+        "check the input once more after the watch is armed"
     UNWATCHED_END "unwatched-end"
-        "a watch that is ended straight behind a move"
+        "a watch that is ended directly after a move"
         "the interpreter runs some moves ahead of the robot, so the end of the pass is not watched"
-        "wait until the torch stands: WAIT SEC 0, WaitTime \\InPos,0;"
+        "wait until the torch has stopped: WAIT SEC 0, WaitTime \\InPos,0;"
     ENDLESS_WAIT "endless-wait"
-        "a wait for the arc without a limit of time"
-        "wire and arc stay commanded for as long as nobody looks"
+        "a wait for the arc without a time limit"
+        "wire and arc stay commanded until somebody notices"
         "give the wait a time-out, and halt with arc and wire off when it is over"
     LEFT_ON "left-on"
         "a halt, a question or the end of a program with arc, wire or gas on"
@@ -92,19 +92,19 @@ kinds! {
         "after a protective stop or a press of the stop key the arc burns on one spot"
         "tie the outputs to the program's run: $STOPMESS and SPS.SUB, TriggStopProc, run states of outputs"
     TWO_SWITCHES "two-switches"
-        "outputs that are switched beside a package that lights the arc"
-        "two ways of switching work against each other"
-        "take one way: the package, or outputs"
+        "outputs that are switched alongside a package that strikes the arc"
+        "two ways of switching conflict"
+        "use one of them: the package, or outputs"
     NO_OUTPUT "no-output"
         "an arc that is commanded and switches no output"
         "wire and gas run, and the arc never burns"
         "give the spindle a speed (M3 S1), or switch an output (M64)"
     CONFIGURATION "configuration"
-        "targets whose configuration is unknown, and a controller that holds to it"
+        "targets whose configuration is unknown, and a controller that enforces it"
         "the robot stops at the first target, or winds its wrist to reach the posture"
         "switch both off: ConfL \\Off; ConfJ \\Off;"
     WEAVE_PITCH "weave-pitch"
-        "a weave whose pitch or stay at the sides changes with the speed by more than a tenth"
+        "a weave whose pitch or dwell at the sides changes with the speed by more than a tenth"
         "the bead becomes wider or narrower than planned"
         "let the weave follow the speed of each move"
     WEAVE_LEFT_ON "weave-left-on"
@@ -114,11 +114,11 @@ kinds! {
     TOO_LARGE "too-large"
         "a program larger than the controller's memory or longer than its programs may be"
         "it does not load, or the build stops in the middle"
-        "fit longer moves (program.chord_tolerance), or write volumes (max_megabytes, max_points)"
+        "use longer moves (program.chord_tolerance), or write volumes (max_megabytes, max_points)"
     BAD_NAME "bad-name"
-        "a name of a program that the controller does not take"
+        "a program name that the controller does not accept"
         "it does not load"
-        "call the part otherwise"
+        "rename the part"
     RAPID_WITH_ARC "rapid-with-arc"
         "a rapid or joint move with the arc on"
         "the torch leaves its path at a speed that lays no bead"
@@ -129,7 +129,7 @@ kinds! {
 #[derive(Debug, Clone, Default)]
 pub(in crate::dialect) struct Faults(Vec<Fault>);
 
-/// Most different ones of a kind that are kept.
+/// The greatest number of different ones of a kind that are kept.
 const MOST_OF_A_KIND: usize = 10;
 
 impl Faults {

@@ -14,9 +14,9 @@ pub(in crate::dialect) enum Mark {
 /// What comes after a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Next {
-    /// The next line; where a block begins, one of which nothing is known: all its lines run once.
+    /// The next line; where a block begins, a block of which nothing is known: all its lines run once.
     On,
-    /// The lines of the block that begins here, so many times; a branch is taken once or not at all.
+    /// The lines of the block that begins here, this many times; a branch is taken once or not at all.
     Turns(u64),
     /// The line with this index, further down.
     To(usize),
@@ -33,14 +33,14 @@ impl Next {
 struct Open {
     /// Its first line.
     body: usize,
-    /// Turns that are left.
+    /// Turns left.
     left: u64,
     /// Whether it is known that it runs.
     known: bool,
 }
 
-/// Runs `count` lines one after another, those of a block as often as it turns. `mark` tells where blocks begin and end;
-/// `step` runs a line and tells what comes after it.
+/// Runs `count` lines one after another, those of a block as often as it turns. `mark` says where blocks begin and end;
+/// `step` runs a line and says what comes after it.
 pub(in crate::dialect) fn unrolled(
     count: usize,
     mark: impl Fn(usize) -> Option<Mark>,
@@ -52,7 +52,7 @@ pub(in crate::dialect) fn unrolled(
         let next = step(at)?;
         at = match (mark(at), next) {
             (_, Next::To(line)) => {
-                // Blocks that end on the way are left.
+                // Blocks that end in between are left.
                 let left = (at..line).filter(|&i| mark(i) == Some(Mark::End)).count();
                 open.truncate(open.len().saturating_sub(left));
                 line.max(at + 1)
@@ -90,7 +90,7 @@ pub(in crate::dialect) fn unrolled(
     Ok(())
 }
 
-/// The line behind the `Else` or the end of the block whose first line this is.
+/// The line after the `Else` or the end of the block whose first line this is.
 pub(in crate::dialect) fn behind(first: usize, count: usize, mark: impl Fn(usize) -> Option<Mark>) -> usize {
     let mut depth = 0_usize;
     for at in first..count {
@@ -123,7 +123,7 @@ pub(in crate::dialect) fn holds(condition: &str, value: impl Fn(&str) -> Option<
     })
 }
 
-/// Which way a loop counts where it tells no step.
+/// Which way a loop counts where it gives no step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Counting {
     /// Always up.
@@ -133,7 +133,7 @@ pub(in crate::dialect) enum Counting {
 }
 
 /// How often `FOR i=1 TO 10 STEP 2`, `FOR i FROM 1 TO 10 DO` or `FOR R[1]=5 DOWNTO 1` turns; `before` is the sign or
-/// word before the first value. `None` where a bound is no plain number.
+/// word before the first value. `None` where a bound is not a plain number.
 pub(in crate::dialect) fn turns(text: &str, before: &str, counting: Counting) -> Option<u64> {
     let flat = compact(text);
     let (_, bounds) = flat.strip_suffix("DO").unwrap_or(&flat).split_once(before)?;
@@ -154,7 +154,7 @@ pub(in crate::dialect) fn turns(text: &str, before: &str, counting: Counting) ->
     stepped(from, to, step)
 }
 
-/// How many values from one bound to the other.
+/// How many values there are from one bound to the other.
 pub(in crate::dialect) fn stepped(from: f64, to: f64, step: f64) -> Option<u64> {
     let steps = (to - from) / step;
     // The cast saturates; the limit on turns is far below.

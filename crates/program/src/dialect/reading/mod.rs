@@ -6,10 +6,10 @@
 //! | `words` | numbers, names and patterns of the robots' languages |
 //! | `trace` | the moves as they come: places, flattened arcs, notes |
 //! | `loops` | loops with constant bounds |
-//! | `fault`, `watch` | lines that would be dangerous, and who watches the arc |
+//! | `fault`, `watch` | lines that would be dangerous, and what watches the arc |
 //! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
 //!
-//! Programs are read from top to bottom; calls are followed, and loops with constant bounds turn as often as they say.
+//! Programs are read from top to bottom; calls are followed, and loops with constant bounds run as often as they say.
 //! Nothing is computed: branches and other loops are read once, variables and expressions are not evaluated. Whatever is not understood is listed in [`ReadProgram::notes`].
 
 pub(super) mod fault;
@@ -50,13 +50,13 @@ impl Metal {
 /// One straight move of a program; arcs are flattened to chords within [`CHORD_MM`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
-    /// Where it ends, mm. It begins where the move before ends; the first one only tells where the program begins.
+    /// Where it ends, mm. It begins where the move before ends; the first one only says where the program begins.
     pub to: DVec3,
     /// Speed, mm/s; 0 where the program does not give it (rapids, point-to-point moves).
     pub speed: f64,
     /// What it lays.
     pub metal: Metal,
-    /// Bead width where the program says it, mm.
+    /// Bead width where the program states it, mm.
     pub width: Option<f64>,
     /// Line of the file or module that holds the move, from 1.
     pub line: usize,
@@ -77,13 +77,13 @@ pub struct ReadProgram {
     pub faults: Vec<Fault>,
 }
 
-/// Codes that light and end the arc, besides those that a dialect knows by itself, or in their place.
+/// Codes that strike and end the arc, in addition to those that a dialect knows by itself, or in their place.
 ///
 /// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`,
 /// `SetDO doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ArcCodes {
-    /// Codes that light the arc.
+    /// Codes that strike the arc.
     pub on: Vec<String>,
     /// Codes that end the arc.
     pub off: Vec<String>,
@@ -92,8 +92,8 @@ pub struct ArcCodes {
 }
 
 impl ReadProgram {
-    /// Takes a speed, mm/s, for every move without metal of which the program tells none: rapids (G0), and joint moves
-    /// along the chord of their way. Returns how many there are, and their length, mm.
+    /// Assumes a speed, mm/s, for every move without metal for which the program gives none: rapids (G0), and joint moves
+    /// along the chord of their path. Returns how many there are, and their length, mm.
     pub fn take_rapids_at(&mut self, speed: f64) -> (usize, f64) {
         let (mut count, mut length) = (0, 0.0);
         for i in 1..self.moves.len() {
@@ -121,7 +121,7 @@ pub struct Options {
     pub inform_cm_per_min: bool,
     /// Name of the main file, as the controller will know it.
     pub file: Option<String>,
-    /// Most that the controller takes of a KRL program or of a script, MB.
+    /// The largest KRL program or script that the controller accepts, MB.
     pub max_megabytes: Option<f64>,
 }
 
@@ -163,7 +163,8 @@ pub enum ReadError {
     },
     /// A called program is not there.
     #[error(
-        "{place} calls {name}, which is not in the program and was not found beside it. Put its file there, or take the call out if nothing moves in it."
+        "{place} calls {name}, which is not in the program and was not found next to it. Put its file there, or remove the call \
+         if nothing moves in it."
     )]
     MissingModule {
         /// Where it is called.
@@ -184,7 +185,8 @@ pub enum ReadError {
     },
     /// Loops that turn too often.
     #[error(
-        "{place}: the loops up to here turn more than {most} times in all, and no more are read. Give a part of the program, or fewer turns.",
+        "{place}: the loops up to here run more than {most} times in all, and no more are read. Give part of the program, or \
+         fewer runs.",
         most = trace::MAX_TURNS
     )]
     TooManyTurns {
@@ -193,7 +195,8 @@ pub enum ReadError {
     },
     /// A bead on a curve that only the controller can compute.
     #[error(
-        "{place}: {word} welds along a curve that only the controller can compute, so that its place and length are unknown here. Write its way as {instead}."
+        "{place}: {word} welds along a curve that only the controller can compute, so that its place and length are unknown \
+         here. Write its path as {instead}."
     )]
     UnknownCurve {
         /// Where.
@@ -203,9 +206,10 @@ pub enum ReadError {
         /// What can be read.
         instead: &'static str,
     },
-    /// A circle whose three points lie on one line or on one spot.
+    /// A circle whose three points lie on one line or at one point.
     #[error(
-        "{place}: no circle runs through the start, the auxiliary point and the end of this arc, because they lie on one line or on one spot. For a full circle, give two other points of it and CA 360, or write two half circles."
+        "{place}: no circle runs through the start, the auxiliary point and the end of this arc, because they lie on one line or \
+         at one point. For a full circle, give two other points of it and CA 360, or write two half circles."
     )]
     NoCircle {
         /// Where.
@@ -216,7 +220,7 @@ pub enum ReadError {
         "{place}: {name} is given in motor pulses (///POSTYPE PULSE), and only the robot's controller knows which place that is. Convert the job into a relative job on the pendant (JOB, UTILITY, RELATIVE JOB), or export it with POSTYPE BASE or USER, and read it again."
     )]
     Pulses {
-        /// Where it is moved to.
+        /// Where the move is.
         place: Place,
         /// The position.
         name: String,
@@ -229,7 +233,8 @@ pub enum ReadError {
     },
     /// More moves than can be read.
     #[error(
-        "{place}: up to here the program has {most} million moves (arcs in chords, calls each time), and no more are read. Give a part of it.",
+        "{place}: up to here the program has {most} million moves (arcs in chords, calls each time), and no more are read. Give \
+         part of it.",
         most = trace::MAX_MOVES / 1_000_000
     )]
     TooLong {
@@ -240,7 +245,7 @@ pub enum ReadError {
     #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]
     NoProgram(&'static str),
     /// No move lays metal.
-    #[error("no move with the arc on was found: say which codes light and end the arc.{hint}")]
+    #[error("no move with the arc on was found: say which codes strike and end the arc.{hint}")]
     NoDeposition {
         /// A sentence that names the switching codes of the program, or nothing.
         hint: String,

@@ -13,22 +13,22 @@ pub const CHORD_MM: f64 = 0.01;
 /// Deepest nesting of calls.
 pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 
-/// Most calls in a program.
+/// Maximum number of calls in a program.
 const MAX_CALLS: usize = 100_000;
 
-/// Most turns of all loops.
+/// Maximum number of turns of all loops together.
 pub(super) const MAX_TURNS: usize = 100_000;
 
-/// Most moves, arcs in chords.
+/// Maximum number of moves, with arcs as chords.
 pub(super) const MAX_MOVES: usize = 10_000_000;
 
-/// Most chords of an arc.
+/// Maximum number of chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
 
-/// Most different notes; the rest are counted together.
+/// Maximum number of different notes; the rest are counted together.
 const MAX_NOTES: usize = 60;
 
-/// Most codes named when no arc was found.
+/// Maximum number of codes named when no arc was found.
 const MAX_SEEN: usize = 8;
 
 /// A move without its end point.
@@ -42,22 +42,22 @@ pub(in crate::dialect) struct Step {
     pub(in crate::dialect) line: usize,
 }
 
-/// How a target states that the torch stands, beside its place.
+/// What a target states about the torch's attitude, besides its place.
 #[derive(Clone, Copy, Default)]
 pub(in crate::dialect) struct Stated {
     /// The tool, in the frame of the place.
     pub(in crate::dialect) tool: Option<DQuat>,
-    /// Axes beside the robot's, mm or °.
+    /// Axes other than the robot's, mm or °.
     pub(in crate::dialect) axes: [Option<f64>; 6],
 }
 
-/// A torch that turns faster than this with the arc on swings, ° for each mm of its way.
+/// A torch that turns faster than this with the arc on swings, ° for each mm of its path.
 const MOST_TURN_A_MM: f64 = 30.0;
 
-/// Smaller turns are none, °.
+/// Smaller turns do not count, °.
 const LEAST_TURN: f64 = 5.0;
 
-/// Smaller moves of an axis are none, mm or °.
+/// Smaller moves of an axis do not count, mm or °.
 const LEAST_AXIS: f64 = 0.05;
 
 /// An arc `centre + u cos t + v sin t + rise t/sweep`, t from 0 to `sweep`.
@@ -86,7 +86,7 @@ impl Curve {
         Some(Self { centre, u, v, sweep, rise: DVec3::ZERO })
     }
 
-    /// The rest of the arc behind one of its points.
+    /// The rest of the arc after one of its points.
     fn behind(&self, point: DVec3) -> Self {
         let u = point - self.centre;
         let passed = u.dot(self.v).atan2(u.dot(self.u)).rem_euclid(TAU);
@@ -130,19 +130,19 @@ pub(in crate::dialect) struct Trace {
     pub(in crate::dialect) module: Option<String>,
     /// Dangerous lines.
     pub(in crate::dialect) faults: Faults,
-    /// Who watches the arc.
+    /// What watches the arc.
     pub(in crate::dialect) watch: Watch,
     /// Whether the frame of the part turns with the table under it.
     pub(in crate::dialect) frame_turns: bool,
     /// Text that was read, bytes.
     pub(in crate::dialect) bytes: usize,
     tool: Option<DQuat>,
-    /// Axes beside the robot's as the last target states them.
+    /// Axes other than the robot's, as the last target states them.
     axes: Option<[Option<f64>; 6]>,
-    /// The same of home.
+    /// The same for home.
     home: Option<[Option<f64>; 6]>,
-    /// Where the table stood when the arc was lit first, and how far it has turned since below a frame that stands, °: before
-    /// the present move and behind it.
+    /// The table angle when the arc was first struck, and how far it has turned since below a frame that does not move, °: before
+    /// the current move and after it.
     table: Option<f64>,
     turn: [f64; 2],
     moves: Vec<Move>,
@@ -150,7 +150,7 @@ pub(in crate::dialect) struct Trace {
     seen: Vec<String>,
     calls: usize,
     turns: usize,
-    /// Why nothing more is taken in.
+    /// Why nothing more is accepted.
     fault: Option<ReadError>,
 }
 
@@ -211,7 +211,7 @@ impl Trace {
     }
 
     pub(in crate::dialect) fn set_arc(&mut self, on: bool, line: usize) {
-        // Lit again at the same position: two passes, not one.
+        // Struck again at the same position: two passes, not one.
         if let Some(last) = self.moves.last().filter(|m| on && !self.arc && m.metal.is_laid()) {
             self.push(last.to, Step { speed: 0.0, metal: Metal::Off, width: None, line });
         }
@@ -226,7 +226,7 @@ impl Trace {
         }
     }
 
-    /// A statement waits for a signal without a limit of time.
+    /// A statement waits for a signal without a time limit.
     pub(in crate::dialect) fn waits(&mut self, statement: &str, line: usize) {
         if self.arc {
             let place = Some(self.place(line));
@@ -251,7 +251,7 @@ impl Trace {
         self.known = [false; 3];
     }
 
-    /// What a motion states beside its place `to`, before it is made; `what` names the motion.
+    /// What a motion states besides its place `to`, before it is made; `what` names the motion.
     pub(in crate::dialect) fn stand(&mut self, stated: &Stated, to: DVec3, what: &str, line: usize) {
         let place = Some(self.place(line));
         self.states_axes(&stated.axes, what, line);
@@ -262,7 +262,7 @@ impl Trace {
         let moving = self.axes.and_then(|axes| axes.iter().zip(&stated.axes).position(moved));
         if let (Some(axis), true, false) = (moving, self.arc, self.frame_turns) {
             let text = format!(
-                "external axis {} moves while the arc burns, and the frame of the part stands still. Right only for a track \
+                "external axis {} moves while the arc burns, but the part frame does not move. This is right only for a track \
                  under the robot.",
                 axis + 1
             );
@@ -276,7 +276,7 @@ impl Trace {
             let angle = before.angle_between(now).min(before.angle_between(-now)).to_degrees();
             let length = if self.known == [true; 3] { self.at.distance(to) } else { f64::INFINITY };
             if angle > LEAST_TURN && angle > MOST_TURN_A_MM * length {
-                let text = format!("the torch turns by {angle:.0}° on {length:.2} mm with the arc on.");
+                let text = format!("the torch turns by {angle:.0}° over {length:.2} mm with the arc on.");
                 self.faults.add(&TURNING_TORCH, place, text);
             }
         }
@@ -297,7 +297,7 @@ impl Trace {
             } else {
                 ("does not state", "others do")
             };
-            let text = format!("{what} {has} external axis {}, and {others}.", axis + 1);
+            let text = format!("{what} {has} external axis {}, but {others}.", axis + 1);
             let place = Some(self.place(line));
             self.faults.add(&MISSING_AXIS, place, text);
         }
@@ -307,14 +307,14 @@ impl Trace {
     pub(in crate::dialect) fn home(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
         let lacks = |axis: &usize| self.axes.is_some_and(|before| before[*axis].is_some()) && axes[*axis].is_none();
         if let Some(axis) = (0..6).find(lacks) {
-            let text = format!("{what} does not state external axis {}, and others do.", axis + 1);
+            let text = format!("{what} does not state external axis {}, but others do.", axis + 1);
             let place = Some(self.place(line));
             self.faults.add(&MISSING_AXIS, place, text);
         }
         self.home = Some(*axes);
     }
 
-    /// A straight move; axes without a value stand still.
+    /// A straight move; axes without a value do not move.
     pub(in crate::dialect) fn line(&mut self, target: [Option<f64>; 3], mut step: Step) {
         let to = DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(self.at[i])));
         let reached = [0, 1, 2].map(|i| self.known[i] || target[i].is_some());
@@ -334,12 +334,12 @@ impl Trace {
         }
     }
 
-    /// Takes unknown axes at their last values, since metal is laid from here.
+    /// Assumes the last values for unknown axes, since metal is laid from here.
     pub(in crate::dialect) fn settle(&mut self, line: usize) {
         if self.known != [true; 3] {
             self.note(
                 "a deposited move",
-                "begins where the program tells no full place: what is missing was taken as 0 or as it was last",
+                "begins where the program gives no complete place: missing values were taken as 0 or as they were last",
                 line,
             );
             self.known = [true; 3];
@@ -414,7 +414,7 @@ impl Trace {
         self.moves.push(Move { to, speed, metal, width: width.filter(|_| metal.is_laid()), line });
     }
 
-    /// Takes in nothing more; the first fault counts.
+    /// Accepts nothing more; the first fault counts.
     fn fail(&mut self, fault: ReadError) {
         self.fault.get_or_insert(fault);
     }
@@ -467,7 +467,7 @@ impl Trace {
     }
 }
 
-/// A place of a frame that stands, on a part that has turned by an angle (°) about the frame's origin.
+/// A place in a frame that does not move, on a part that has turned by an angle (°) about the frame's origin.
 fn turned_back(at: DVec3, angle: f64) -> DVec3 {
     if angle == 0.0 { at } else { DQuat::from_rotation_z(-angle.to_radians()) * at }
 }

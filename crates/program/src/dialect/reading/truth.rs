@@ -1,8 +1,8 @@
-//! Conditions that are put together by OR, AND, NOT and brackets.
+//! Conditions that are combined with OR, AND, NOT and brackets.
 
 use super::words::strip_word;
 
-/// Whether a condition holds, where that follows from those of its parts of which `part` knows it.
+/// Whether a condition holds, where that follows from those of its parts that `part` knows.
 pub(in crate::dialect) fn truth(condition: &str, part: &impl Fn(&str) -> Option<bool>) -> Option<bool> {
     let condition = condition.trim();
     for (word, decides) in [("or", true), ("and", false)] {
@@ -20,7 +20,7 @@ pub(in crate::dialect) fn truth(condition: &str, part: &impl Fn(&str) -> Option<
     inside.map_or_else(|| part(condition), |inside| truth(inside, part))
 }
 
-/// The parts of a condition between a word that stands outside of brackets.
+/// The parts of a condition between occurrences of a word outside brackets.
 fn split<'a>(condition: &'a str, word: &str) -> Vec<&'a str> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0, 0);
     for (at, c) in condition.char_indices() {

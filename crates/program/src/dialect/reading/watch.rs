@@ -1,17 +1,18 @@
-//! Who watches the arc while a program is read: what lights it, what is armed, who looked, and whether the torch stands.
+//! What watches the arc while a program is read: what strikes it, what is armed, what was checked, and whether the torch has
+//! stopped.
 
 use super::Place;
 use super::fault::{BLENDED_SWITCH, Faults, UNWATCHED_ARC, UNWATCHED_END, UNWATCHED_START};
 
-/// The watch over an arc that outputs light; packages watch theirs themselves.
+/// The watch over an arc that is struck by outputs; packages watch theirs themselves.
 #[derive(Debug, Clone, Default)]
 pub(in crate::dialect) struct Watch {
-    /// Whether outputs light the arc, now or before.
+    /// Whether outputs strike the arc, now or before.
     pub(in crate::dialect) by_outputs: bool,
     lit: bool,
     armed: bool,
     looked: bool,
-    /// Whether a move was laid since the arc was lit.
+    /// Whether a move was laid since the arc was struck.
     moved: bool,
     /// How the last move is blended into the next, if it is.
     blended: Option<String>,
@@ -24,7 +25,7 @@ impl Watch {
     pub(in crate::dialect) fn switch(&mut self, on: bool, faults: &mut Faults, place: Place) {
         if let Some(blend) = self.blended.as_ref().filter(|_| on != self.lit) {
             let what = if on { "struck" } else { "ended" };
-            faults.add(&BLENDED_SWITCH, Some(place), format!("the arc is {what} behind a move with {blend}."));
+            faults.add(&BLENDED_SWITCH, Some(place), format!("the arc is {what} after a move with {blend}."));
         }
         self.by_outputs |= on;
         (self.lit, self.moved) = (on, false);
@@ -41,13 +42,13 @@ impl Watch {
     /// The watch ends.
     pub(in crate::dialect) fn disarm(&mut self, how: &str, faults: &mut Faults, place: Place) {
         if self.armed && self.lit && self.moved && !self.waited {
-            let text = format!("{how} stands straight behind a move, which the robot has not made yet.");
+            let text = format!("{how} comes directly after a move, which the robot has not made yet.");
             faults.add(&UNWATCHED_END, Some(place), text);
         }
         self.armed = false;
     }
 
-    /// The program looks at the input of the arc.
+    /// The program checks the input of the arc.
     pub(in crate::dialect) fn look(&mut self) {
         self.looked = true;
     }
@@ -58,13 +59,13 @@ impl Watch {
         self.blended = None;
     }
 
-    /// The robot moves; `blended` says how it goes over into the next move.
+    /// The robot moves; `blended` says how it blends into the next move.
     pub(in crate::dialect) fn go(&mut self, blended: Option<&str>, faults: &mut Faults, place: Place) {
         if self.lit && !self.moved {
             if !self.armed {
                 faults.add(&UNWATCHED_ARC, Some(place), "the torch leaves with the arc on, and nothing watches it.");
             } else if !self.looked {
-                let text = "the watch is armed, and nobody looks whether the arc burns before the torch leaves.";
+                let text = "the watch is armed, but nothing checks whether the arc burns before the torch leaves.";
                 faults.add(&UNWATCHED_START, Some(place), text);
             }
         }

@@ -15,7 +15,7 @@ pub(in crate::dialect) fn strip_word<'a>(text: &'a str, word: &str) -> Option<&'
     (head.eq_ignore_ascii_case(word) && !rest.starts_with(in_name)).then(|| rest.trim_start())
 }
 
-/// A condition without the word (in any case) behind it, such as THEN or DO.
+/// A condition without the word (in any case) after it, such as THEN or DO.
 pub(in crate::dialect) fn without_end<'a>(condition: &'a str, word: &str) -> &'a str {
     let end = condition.len().checked_sub(word.len()).filter(|at| {
         let bounded = condition.get(..*at).is_some_and(|before| !before.ends_with(in_name));

@@ -96,7 +96,7 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     reader.trace.finish(super::DIALECT.language)
 }
 
-/// The functions by name, the lines outside of them, and the name of the first function.
+/// The functions by name, the lines outside them, and the name of the first function.
 fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
     let (mut found, mut top, mut first) = (HashMap::new(), Body::new(), None);
     // Functions that are open, each with the other blocks open in it.
@@ -140,7 +140,7 @@ struct Reader {
     off: Patterns,
     /// Digital outputs that are on.
     outputs: BTreeSet<u32>,
-    /// Outputs that were on while the arc burned by them.
+    /// Outputs that were on while the arc burned through them.
     lit_with: BTreeSet<u32>,
     /// Outputs that are low whenever the program does not run.
     low_when_stopped: BTreeSet<u32>,
@@ -156,7 +156,7 @@ fn output(flat: &str) -> Option<(u32, bool)> {
 }
 
 impl Reader {
-    /// What a welding programmer sees without running it: questions and waits that leave outputs on, and stops that do.
+    /// What a welding programmer sees without running it: questions and waits that leave outputs on, and stops that do so.
     fn review(&mut self, options: &Options) {
         let mut functions: Vec<(String, Rc<Body>)> = self.functions.clone().into_iter().collect();
         functions.sort_by(|a, b| a.0.cmp(&b.0));
@@ -200,7 +200,7 @@ impl Reader {
         }
         if let Some(most) = options.max_megabytes.filter(|most| self.trace.bytes as f64 > most * 1e6) {
             let size = self.trace.bytes as f64 / 1e6;
-            let text = format!("the script has {size:.1} MB; the controller takes {most:.1} MB.");
+            let text = format!("the script has {size:.1} MB; the controller accepts {most:.1} MB.");
             self.trace.faults.add(&TOO_LARGE, None, text);
         }
     }
@@ -227,8 +227,8 @@ impl Reader {
         )
     }
 
-    /// How often the block at the start of these lines turns: a branch whose condition is known, or that only asks an input
-    /// and moves nothing; `while i < 5:` where `i` is known and changes once a turn by a plain number.
+    /// How often the block at the start of these lines turns: a branch whose condition is known, or that only tests an input
+    /// and moves nothing; `while i < 5:` where `i` is known and changes once per turn by a plain number.
     fn turns(&mut self, lines: &[(usize, String)]) -> Option<u64> {
         let head = &lines.first()?.1;
         let until = behind(1, lines.len(), |at| mark(&lines[at].1));
@@ -266,7 +266,7 @@ impl Reader {
         }
     }
 
-    /// Whether `get_standard_digital_out(1)` is on, which it is where the program has switched it on.
+    /// Whether `get_standard_digital_out(1)` is on, which it is if the program has switched it on.
     fn output_is_on(&self, part: &str) -> Option<bool> {
         let flat = compact(part);
         let (read, number) = flat.strip_suffix(')')?.split_once('(')?;
@@ -320,7 +320,7 @@ impl Reader {
             self.trace.dwell += wait.max(0.0);
         } else if let Some(thread) = started(text) {
             if self.functions.get(thread).is_none_or(moves_directly) {
-                self.trace.note(thread, "runs beside the program and was left out", line);
+                self.trace.note(thread, "runs alongside the program and was left out", line);
             }
             let watches = |body: &Rc<Body>| {
                 body.iter().any(|(_, line)| line.contains("digital_in("))
@@ -329,7 +329,7 @@ impl Reader {
             if self.functions.get(thread).is_some_and(watches) {
                 self.thread = text.split_once('=').map(|(handle, _)| handle.trim().to_owned());
                 self.trace.watch.arm();
-                // It looks at the input by itself, all the time.
+                // It checks the input by itself, all the time.
                 self.trace.watch.look();
             }
         } else if rest.starts_with('(') && self.functions.contains_key(word) {
@@ -344,7 +344,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `global part_frame = p[..]` and the like; a variable that is neither a pose nor a number is forgotten.
+    /// `global part_frame = p[..]` and similar assignments; a variable that is neither a pose nor a number is forgotten.
     fn assign(&mut self, left: &str, value: &str, line: usize) -> Result<(), ReadError> {
         let Some(variable) = left.split_whitespace().next_back() else { return Ok(()) };
         let value = match number(value) {
@@ -402,7 +402,7 @@ impl Reader {
         }
         let speed = self.speed(&pieces, poses).filter(|_| word != "movej");
         if speed.is_none() && word != "movej" {
-            self.trace.note("a speed", "is not told by a plain v= and was read as unknown", line);
+            self.trace.note("a speed", "is not given by a plain v= and was read as unknown", line);
         }
         let speed = speed.unwrap_or(0.0) * 1e3;
         let step = Step { speed, metal: self.trace.metal(), width: None, line };
@@ -413,7 +413,7 @@ impl Reader {
         let place = self.trace.place(line);
         self.trace.watch.go(blended.then_some("a blend"), &mut self.trace.faults, place.clone());
         if !blended {
-            // What follows is run when the robot stands.
+            // What follows runs once the robot has stopped.
             self.trace.watch.wait();
         }
         if let Some(Some(last)) = places.last() {
@@ -461,7 +461,7 @@ fn moves_or_calls(lines: &[(usize, String)]) -> bool {
     lines[1..until].iter().any(|(_, line)| line.starts_with("move"))
 }
 
-/// Whether the block at the start of these lines asks something else too, such as for how long it has waited.
+/// Whether the block at the start of these lines tests something else too, such as how long it has waited.
 fn counts(lines: &[(usize, String)]) -> bool {
     let until = behind(1, lines.len(), |at| mark(&lines[at].1));
     lines[1..until].iter().any(|(_, line)| strip_word(line, "if").is_some())
@@ -492,7 +492,7 @@ fn mark(line: &str) -> Option<Mark> {
     begins.then_some(Mark::Begin).or((line == "end").then_some(Mark::End))
 }
 
-/// By how much the block at the start of these lines changes a variable; `None` where it does so in any other way than
+/// By how much the block at the start of these lines changes a variable; `None` where it does so in any way other than
 /// by one `i = i + 1`, not in an inner block.
 fn step(lines: &[(usize, String)], variable: &str) -> Option<f64> {
     let (mut depth, mut found) = (0, None);

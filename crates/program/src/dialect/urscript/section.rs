@@ -17,7 +17,7 @@ pub struct Urscript {
     /// Tool frame on the flange: x, y, z in mm and rotation vector in rad; leave it out if the installation already has
     /// it.
     pub tool_frame: Option<[f64; 6]>,
-    /// Mass of the torch and what hangs on the flange, kg, written as `set_payload`: without it the arm may stop for no
+    /// Mass of the torch and what is mounted on the flange, kg, written as `set_payload`: without it the arm may stop for no
     /// reason or push where it should yield. Leave it out if the installation already has it.
     pub payload: Option<f64>,
     /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
@@ -33,12 +33,12 @@ pub struct Urscript {
     /// Blending radius along a pass, mm; reduced where points are closer together than twice the radius; 0 for exact
     /// stops.
     pub blend: f64,
-    /// Most that one script may hold, MB; longer programs come in several scripts, run one after another, and a pass that alone
-    /// is longer is cut and lit again. Default 2.
+    /// The most that one script may hold, MB; longer programs come in several scripts, run one after another, and a pass that
+    /// alone is longer is cut and struck again. Default 2.
     #[serde(default = "two")]
     pub max_megabytes: f64,
-    /// Whether the script ends with a call of its program. A script that is sent to the controller's socket or loaded in a
-    /// Script node must have nothing behind its last `end`; a file that is inserted into a program needs the call. Default
+    /// Whether the script ends with a call to its program. A script that is sent to the controller's socket or loaded in a
+    /// Script node must have nothing after its last `end`; a file that is inserted into a program needs the call. Default
     /// false.
     #[serde(default)]
     pub call: bool,

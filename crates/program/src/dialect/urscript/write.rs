@@ -13,7 +13,7 @@ use crate::program::{Instruction, LayerProgram, ProgramSettings};
 use bead_plan::layer::Extent;
 use glam::DVec3;
 
-/// Words of the language and names of its functions that a part might happen to be called.
+/// Words of the language and names of its functions that a part might happen to be named after.
 const RESERVED: &str = "\
     and break continue def elif else end false global halt if local not or pass return sec self thread true while xor acos \
     asin atan ceil cos d2r exp fail floor force freedrive_mode get_inverse_kin join kill length log movec movej movel movep \
@@ -26,7 +26,7 @@ const BLEND_PART: f64 = 0.45;
 /// Smaller blends are left out, mm.
 const MIN_BLEND: f64 = 0.01;
 
-/// A function has about so many moves at most; a longer pass makes a longer function.
+/// A function has about this many moves at most; a longer pass makes a longer function.
 const MAX_MOVES: usize = 2000;
 
 /// Comments are wrapped at this many characters.
@@ -54,7 +54,7 @@ pub(super) struct UniversalScript {
     layers: Vec<String>,
     at: Option<DVec3>,
     volumes: Volumes,
-    /// Name of the present volume.
+    /// Name of the current volume.
     main: String,
 }
 
@@ -117,7 +117,7 @@ impl UniversalScript {
         }
     }
 
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the way that follows.
+    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
     fn pass_start(&mut self, text: &mut String, indent: &str, pass: usize, above: DVec3) {
         let number = self.values.set_pass(pass);
         self.begin_skippable(text, indent, number);

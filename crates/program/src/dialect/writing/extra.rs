@@ -33,14 +33,14 @@ impl Extra {
         match self {
             Self::Restart => (
                 "program.restart = true",
-                "Take it out; after a stop, programs are written from the layer and pass that come next. Robots have it, and CNC \
-                 controls whose gcode.control is given and whose wire is no axis.",
+                "Remove it; after a stop, programs are written from the layer and pass that come next. Robots support it, and \
+                 CNC controls whose gcode.control is given and whose wire is not an axis.",
             ),
             Self::LayerOffsets => (
                 "program.layer_offsets = true",
-                "Take it out; robots have it, and CNC controls whose gcode.control is given.",
+                "Remove it; robots support it, and CNC controls whose gcode.control is given.",
             ),
-            Self::Weave => ("[weave]", "A printer does not weave: take it out."),
+            Self::Weave => ("[weave]", "A printer does not weave: remove it."),
             Self::Tilt => (
                 "program.follow_wall or program.travel_angle",
                 "Only robots lean their torch; set both to 0 for others.",

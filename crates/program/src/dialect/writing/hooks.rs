@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hooks {
     /// Lines at the beginning of the program that watch over the arc and over stops. These three lists are left out of dry
-    /// runs, and where a package lights the arc (ArcTech, RobotWare Arc), which watches it itself.
+    /// runs, and where a package strikes the arc (ArcTech, RobotWare Arc), which watches it itself.
     pub watch: Vec<String>,
     /// Subprograms that the lines of the watch call, in languages that have `routines`.
     pub watch_routines: Vec<String>,
     /// Lines at the end of the program that make sure that arc, wire and gas are off.
     pub all_off: Vec<String>,
-    /// Lines behind `arc_on` that wait until the arc burns, for `{{arc_timeout}}` s at most, and say what happens if it does
-    /// not. Packages that light the arc themselves watch it too and need none;
+    /// Lines after `arc_on` that wait until the arc burns, for `{{arc_timeout}}` s at most, and say what happens if it does
+    /// not. Packages that strike the arc themselves watch it too and need none;
     /// with ArcTech and RobotWare Arc these lines and `before_arc_off` are left out.
     pub arc_established: Vec<String>,
     /// Lines before `arc_off` while the arc still burns, such as one that ends the watch over it.
@@ -28,9 +28,9 @@ pub struct Hooks {
     pub pass_end: Vec<String>,
     /// Lines after a layer, with the torch above the part.
     pub layer_end: Vec<String>,
-    /// Lines before every layer but the first, with the torch above the part: a wait until a pyrometer finds it cool enough.
+    /// Lines before every layer except the first, with the torch above the part: a wait until a pyrometer finds it cool enough.
     pub interpass: Vec<String>,
-    /// Lines before every `program.measure_every`-th layer, with the torch above the part: a touch that finds how high it has
+    /// Lines before every `program.measure_every`-th layer, with the torch above the part: a touch that measures how high it has
     /// become.
     pub measure: Vec<String>,
 }
@@ -52,7 +52,7 @@ impl Hooks {
         ]
     }
 
-    /// The lines before the layer with an index, behind those of `layer_start`.
+    /// The lines before the layer with this index, after those of `layer_start`.
     pub(in crate::dialect) fn before_layer(
         &self,
         layer_start: &[String],

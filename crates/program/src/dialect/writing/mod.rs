@@ -52,7 +52,7 @@ pub trait Writer: Send {
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
-    /// What comes after the last layer; the torch stands clear of the part.
+    /// What comes after the last layer; the torch is clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
 
     /// Whether the controller swings the torch by itself where the job weaves; otherwise it is written as moves.
@@ -65,17 +65,17 @@ pub trait Writer: Send {
         Vec::new()
     }
 
-    /// Why the program is not complete, if something went wrong on the way; nothing of it may then be used.
-    /// [Dialects of one's own](crate::dialect::own) can fail once they have begun, and controls that jump no further.
+    /// Why the program is not complete, if something went wrong meanwhile; none of it may then be used.
+    /// [Users' own dialects](crate::dialect::own) can fail once they have begun, and so can controls that cannot jump far enough.
     fn failure(&self) -> Option<DialectError> {
         None
     }
 }
 
-/// What is to be written: all that a dialect needs to know besides the layers.
+/// What is to be written: everything that a dialect needs to know besides the layers.
 #[derive(Debug, Clone)]
 pub struct Job<'a> {
-    /// Name of the part; files and modules are called after it.
+    /// Name of the part; files and modules are named after it.
     pub part: String,
     /// Name of the profile, for comments.
     pub profile: String,
@@ -100,7 +100,7 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Makes the instructions of the layers, as controllers need them that weave by themselves or not.
+    /// Makes the instructions of the layers, for controllers that weave by themselves or for those that do not.
     pub fn programmer(&self, weaves: bool) -> Programmer {
         Programmer::of(&self.weld, self.program, self.dry_run).woven(self.weave.filter(|_| !weaves))
     }
@@ -115,7 +115,7 @@ impl Job<'_> {
         format!("{}, {}", ascii(&self.part), ascii(&self.profile))
     }
 
-    /// Comments of at most so many characters that say what the cell must supply.
+    /// Comments of at most this many characters that say what the cell must supply.
     pub(super) fn supplies(&self, width: usize) -> Vec<String> {
         let sentences = self.safety.supplies.iter().flat_map(|text| wrapped(text, width));
         let head = (!self.safety.supplies.is_empty()).then(|| "The cell must supply:".to_owned());
@@ -159,7 +159,7 @@ pub enum DialectError {
         /// What to do.
         remedy: &'static str,
     },
-    /// Two programs would lie in one file.
+    /// Two programs would be in one file.
     #[error(
         "the posts \"{first}\" and \"{second}\" would both write {file}. Ask for one of them, or give them different extensions."
     )]
@@ -185,11 +185,12 @@ pub enum DialectError {
     },
     /// The profile has external axes that the dialect does not write.
     #[error(
-        "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. Take the key out, and move the axis by hand.",
+        "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. \
+         Remove the key, and move the axis by hand.",
         others = with_axes().join(" and ")
     )]
     NoExternalAxes(&'static str),
-    /// Templates of one's own are broken, or write less than the job asks for.
+    /// The user's own templates are broken, or write less than the job asks for.
     #[error(transparent)]
     Own(#[from] OwnError),
 }
@@ -198,7 +199,7 @@ fn with_axes() -> Vec<&'static str> {
     ALL.iter().filter(|dialect| dialect.external_axes).map(|dialect| dialect.name).collect()
 }
 
-/// Begins a program in the dialect of that name.
+/// Begins a program in the dialect with this name.
 ///
 /// # Errors
 /// [`DialectError`] when there is no such dialect, the profile lacks its section, or the job asks for more than it can
@@ -232,7 +233,7 @@ pub fn write<L: Borrow<Layer>>(
     write_with(writer(name, job)?, &Extent::of(layers), layers, job)
 }
 
-/// The same with a writer, and with what is known of the part: [`write()`] knows its passes only.
+/// The same with a writer, and with what is known of the part: [`write()`] knows only its passes.
 ///
 /// # Errors
 /// [`DialectError`] of the writer.
@@ -261,13 +262,13 @@ pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) ->
     if crater.is_empty() { wire_feed } else { crater }
 }
 
-/// A wait split into pieces of at most `most`, the longest that a controller takes at once, s.
+/// A wait split into pieces of at most `most`, the longest that a controller accepts at once, s.
 pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
     let count = (seconds / most).ceil().max(1.0);
     (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
 }
 
-/// The words of a text in lines of at most so many characters; only a longer word makes a longer line.
+/// The words of a text in lines of at most this many characters; only a longer word makes a longer line.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -1,4 +1,4 @@
-//! Names of programs. No program may be called like a word of the language or like one of the controller's own programs;
+//! Names of programs. No program may have the name of a word of the language or of one of the controller's own programs;
 //! one list serves all dialects, since a part is often programmed for more than one robot.
 
 /// Words of KRL and of KUKA's own modules.
@@ -16,7 +16,7 @@ const OTHERS: &str = "\
     ABORT ARCOF ARCON AOUT CALL CNVRT COMMENT DIN DOUT GETS INC JMP JUMP LBL MOVC MOVJ MOVL MOVS NOP OVERRIDE PAUSE PULS RET \
     RUN SET SMOVL TIMER UFRAME UTOOL WEAVE WVOF WVON AUX CON NUL PRN";
 
-/// A name of upper-case letters, digits and `_`, a letter first, that no language keeps for itself.
+/// A name of upper-case letters, digits and `_`, a letter first, that no language reserves.
 pub(in crate::dialect) fn upper_name(part: &str) -> String {
     let legal = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
     let mut name: String = part.chars().map(legal).collect();

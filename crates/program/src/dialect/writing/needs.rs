@@ -28,14 +28,14 @@ pub(in crate::dialect) fn lines(
     };
     if let Some(why) = why.filter(|_| lines_of("wire_feed").next().is_none()) {
         let remedy = format!(
-            "Put the lines there that set it on the cell, such as wire_feed = [\"{example}\"], or take process.follow = \
+            "Add the lines that set it in the cell, such as wire_feed = [\"{example}\"], or use process.follow = \
              \"speed\", a crater_power of 1 and the same speed for all layers.",
         );
         return Err(no_key(job, format!("{dialect}.wire_feed"), why, remedy));
     }
     let jobs = job.weld.process.layers.iter().any(|row| row.job.is_some_and(|own| own != job.weld.process.job));
     if jobs && !templates.iter().any(|(_, lines)| lines.iter().any(|line| line.contains("{{job}}"))) {
-        let remedy = "Put the line there that selects a job of the power source.";
+        let remedy = "Add the line that selects a job of the power source.";
         return Err(no_key(
             job,
             format!("{dialect}.layer_start with {{{{job}}}}"),

@@ -1,4 +1,4 @@
-//! The tool's orientation turned about the torch's own axis and leaning with it, in the way each robot writes it.
+//! The tool's orientation turned about the torch's own axis and leaning with it, as each robot writes it.
 //!
 //! The tool's z axis runs along the wire, out of the torch. A torch angle turns counter-clockwise as seen from behind
 //! the torch, with z pointing away from the viewer: for a torch straight down that is counter-clockwise seen from
@@ -12,7 +12,7 @@ use glam::{DMat3, DQuat, DVec3, EulerRot};
 pub(in crate::dialect) enum Turn {
     /// About the torch's own axis, °.
     Torch(f64),
-    /// As a move asks for.
+    /// As a move requires.
     Attitude(Attitude),
 }
 
@@ -105,7 +105,7 @@ mod tests {
     fn a_level_torch_turns_about_itself() {
         // z lies along the part's x before and after.
         near(zyx([0.0, 90.0, 0.0], Turn::Torch(40.0)), [-90.0, 50.0, -90.0]);
-        // A whole turn is none; at B = 90 A and C are one turn.
+        // A whole turn is no turn; at B = 90 A and C are one turn.
         near(zyx([25.0, 90.0, 40.0], Turn::Torch(360.0)), [0.0, 90.0, 15.0]);
         near(zyx([10.0, 20.0, 30.0], Turn::Torch(360.0)), [10.0, 20.0, 30.0]);
         near(vector([0.1, 0.2, 0.3], Turn::Torch(-360.0)), [0.1, 0.2, 0.3]);

@@ -10,7 +10,7 @@ use bead_plan::weld::retract_time;
 /// A placeholder's name, and its value at the beginning of a program.
 pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
 
-/// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program goes on.
+/// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program proceeds.
 pub const PLACEHOLDERS: [Placeholder; 30] = [
     ("program", |job| job.part.clone()),
     ("layer", |_| String::new()),
@@ -56,7 +56,7 @@ fn retract(job: &Job<'_>) -> f64 {
     retract_time(&job.weld.ends, &job.weld.process)
 }
 
-/// The values of the placeholders as a program goes on.
+/// The values of the placeholders as a program proceeds.
 pub(in crate::dialect) struct Values {
     values: Vec<(&'static str, String)>,
     process: Process,

@@ -4,7 +4,7 @@
 /// Passes of a layer that have numbers of their own; later ones share the last.
 const PASSES: usize = 9_999;
 
-/// The number of a pass (from 1) of the layer with an index: the layer times 10000 plus the pass.
+/// The number of a pass (from 1) of the layer with this index: the layer times 10000 plus the pass.
 pub(super) fn number(layer: usize, pass: usize) -> usize {
     (layer + 1) * (PASSES + 1) + pass.min(PASSES)
 }

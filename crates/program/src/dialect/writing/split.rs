@@ -2,7 +2,7 @@
 
 use crate::program::Instruction;
 
-/// Cuts between passes, where the torch stands above the part, into consecutive parts of at most `most` (over 0)
+/// Cuts between passes, where the torch is above the part, into consecutive parts of at most `most` (over 0)
 /// instructions; only a longer pass makes a longer part.
 pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
     let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);
@@ -25,7 +25,7 @@ mod tests {
     use bead_plan::pass::PassKind;
     use glam::DVec3;
 
-    /// Passes of these numbers of moves, each with a travel, arc on, arc off and the way up.
+    /// Passes with these numbers of moves, each with a travel, arc on, arc off and the way up.
     fn layer(moves: &[usize]) -> Vec<Instruction> {
         let to = DVec3::ZERO;
         let pass = |&count: &usize| {

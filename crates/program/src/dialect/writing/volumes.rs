@@ -6,11 +6,11 @@ use crate::program::Instruction;
 /// What has been written of each volume.
 #[derive(Debug, Clone)]
 pub(in crate::dialect) struct Volumes {
-    /// Most that a volume may hold, bytes.
+    /// The most that a volume may hold, bytes.
     most: usize,
-    /// Size of the present one, bytes.
+    /// Size of the current one, bytes.
     size: usize,
-    /// Whether the present one has a module.
+    /// Whether the current one has a module.
     begun: bool,
     /// Names of the main programs.
     names: Vec<String>,
@@ -24,13 +24,13 @@ pub(in crate::dialect) struct Volumes {
 pub(in crate::dialect) const MEGABYTE: f64 = 1e6;
 
 impl Volumes {
-    /// Volumes of at most so many megabytes.
+    /// Volumes of at most this many megabytes.
     pub(in crate::dialect) fn new(megabytes: f64) -> Self {
         let most = (megabytes * MEGABYTE) as usize;
         Self { most, size: 0, begun: false, names: Vec::new(), largest: 0, total: 0 }
     }
 
-    /// Begins a volume and returns its name: that of the program, with a number from the second on.
+    /// Begins a volume and returns its name: that of the program, with a number from the second one on.
     pub(in crate::dialect) fn begin(&mut self, program: &str) -> String {
         let number = self.names.len() + 1;
         let name = if number == 1 { program.to_owned() } else { format!("{program}_{number}") };
@@ -57,7 +57,7 @@ impl Volumes {
         self.begun = true;
     }
 
-    /// What people must know of them, if there are several, or if one is larger than it may be.
+    /// What people must know about them, if there are several, or if one is larger than it may be.
     pub(in crate::dialect) fn note(&self, language: &str, extension: &str) -> Option<String> {
         let megabytes = |bytes: usize| bytes as f64 / MEGABYTE;
         let (total, largest, most) = (megabytes(self.total), megabytes(self.largest), megabytes(self.most));
@@ -68,8 +68,8 @@ impl Volumes {
                 self.names.len(),
             )),
             [.., last] if self.largest > self.most => Some(format!(
-                "A volume of the {language} program has {largest:.1} MB, more than the {most:.1} MB that the controller takes \
-                 ({last}.{extension} is the last of {}): one pass of it cannot be cut. Fit longer moves \
+                "A volume of the {language} program has {largest:.1} MB, more than the {most:.1} MB that the controller accepts \
+                 ({last}.{extension} is the last of {}): one pass of it cannot be cut. Use longer moves \
                  (program.chord_tolerance = 0.05, program.arcs = true).",
                 self.names.len(),
             )),
@@ -78,8 +78,8 @@ impl Volumes {
     }
 }
 
-/// The instructions with which a volume begins: the machine comes from anywhere to above the start of the first pass, and
-/// goes down there.
+/// The instructions with which a volume begins: the machine moves from anywhere to above the start of the first pass, and
+/// down to it.
 pub(in crate::dialect) fn from_anywhere(instructions: &[Instruction]) -> Vec<Instruction> {
     let way = instructions.iter().position(|i| matches!(i, Instruction::Above)).unwrap_or(0);
     let come = |(i, instruction): (usize, &Instruction)| match *instruction {
