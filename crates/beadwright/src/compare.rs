@@ -151,6 +151,19 @@ fn bounds(mesh: &Mesh) -> Bounds {
 
 /// Plans a mesh with a strategy and judges the chosen layers; only these are kept.
 ///
+/// ```
+/// use beadwright::{Profile, Task, compare, example, plan};
+/// use std::collections::BTreeSet;
+///
+/// // Only the lowest layer is judged.
+/// let profile = Profile::built_in("cmt-al2319-kuka")?;
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let (settings, lowest) = (plan::deposit_settings(&profile), Some(BTreeSet::from([0])));
+/// let entry = compare::strategy(&cross, &profile, "zigzag", settings, &lowest, &Task::new())?;
+/// assert_eq!((entry.name.as_str(), entry.layers.len()), ("zigzag", 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanError`].
 pub fn strategy(

@@ -115,6 +115,20 @@ impl Metrics {
     }
 
     /// Counts the next layer.
+    ///
+    /// ```
+    /// use beadwright::{Along, Layer, Metrics, Pass, PassKind, Profile, glam::DVec3};
+    ///
+    /// // A pass of 50 mm at the nominal pace holds the metal of 50 mm of the nominal bead.
+    /// let profile = Profile::built_in("cmt-al2319-kuka")?;
+    /// let (points, width) = (vec![DVec3::ZERO, DVec3::X * 50.0], Along::Same(profile.bead.width));
+    /// let pace = Along::Same(profile.process.deposition_speed);
+    /// let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace, wait: 0.0 };
+    /// let mut metrics = Metrics::new(&profile);
+    /// metrics.add(&Layer { height: 2.0, passes: vec![pass], ..Layer::default() });
+    /// assert!((metrics.deposited_volume_mm3 - 50.0 * profile.bead().area()).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn add(&mut self, layer: &Layer) {
         self.layers += usize::from(!layer.passes.is_empty());
         self.slice_area_mm2 += layer.slice_area;

@@ -176,6 +176,19 @@ pub enum PlanFileError {
 
 /// Reads a plan file.
 ///
+/// ```
+/// use beadwright::{Profile, Task, example, plan, plan_file};
+///
+/// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
+/// profile.fill.strategy = "zigzag".to_owned();
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let plan = plan("cross", &cross, &profile, &Task::new())?;
+/// let layers: String = plan.layers.iter().map(plan_file::layer).collect();
+/// let again = plan_file::read(&(plan_file::head(&plan.header, &profile) + &layers + plan_file::tail()))?;
+/// assert_eq!((again.header.part.as_str(), again.layers.len()), ("cross", plan.layers.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanFileError`] with the line, or the layer and pass.
 pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {

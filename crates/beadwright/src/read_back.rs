@@ -91,6 +91,17 @@ const FINEST: f64 = 1e-3;
 
 /// Settings with the grid asked for, mm between its points, or with one that fits layers within `bounds`.
 ///
+/// ```
+/// use beadwright::planar::{Bounds, DVec2};
+/// use beadwright::{Profile, plan, read_back::with_grid};
+///
+/// let settings = plan::deposit_settings(&Profile::built_in("cmt-al2319-kuka")?);
+/// let bounds = Bounds { min: DVec2::ZERO, max: DVec2::splat(100.0) };
+/// assert_eq!(with_grid(Some(0.5), settings, &bounds, 10)?.step, 0.5);
+/// assert!(with_grid(Some(0.0), settings, &bounds, 10).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`GridError`] for a distance that gives no grid, or one of more than [`MANY_POINTS`].
 pub fn with_grid(
@@ -112,6 +123,13 @@ pub fn with_grid(
 }
 
 /// The built-in profile that one of our programs names in its first comments, after the part: `; cross, fdm-abs-0.4`.
+///
+/// ```
+/// use beadwright::read_back::named_profile;
+///
+/// assert_eq!(named_profile("; cross, fdm-abs-0.4\nG28\n"), Some("fdm-abs-0.4"));
+/// assert_eq!(named_profile("G21 G90\nG28\n"), None);
+/// ```
 pub fn named_profile(text: &str) -> Option<&'static str> {
     const HEAD: usize = 40;
     let named = |line: &str| {
@@ -143,6 +161,20 @@ impl ReadBack {
 
     /// A program in anyone's language; `name` is that of its file, and `module` gives the text of a module by its name. With a
     /// part, its slices become the islands of the layers, and a program that lies elsewhere is centred on it.
+    ///
+    /// ```
+    /// use beadwright::read_back::{ReadBack, Reading};
+    /// use beadwright::{Profile, Task};
+    ///
+    /// // 60 mm at 240 mm/min, the speed of the profile: the bead has its width.
+    /// let text = "G21 G90\nG0 X0 Y0 Z1.35\nM3 S1\nG1 X60 F240\nM5\n";
+    /// let (profile, reading) = (Profile::built_in("plasma-304-cnc")?, Reading { profile_chosen: true, ..Reading::default() });
+    /// let read = ReadBack::program("bar.nc", text, &mut |_| None, &profile, &reading, None, &Task::new())?;
+    /// let pass = &read.layers[0].passes[0];
+    /// assert_eq!((read.totals.arc_starts, pass.length()), (1, 60.0));
+    /// assert!((pass.width.max() - profile.bead.width).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`ReadBackError`].

@@ -124,6 +124,19 @@ pub enum DeviationError {
 /// Compares the points of a scan (mm) with the surface of a part that lies in the same coordinates; `allowance` (mm) is
 /// what is left to be milled off.
 ///
+/// ```
+/// use bead_part::{deviation::deviation, example, task::Task};
+/// use glam::DVec3;
+///
+/// // The sides of the wall are 2.25 mm from its middle: one point lies 1 mm outside, the other 0.25 mm inside.
+/// let wall = example::find("wall").ok_or("no such example")?.mesh();
+/// let scan = [DVec3::new(5.0, 3.25, 30.0), DVec3::new(5.0, 2.0, 30.0)];
+/// let found = deviation(&wall, &scan, 0.5, &Task::new())?;
+/// assert!((found.distances[0] - 1.0).abs() < 1e-9 && (found.distances[1] + 0.25).abs() < 1e-9);
+/// assert_eq!((found.figures.above, found.figures.below), (0.5, 0.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`DeviationError`].
 pub fn deviation(part: &Mesh, points: &[DVec3], allowance: f64, task: &Task) -> Result<Deviation, DeviationError> {

@@ -98,6 +98,15 @@ impl Finding {
     }
 
     /// What is wrong and what to do, in sentences for people.
+    ///
+    /// ```
+    /// use bead_part::finding::{Finding, Severity};
+    ///
+    /// let found = Finding::new("reach", Severity::Serious, "Layer 3 is out of reach.".to_owned());
+    /// let found = Finding { remedy: Some("Move the part closer.".to_owned()), ..found };
+    /// assert_eq!(found.sentence(), "Layer 3 is out of reach. Move the part closer.");
+    /// assert!(found.severity < Severity::Doubt, "the worst come first");
+    /// ```
     pub fn sentence(&self) -> String {
         self.remedy.as_ref().map_or_else(|| self.text.clone(), |remedy| format!("{} {remedy}", self.text))
     }

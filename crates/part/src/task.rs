@@ -53,11 +53,31 @@ impl Task {
     }
 
     /// A task whose stage and fraction (0 to 1) go to `progress`, possibly from several threads.
+    ///
+    /// ```
+    /// use bead_part::task::{Stage, Task};
+    /// use std::sync::mpsc;
+    ///
+    /// let (sender, receiver) = mpsc::channel();
+    /// let task = Task::with_progress(move |stage, fraction| drop(sender.send((stage, fraction))));
+    /// task.step(Stage::Slice, 0.5)?;
+    /// assert_eq!(receiver.recv()?, (Stage::Slice, 0.5));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn with_progress(progress: impl Fn(Stage, f64) + Send + Sync + 'static) -> Self {
         Self { progress: Some(Arc::new(progress)), ..Self::default() }
     }
 
     /// Asks the running call to stop; it returns [`Cancelled`] at its next check.
+    ///
+    /// ```
+    /// use bead_part::task::Task;
+    ///
+    /// let task = Task::new();
+    /// // A clone may be anywhere, such as behind a button.
+    /// task.clone().cancel();
+    /// assert!(task.check().is_err());
+    /// ```
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }

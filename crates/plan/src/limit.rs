@@ -19,6 +19,14 @@ pub struct Limit {
 
 impl Limit {
     /// Whether the value is within the limits; NaN is not.
+    ///
+    /// ```
+    /// use bead_plan::limit::{Limit, limit};
+    ///
+    /// let width = limit("bead.width", 6.0, (0.05, 100.0), "mm", "no bead is wider");
+    /// assert!(width.holds());
+    /// assert!(!Limit { value: 0.0, ..width }.holds() && !Limit { value: f64::NAN, ..width }.holds());
+    /// ```
     pub fn holds(&self) -> bool {
         (self.least..=self.greatest).contains(&self.value)
     }

@@ -40,6 +40,16 @@ impl Motion {
     }
 
     /// Time along a path from rest to rest, s: from a point to each of the others at its speed (mm, mm/s).
+    ///
+    /// ```
+    /// use bead_plan::motion::Motion;
+    /// use glam::DVec3;
+    ///
+    /// // 100 mm at 10 mm/s; speeding up and slowing down cost a tenth of a second together.
+    /// let machine = Motion { acceleration: 100.0, corner_speed: 5.0 };
+    /// let seconds = machine.seconds(DVec3::ZERO, [(DVec3::X * 100.0, 10.0)]);
+    /// assert!((seconds - (100.0 / 10.0 + 10.0 / 100.0)).abs() < 1e-9);
+    /// ```
     pub fn seconds(&self, from: DVec3, moves: impl IntoIterator<Item = (DVec3, f64)>) -> f64 {
         let mut at = from;
         let piece = |(to, speed): (DVec3, f64)| {

@@ -68,6 +68,15 @@ impl Along {
     }
 
     /// Reverses the values together with the path: every piece keeps its own, the closing one included.
+    ///
+    /// ```
+    /// use bead_plan::pass::Along;
+    ///
+    /// // Three points have two pieces; the value of the last point belongs to none of them.
+    /// let mut widths = Along::Each(vec![4.0, 6.0, 6.0]);
+    /// widths.reverse();
+    /// assert_eq!([widths.after(0), widths.after(1)], [6.0, 4.0]);
+    /// ```
     pub fn reverse(&mut self) {
         if let Self::Each(values) = self
             && let [pieces @ .., _] = &mut values[..]
@@ -185,11 +194,34 @@ impl Pass {
     }
 
     /// Deposited length, mm.
+    ///
+    /// ```
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use glam::DVec3;
+    ///
+    /// // A closed pass has a piece that leads back to its start.
+    /// let points = vec![DVec3::ZERO, DVec3::X * 10.0, DVec3::new(10.0, 10.0, 0.0), DVec3::Y * 10.0];
+    /// let (width, pace) = (Along::Same(5.0), Along::Same(8.0));
+    /// let square = Pass { kind: PassKind::Contour, closed: true, points, width, pace, wait: 0.0 };
+    /// assert_eq!((square.segments().count(), square.length()), (4, 40.0));
+    /// assert_eq!(square.start(), square.end());
+    /// ```
     pub fn length(&self) -> f64 {
         self.segments().map(|s| s.length()).sum()
     }
 
     /// The part of the pass from one distance along it to another, mm; a closed one goes around again.
+    ///
+    /// ```
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use glam::DVec3;
+    ///
+    /// let points = vec![DVec3::ZERO, DVec3::X * 10.0, DVec3::new(10.0, 10.0, 0.0)];
+    /// let (width, pace) = (Along::Same(5.0), Along::Same(8.0));
+    /// let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace, wait: 0.0 };
+    /// let middle = pass.stretch(5.0, 15.0);
+    /// assert_eq!(middle.points, [DVec3::X * 5.0, DVec3::X * 10.0, DVec3::new(10.0, 5.0, 0.0)]);
+    /// ```
     pub fn stretch(&self, from: f64, to: f64) -> Self {
         let mut along = 0.0;
         let again = if self.closed { 2 } else { 1 };

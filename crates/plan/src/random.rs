@@ -5,6 +5,14 @@ pub struct Random(u64);
 
 impl Random {
     /// The same seed gives the same numbers.
+    ///
+    /// ```
+    /// use bead_plan::random::Random;
+    ///
+    /// let (mut one, mut other) = (Random::new(7), Random::new(7));
+    /// assert!((0..100).all(|_| one.next() == other.next()));
+    /// assert!((0..100).all(|_| one.below(6) < 6));
+    /// ```
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -59,6 +59,17 @@ pub struct Piece {
 
 impl Arc {
     /// The arc through three points; none when they lie on a line or it would turn by half a turn or more.
+    ///
+    /// ```
+    /// use planar::{DVec2, arcs::Arc};
+    /// use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+    ///
+    /// let quarter = Arc::through(DVec2::X, DVec2::from_angle(FRAC_PI_4), DVec2::Y).ok_or("no arc")?;
+    /// assert!(quarter.centre.length() < 1e-9 && (quarter.radius - 1.0).abs() < 1e-9);
+    /// assert!((quarter.sweep - FRAC_PI_2).abs() < 1e-9);
+    /// assert_eq!(Arc::through(DVec2::ZERO, DVec2::X, DVec2::X * 2.0), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn through(from: DVec2, via: DVec2, to: DVec2) -> Option<Self> {
         let (a, b) = (via - from, to - from);
         let cross = a.perp_dot(b);
@@ -73,6 +84,17 @@ impl Arc {
 
 impl Fit {
     /// The pieces of the open line through `points`; every piece ends at one of them, the last piece at the last point.
+    ///
+    /// ```
+    /// use planar::{DVec2, arcs::Fit};
+    /// use std::f64::consts::TAU;
+    ///
+    /// // An arc turns by less than half a turn, so a circle takes three.
+    /// let circle: Vec<DVec2> = (0..=90).map(|k| DVec2::from_angle(TAU * f64::from(k) / 90.0) * 20.0).collect();
+    /// let pieces = Fit { tolerance: 0.05, arcs: true, grid: 1e-3 }.pieces(&circle);
+    /// assert_eq!(pieces.len(), 3);
+    /// assert!(pieces.iter().all(|piece| piece.arc.is_some()));
+    /// ```
     pub fn pieces(&self, points: &[DVec2]) -> Vec<Piece> {
         let (mut pieces, mut start) = (Vec::new(), 0);
         while start + 1 < points.len() {

@@ -10,16 +10,52 @@ use i_overlay::core::overlay_rule::OverlayRule;
 
 impl Region {
     /// What lies in either region.
+    ///
+    /// ```
+    /// use planar::{DVec2, Polygon, Region, Ring};
+    ///
+    /// // Two squares that share an edge become one rectangle.
+    /// let square = |x: f64| {
+    ///     let corners = [(x, 0.0), (x + 5.0, 0.0), (x + 5.0, 5.0), (x, 5.0)].map(DVec2::from);
+    ///     Region::from(Polygon::simple(Ring::new(corners.to_vec())))
+    /// };
+    /// let both = square(0.0).union(&square(5.0));
+    /// assert_eq!((both.polygons().len(), both.area(), both.perimeter()), (1, 50.0, 30.0));
+    /// ```
     pub fn union(&self, other: &Self) -> Self {
         combine(self, other, OverlayRule::Union)
     }
 
     /// What lies in `self` and not in `other`.
+    ///
+    /// ```
+    /// use planar::{DVec2, Polygon, Region, Ring};
+    ///
+    /// let square = |low: f64, high: f64| {
+    ///     let corners = [(low, low), (high, low), (high, high), (low, high)].map(DVec2::from);
+    ///     Region::from(Polygon::simple(Ring::new(corners.to_vec())))
+    /// };
+    /// let frame = square(0.0, 10.0).difference(&square(4.0, 6.0));
+    /// assert_eq!(frame.polygons()[0].holes.len(), 1);
+    /// assert_eq!((frame.area(), frame.euler()), (96.0, 0));
+    /// ```
     pub fn difference(&self, other: &Self) -> Self {
         combine(self, other, OverlayRule::Difference)
     }
 
     /// What lies in both.
+    ///
+    /// ```
+    /// use planar::{DVec2, Polygon, Region, Ring};
+    ///
+    /// // Squares of side 10, one moved by 6 along x and y: they share a square of side 4.
+    /// let square = |at: f64| {
+    ///     let corners = [(at, at), (at + 10.0, at), (at + 10.0, at + 10.0), (at, at + 10.0)].map(DVec2::from);
+    ///     Region::from(Polygon::simple(Ring::new(corners.to_vec())))
+    /// };
+    /// assert!((square(0.0).intersection(&square(6.0)).area() - 16.0).abs() < 0.01);
+    /// assert!(square(0.0).intersection(&square(20.0)).is_empty());
+    /// ```
     pub fn intersection(&self, other: &Self) -> Self {
         combine(self, other, OverlayRule::Intersect)
     }

@@ -57,6 +57,17 @@ impl Boxes {
     }
 
     /// Visits every pair of pieces whose boxes meet, once.
+    ///
+    /// ```
+    /// use planar::{DVec2, boxes::Boxes};
+    ///
+    /// // Two diagonals of a square, and a piece far from both.
+    /// let piece = |x0: f64, y0: f64, x1: f64, y1: f64| [DVec2::new(x0, y0), DVec2::new(x1, y1)];
+    /// let pieces = vec![piece(0.0, 0.0, 10.0, 10.0), piece(0.0, 10.0, 10.0, 0.0), piece(50.0, 0.0, 60.0, 0.0)];
+    /// let mut pairs = 0;
+    /// Boxes::new(pieces).pairs(|_, _| pairs += 1);
+    /// assert_eq!(pairs, 1);
+    /// ```
     pub fn pairs(&self, mut visit: impl FnMut(usize, usize)) {
         if !self.nodes.is_empty() {
             self.pairs_within(0, &mut visit);

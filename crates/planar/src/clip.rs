@@ -43,6 +43,15 @@ fn whole(pieces: Vec<Vec<GridPoint>>) -> Vec<Vec<GridPoint>> {
 impl Region {
     /// The pieces of the open line through `points` inside or outside this region, in no fixed order; each runs
     /// in the direction of the line.
+    ///
+    /// ```
+    /// use planar::{DVec2, Polygon, Region, Ring, clip::Keep};
+    ///
+    /// let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from);
+    /// let square = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    /// let inside = square.clip_line(&[DVec2::new(-5.0, 4.0), DVec2::new(15.0, 4.0)], Keep::Inside);
+    /// assert_eq!(inside, [[DVec2::new(0.0, 4.0), DVec2::new(10.0, 4.0)]]);
+    /// ```
     pub fn clip_line(&self, points: &[DVec2], keep: Keep) -> Vec<Vec<DVec2>> {
         // With `invert` the library reverses this flag: true counts the boundary as inside in both cases.
         let rule = ClipRule { invert: keep == Keep::Outside, boundary_included: true };

@@ -21,6 +21,13 @@ impl OrientedRect {
 }
 
 /// The convex hull, counter-clockwise, without points on its edges.
+///
+/// ```
+/// use planar::{DVec2, convex_hull};
+///
+/// let points = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.0), (4.0, 4.0), (1.0, 2.0), (0.0, 4.0)].map(DVec2::from);
+/// assert_eq!(convex_hull(&points), [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(DVec2::from));
+/// ```
 pub fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -51,6 +58,14 @@ fn half_hull(points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
 
 /// The rectangle of least area around `points`; `None` when fewer than two of them differ.
 /// One of its sides lies along a hull edge (Freeman and Shapira 1975), so the edges are tried in turn.
+///
+/// ```
+/// use planar::{DVec2, min_area_rect};
+///
+/// // A square that stands on a corner: half the box around it.
+/// let square = [(2.0, 0.0), (0.0, 2.0), (-2.0, 0.0), (0.0, -2.0)].map(DVec2::from);
+/// assert!(min_area_rect(&square).is_some_and(|rect| (rect.area() - 8.0).abs() < 1e-9));
+/// ```
 pub fn min_area_rect(points: &[DVec2]) -> Option<OrientedRect> {
     let hull = convex_hull(points);
     let edges = hull.iter().zip(hull.iter().cycle().skip(1));

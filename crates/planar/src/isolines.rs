@@ -19,6 +19,17 @@ pub struct Isoline {
 type Key = u64;
 
 /// The closed lines of all whole values from 1 on, from low to high.
+///
+/// ```
+/// use planar::{Bounds, DVec2, Lattice, isolines::isolines};
+///
+/// // A cone that is 3.7 high has one line at each of the heights 1, 2 and 3.
+/// let bounds = Bounds { min: DVec2::splat(-5.0), max: DVec2::splat(5.0) };
+/// let lattice = Lattice::covering(&bounds, 0.0, 0.5, 1);
+/// let cone: Vec<f32> = (0..lattice.len()).map(|i| 3.7 - lattice.place_of(i).length() as f32).collect();
+/// let levels: Vec<u32> = isolines(&lattice, &cone).iter().map(|line| line.level).collect();
+/// assert_eq!(levels, [1, 2, 3]);
+/// ```
 pub fn isolines(lattice: &Lattice, values: &[f32]) -> Vec<Isoline> {
     let mut pieces = pieces(lattice, values);
     pieces.sort_unstable();

@@ -62,6 +62,17 @@ impl Ladder {
 }
 
 /// The ladders of a region whose boundary is sampled at least every `spacing` (mm), without those into corners.
+///
+/// ```
+/// use planar::{DVec2, Polygon, Region, Ring, ladder::ladders};
+///
+/// // A strip is one ladder with two free ends.
+/// let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 4.0), (0.0, 4.0)].map(DVec2::from);
+/// let strip = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+/// let found = ladders(&strip, 0.7);
+/// assert_eq!(found.len(), 1);
+/// assert_eq!(found[0].free, [true, true]);
+/// ```
 pub fn ladders(region: &Region, spacing: f64) -> Vec<Ladder> {
     region.polygons().iter().flat_map(|polygon| Mesh::of(polygon, spacing).ladders()).collect()
 }

@@ -5,6 +5,17 @@ use glam::DVec2;
 
 /// Points `step` apart in x and y, with equally many columns and rows on either side of the middle: turned by a right angle
 /// it is the same lattice.
+///
+/// ```
+/// use planar::{Bounds, DVec2, Lattice};
+///
+/// let bounds = Bounds { min: DVec2::ZERO, max: DVec2::splat(20.0) };
+/// let lattice = Lattice::covering(&bounds, 1.0, 0.5, 1);
+/// assert_eq!((lattice.low(), lattice.columns), (DVec2::splat(-1.0), 45));
+/// // A field that rises evenly is read exactly between the points too.
+/// let rising: Vec<f32> = (0..lattice.len()).map(|i| lattice.place_of(i).x as f32).collect();
+/// assert!((lattice.value_at(&rising, DVec2::new(3.1, 4.7)) - 3.1).abs() < 1e-5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
     /// Its middle point.

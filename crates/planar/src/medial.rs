@@ -127,6 +127,18 @@ impl Branch {
 impl MedialAxis {
     /// The medial axis inside `polygon`. Rings may cross, touch or run either way: inside is where
     /// [`Polygon::contains`] says so.
+    ///
+    /// ```
+    /// use planar::medial::{CORNER, MedialAxis, MedialOptions};
+    /// use planar::{DVec2, Polygon, Ring};
+    ///
+    /// // Without what runs into its corners, the axis of a rectangle is a line in its middle.
+    /// let plate = Polygon::simple(Ring::new([(0.0, 0.0), (20.0, 0.0), (20.0, 6.0), (0.0, 6.0)].map(DVec2::from).to_vec()));
+    /// let axis = MedialAxis::of(&plate, &MedialOptions::default()).pruned(CORNER);
+    /// assert_eq!(axis.branches.len(), 1);
+    /// assert!((axis.length() - (20.0 - 6.0)).abs() < 1e-3);
+    /// assert!(axis.branches[0].nodes.iter().all(|node| (node.radius - 3.0).abs() < 1e-3));
+    /// ```
     pub fn of(polygon: &Polygon, options: &MedialOptions) -> Self {
         let options = &options.sane();
         let rings: Vec<Ring> = polygon.rings().cloned().collect();

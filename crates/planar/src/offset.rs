@@ -57,6 +57,18 @@ impl Join {
 impl Region {
     /// All points within `distance` (mm) of the region when positive; when negative, all points of it that lie
     /// at least that far from its boundary. Empty when nothing is left.
+    ///
+    /// ```
+    /// use planar::{DVec2, Join, Polygon, Region, Ring};
+    /// use std::f64::consts::PI;
+    ///
+    /// let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from);
+    /// let square = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    /// assert!((square.offset(1.0, Join::Miter(2.0)).area() - 12.0 * 12.0).abs() < 0.02);
+    /// // Round corners: a quarter of a disc at each of the four.
+    /// assert!((square.offset(1.0, Join::ROUND).area() - (100.0 + 4.0 * 10.0 + PI)).abs() < 0.2);
+    /// assert!(square.offset(-6.0, Join::ROUND).is_empty());
+    /// ```
     pub fn offset(&self, distance: f64, join: Join) -> Self {
         if self.is_empty() || distance == 0.0 {
             return self.clone();
@@ -95,6 +107,17 @@ impl Polygon {
     /// Area (mm²) that a disc of this radius (mm) reaches without leaving the polygon, given where its centre may lie: area +
     /// radius · perimeter + π radius² · euler of that region (Steiner). `None` where the region is connected differently
     /// from the polygon: then parts of it may reach the same points.
+    ///
+    /// ```
+    /// use planar::{DVec2, Join, Polygon, Ring};
+    /// use std::f64::consts::FRAC_PI_4;
+    ///
+    /// // In a corner of a square, a disc leaves a square of its radius less a quarter of itself.
+    /// let square = Polygon::simple(Ring::new([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from).to_vec()));
+    /// let centre = square.centres_of_disc(1.0, Join::ROUND);
+    /// let expected = 100.0 - 4.0 * (1.0 - FRAC_PI_4);
+    /// assert!(square.reached_by_disc(1.0, &centre).is_some_and(|area| (area - expected).abs() < 0.01));
+    /// ```
     pub fn reached_by_disc(&self, radius: f64, centre: &Region) -> Option<f64> {
         let [part] = centre.polygons() else { return None };
         let round = std::f64::consts::PI * radius * radius * centre.euler() as f64;

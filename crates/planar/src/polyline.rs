@@ -4,11 +4,26 @@ use crate::Ring;
 use glam::DVec2;
 
 /// Length of the open line through `points`, mm.
+///
+/// ```
+/// use planar::{DVec2, polyline};
+///
+/// let line = [(0.0, 0.0), (3.0, 4.0), (3.0, 10.0)].map(DVec2::from);
+/// assert_eq!(polyline::length(&line), 5.0 + 6.0);
+/// ```
 pub fn length(points: &[DVec2]) -> f64 {
     points.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
 /// The point at `distance` (mm) along the open line through `points`; beyond the end, the last point.
+///
+/// ```
+/// use planar::{DVec2, polyline};
+///
+/// let line = [(0.0, 0.0), (3.0, 4.0), (3.0, 10.0)].map(DVec2::from);
+/// assert_eq!(polyline::point_at(&line, 8.0), Some(DVec2::new(3.0, 7.0)));
+/// assert_eq!(polyline::point_at(&line, 99.0), Some(DVec2::new(3.0, 10.0)));
+/// ```
 pub fn point_at(points: &[DVec2], distance: f64) -> Option<DVec2> {
     let mut left = distance;
     for pair in points.windows(2) {
@@ -37,6 +52,14 @@ pub fn without_end(mut points: Vec<DVec2>, by: f64) -> Vec<DVec2> {
 }
 
 /// Drops every point within `tolerance` (mm) of the line that remains (Douglas–Peucker); the ends stay.
+///
+/// ```
+/// use planar::{DVec2, polyline};
+///
+/// // Points in line go, corners stay.
+/// let line = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (2.0, 5.0)].map(DVec2::from);
+/// assert_eq!(polyline::simplify(&line, 0.01), [line[0], line[2], line[4]]);
+/// ```
 pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let Some(last) = points.len().checked_sub(1) else { return Vec::new() };
     let mut keep = vec![false; points.len()];

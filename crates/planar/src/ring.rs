@@ -9,6 +9,17 @@ use serde::{Deserialize, Serialize};
 pub struct Ring(Vec<DVec2>);
 
 /// One outer ring, counter-clockwise, with clockwise holes.
+///
+/// ```
+/// use planar::{DVec2, Polygon, Ring};
+///
+/// let square = |low: f64, high: f64| {
+///     Ring::new([(low, low), (high, low), (high, high), (low, high)].map(DVec2::from).to_vec())
+/// };
+/// let frame = Polygon { outer: square(0.0, 10.0), holes: vec![square(4.0, 6.0).reversed()] };
+/// assert_eq!(frame.area(), 100.0 - 4.0);
+/// assert!(frame.contains(DVec2::new(2.0, 5.0)) && !frame.contains(DVec2::new(5.0, 5.0)));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Polygon {
     /// The outer boundary, counter-clockwise.
@@ -22,6 +33,17 @@ pub struct Polygon {
 pub struct Region(Vec<Polygon>);
 
 /// Which winding numbers count as inside when loose rings become a [`Region`].
+///
+/// ```
+/// use planar::{DVec2, FillRule, Region, Ring};
+///
+/// // A square within a square, both counter-clockwise: a hole for one rule, part of the whole for the other.
+/// let square = |low: f64, high: f64| {
+///     Ring::new([(low, low), (high, low), (high, high), (low, high)].map(DVec2::from).to_vec())
+/// };
+/// let area = |rule| Region::from_rings(&[square(0.0, 10.0), square(4.0, 6.0)], rule).area();
+/// assert_eq!([area(FillRule::EvenOdd), area(FillRule::NonZero)], [96.0, 100.0]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FillRule {
     /// Inside where the winding number is odd: orientation does not matter.
@@ -97,12 +119,28 @@ impl Ring {
     }
 
     /// Signed area, mm²: positive when counter-clockwise.
+    ///
+    /// ```
+    /// use planar::{DVec2, Ring};
+    ///
+    /// let triangle = Ring::new([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)].map(DVec2::from).to_vec());
+    /// assert_eq!(triangle.area(), 6.0);
+    /// assert_eq!(triangle.reversed().area(), -6.0);
+    /// ```
     pub fn area(&self) -> f64 {
         let Some(&origin) = self.0.first() else { return 0.0 };
         self.edges().map(|(a, b)| (a - origin).perp_dot(b - origin)).sum::<f64>() / 2.0
     }
 
     /// The centroid of the area it bounds, mm; `None` where it bounds none.
+    ///
+    /// ```
+    /// use planar::{DVec2, Ring};
+    ///
+    /// // That of a triangle is the mean of its corners.
+    /// let triangle = Ring::new([(0.0, 0.0), (6.0, 0.0), (0.0, 3.0)].map(DVec2::from).to_vec());
+    /// assert_eq!(triangle.centroid(), Some(DVec2::new(2.0, 1.0)));
+    /// ```
     pub fn centroid(&self) -> Option<DVec2> {
         let origin = *self.0.first()?;
         let triangles = self.edges().map(|(a, b)| (a - origin, b - origin));

@@ -73,6 +73,14 @@ impl<T, R: IntoIterator<Item = T>> FromIterator<R> for PerRow<T> {
 impl Region {
     /// For each of `count` rows y = `first` + k · `step`: the sorted places in x at which it crosses the boundary.
     /// The row is inside between the first and the second, the third and the fourth, and so on.
+    ///
+    /// ```
+    /// use planar::{DVec2, Polygon, Region, Ring};
+    ///
+    /// let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from);
+    /// let square = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    /// assert!(square.rows(0.5, 1.0, 10).iter().all(|row| row == [0.0, 10.0]));
+    /// ```
     pub fn rows(&self, first: f64, step: f64, count: usize) -> PerRow<f64> {
         crossings(self.rings(), first, step, count)
     }

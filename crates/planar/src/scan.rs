@@ -61,6 +61,19 @@ struct Crossing {
 }
 
 /// Scan lines of one angle through one region.
+///
+/// ```
+/// use planar::scan::{End, Scan, Spacing};
+/// use planar::{DVec2, Polygon, Region, Ring};
+///
+/// let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (0.0, 4.0)].map(DVec2::from);
+/// let plate = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+/// let scan = Scan::new(&plate, 0.0, Spacing::AtMost(1.0));
+/// assert_eq!(scan.spans().len(), 5);
+/// assert!((0..5).all(|span| scan.length(span) == 10.0));
+/// // The right edge leads from each line to the next.
+/// assert_eq!(scan.chain_up(0, End::Right).map(|chain| chain.to), Some(1));
+/// ```
 pub struct Scan {
     rings: Vec<Ring>,
     /// First crossing of each ring, and one past the last ring.
@@ -245,6 +258,17 @@ impl Scan {
 }
 
 /// The number of spans that [`Scan::new`] would find and their length, mm; in less time, since no line has its ends sorted.
+///
+/// ```
+/// use planar::scan::{Spacing, count_and_length};
+/// use planar::{DVec2, Polygon, Region, Ring};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (0.0, 4.0)].map(DVec2::from);
+/// let plate = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+/// assert_eq!(count_and_length(&plate, 0.0, Spacing::AtMost(1.0)), (5, 5.0 * 10.0));
+/// assert_eq!(count_and_length(&plate, FRAC_PI_2, Spacing::AtMost(1.0)), (11, 11.0 * 4.0));
+/// ```
 pub fn count_and_length(region: &Region, angle: f64, spacing: Spacing) -> (usize, f64) {
     let (_, rings, lines) = turned(region, angle, |_, low, high| spacing.lines(low, high));
     let (mut ends, mut length) = (0, 0.0);

@@ -11,6 +11,16 @@ use i_overlay::mesh::math::MathMode;
 
 /// All points within `distance` (mm) of the lines; `closed` joins the last point of each to its first. Corners and ends
 /// are round, and the result is accurate to `tolerance` (mm).
+///
+/// ```
+/// use planar::{DVec2, buffer};
+/// use std::f64::consts::PI;
+///
+/// // A line becomes a rectangle with half a disc at each end.
+/// let line = vec![DVec2::ZERO, DVec2::new(30.0, 40.0)];
+/// let expected = 50.0 * 8.0 + PI * 16.0;
+/// assert!((buffer(&[line], false, 4.0, 0.001).area() / expected - 1.0).abs() < 1e-3);
+/// ```
 pub fn buffer(lines: &[Vec<DVec2>], closed: bool, distance: f64, tolerance: f64) -> Region {
     let width = (2.0 * distance / GRID_MM).round() as i32;
     let join = Join::Round(tolerance / 2.0).to_style(distance);

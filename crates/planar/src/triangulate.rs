@@ -5,6 +5,14 @@ use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation
 use std::collections::HashMap;
 
 /// Triangles as indices into the polygon's points, outer ring first and then the holes in order; counter-clockwise.
+///
+/// ```
+/// use planar::{DVec2, Polygon, Ring, triangulate::triangulate};
+///
+/// // A polygon with six corners and no holes takes four triangles.
+/// let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)].map(DVec2::from);
+/// assert_eq!(triangulate(&Polygon::simple(Ring::new(corners.to_vec()))).len(), 4);
+/// ```
 pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
     let points: Vec<[f64; 2]> = polygon.rings().flat_map(|r| r.points()).map(|p| [p.x, p.y]).collect();
     let mut start = polygon.outer.points().len();

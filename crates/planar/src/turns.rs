@@ -94,6 +94,19 @@ impl Turns {
     }
 
     /// The middle of the widest stretch of angles with the least number, and that number.
+    ///
+    /// ```
+    /// use planar::scan::Spacing;
+    /// use planar::{DVec2, Polygon, Region, Ring, turns::Turns};
+    /// use std::f64::consts::PI;
+    ///
+    /// // Lines along the long side of a plate are the fewest.
+    /// let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 10.0), (0.0, 10.0)].map(DVec2::from);
+    /// let plate = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    /// let (angle, _) = Turns::new(&plate, Spacing::AtMost(1.0)).least().ok_or("no lines")?;
+    /// assert!(angle.min(PI - angle) < 0.05);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn least(&self) -> Option<(f64, i64)> {
         let least = self.steps.iter().map(|s| s.1).min()?;
         let ends = self.steps.iter().skip(1).map(|s| s.0).chain([PI]);

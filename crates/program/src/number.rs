@@ -2,6 +2,14 @@
 
 /// Appends `value` with this many decimals (at most 9). What is not finite is written as 0; callers keep such
 /// values out.
+///
+/// ```
+/// use bead_program::number::push_fixed;
+///
+/// let mut line = "G1 X".to_owned();
+/// push_fixed(&mut line, 12.5, 3);
+/// assert_eq!(line, "G1 X12.500");
+/// ```
 pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
     const POWERS: [f64; 10] = [1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
     debug_assert!(value.is_finite());
@@ -55,6 +63,14 @@ impl Number {
 }
 
 /// `value` with this many decimals.
+///
+/// ```
+/// use bead_program::number::fixed;
+///
+/// assert_eq!(fixed(-123.456, 2), "-123.46");
+/// assert_eq!(fixed(1e9, 1), "1000000000.0");
+/// assert_eq!(fixed(-0.0004, 3), "0.000", "no negative zero");
+/// ```
 pub fn fixed(value: f64, decimals: usize) -> String {
     let mut text = String::with_capacity(12);
     push_fixed(&mut text, value, decimals);
@@ -70,6 +86,12 @@ pub fn rounded(value: f64) -> f64 {
 }
 
 /// Seconds as `1 h 02 min 03 s`.
+///
+/// ```
+/// use bead_program::number::hours;
+///
+/// assert_eq!(hours(3723.4), "1 h 02 min 03 s");
+/// ```
 pub fn hours(seconds: f64) -> String {
     let s = seconds.round() as u64;
     format!("{} h {:02} min {:02} s", s / 3600, s / 60 % 60, s % 60)

@@ -150,6 +150,18 @@ pub struct Circle {
 
 impl Circle {
     /// Length of the arc, mm.
+    ///
+    /// ```
+    /// use bead_program::program::Circle;
+    /// use glam::DVec3;
+    /// use std::f64::consts::{FRAC_PI_2, SQRT_2};
+    ///
+    /// // A quarter of a turn, clockwise, on a radius of 10 mm.
+    /// let via = DVec3::new(10.0 / SQRT_2, 10.0 / SQRT_2, 0.0);
+    /// let quarter = Circle { via, centre: DVec3::ZERO, radius: 10.0, sweep: -FRAC_PI_2 };
+    /// assert!((quarter.length() - 5.0 * std::f64::consts::PI).abs() < 1e-9);
+    /// assert_eq!(quarter.word(), "G2");
+    /// ```
     pub fn length(&self) -> f64 {
         self.radius * self.sweep.abs()
     }
@@ -243,6 +255,20 @@ impl Programmer {
     }
 
     /// The instructions of the next layer; the torch ends above its last pass, clear of it.
+    ///
+    /// ```
+    /// use bead_plan::layer::Layer;
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use bead_program::program::{Instruction, Programmer};
+    /// use glam::DVec3;
+    ///
+    /// // A pass of three points takes two moves with the arc on.
+    /// let (points, width, pace) = ([0.0, 20.0, 50.0].map(|x| DVec3::X * x).to_vec(), Along::Same(5.0), Along::Same(8.0));
+    /// let pass = Pass { kind: PassKind::Wall, closed: false, points, width, pace, wait: 0.0 };
+    /// let layer = Layer { height: 2.0, passes: vec![pass], ..Layer::default() };
+    /// let steps = Programmer::new(10.0).layer(&layer).instructions;
+    /// assert_eq!(steps.iter().filter(|step| matches!(step, Instruction::Weld { .. })).count(), 2);
+    /// ```
     pub fn layer(&mut self, layer: &Layer) -> LayerProgram {
         self.layer_from(layer, 0)
     }

@@ -22,6 +22,15 @@ impl Frame {
     }
 
     /// The inverse: `a_from_b` becomes `b_from_a`.
+    ///
+    /// ```
+    /// use bead_robot::Frame;
+    /// use glam::{DQuat, DVec3};
+    ///
+    /// let frame = Frame { position: DVec3::new(100.0, 20.0, 3.0), rotation: DQuat::from_rotation_z(0.7) };
+    /// let point = DVec3::new(1.0, 2.0, 3.0);
+    /// assert!(frame.inverse().apply(frame.apply(point)).distance(point) < 1e-9);
+    /// ```
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         Self { position: rotation * -self.position, rotation }
@@ -86,6 +95,15 @@ impl Margins {
     }
 
     /// The joint that is nearest to a limit or beyond, from 0, and its margin.
+    ///
+    /// ```
+    /// use bead_robot::Cell;
+    ///
+    /// // With all joints at 0°, joint 3 is the nearest to a limit: it turns from -65 to 70°.
+    /// let arm = Cell::built_in("abb-irb1410")?.arm();
+    /// assert_eq!(arm.margins(&[0.0; 6]).nearest_limit(), (2, 65.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn nearest_limit(&self) -> (usize, f64) {
         let pairs = self.limits.iter().copied().enumerate();
         pairs.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
@@ -137,6 +155,17 @@ impl Arm {
 
     /// All ways to put the flange there, including those beyond a limit. Of a joint's angles that differ by whole
     /// turns, the one nearest to the middle of its range is returned.
+    ///
+    /// ```
+    /// use bead_robot::Cell;
+    ///
+    /// let arm = Cell::built_in("kuka-kr20-r1810")?.arm();
+    /// let flange = arm.forward(&[10.0, -70.0, 60.0, 20.0, 30.0, 40.0]);
+    /// let ways = arm.inverse(&flange);
+    /// assert!(!ways.is_empty());
+    /// assert!(ways.iter().all(|(_, joints)| arm.forward(joints).position.distance(flange.position) < 1e-3));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn inverse(&self, base_from_flange: &Frame) -> Vec<(Branch, Joints)> {
         let solution = |mut joints: Joints| {
             for (joint, [low, high]) in joints.iter_mut().zip(self.limits) {

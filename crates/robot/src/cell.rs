@@ -96,6 +96,17 @@ pub struct Table {
 impl Cell {
     /// A built-in cell.
     ///
+    /// ```
+    /// use bead_robot::Cell;
+    /// use glam::DVec3;
+    ///
+    /// // With all joints at 0° the forearm lies level: 150 + 720 + 85 mm forward, 475 + 600 + 120 mm up.
+    /// let cell = Cell::built_in("abb-irb1410")?;
+    /// let flange = cell.arm().forward(&[0.0; 6]);
+    /// assert!(flange.position.distance(DVec3::new(955.0, 0.0, 1195.0)) < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CellError::UnknownName`] with the nearest name.
     pub fn built_in(name: &str) -> Result<Self, CellError> {
@@ -103,6 +114,14 @@ impl Cell {
     }
 
     /// The text of a built-in cell, to be saved and edited.
+    ///
+    /// ```
+    /// use bead_robot::Cell;
+    ///
+    /// assert!(Cell::built_in_text("ur10e").is_ok());
+    /// let error = Cell::built_in_text("ur10").err().map(|error| error.to_string());
+    /// assert!(error.is_some_and(|text| text.contains("Did you mean \"ur10e\"?")));
+    /// ```
     ///
     /// # Errors
     /// [`CellError::UnknownName`] with the nearest name.
@@ -226,6 +245,18 @@ impl PartPlace {
     }
 
     /// The place of the part when the table under it is at that angle, °.
+    ///
+    /// ```
+    /// use bead_robot::{PartPlace, Table};
+    /// use glam::DVec3;
+    ///
+    /// // 100 mm beyond the table's axis, as the robot sees it; a quarter of a turn later, beside it.
+    /// let table = Table { axis: [1000.0, 0.0], direction: 1, limits: [-180.0, 180.0] };
+    /// let part = PartPlace { position: [1100.0, 0.0, 500.0], rotation: 0.0 };
+    /// let turned = part.turned_about(&table, 90.0);
+    /// assert!(DVec3::from(turned.position).distance(DVec3::new(1000.0, 100.0, 500.0)) < 1e-9);
+    /// assert_eq!(turned.rotation, 90.0);
+    /// ```
     pub fn turned_about(&self, table: &Table, angle: f64) -> Self {
         let turn = f64::from(table.direction) * angle;
         let axis = DVec3::new(table.axis[0], table.axis[1], 0.0);

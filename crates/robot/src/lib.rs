@@ -59,6 +59,15 @@ use glam::DQuat;
 
 /// The tool frame when the torch points straight down over a point of the part, turned by `angle` (°) about its own
 /// axis; at 0 its x axis is the part's.
+///
+/// ```
+/// use bead_robot::part_from_tool;
+/// use glam::DVec3;
+///
+/// let tool = part_from_tool(DVec3::new(10.0, 20.0, 2.0), 90.0);
+/// assert!((tool.rotation * DVec3::Z).distance(DVec3::NEG_Z) < 1e-12, "the wire points down");
+/// assert!((tool.rotation * DVec3::X).distance(DVec3::Y) < 1e-12);
+/// ```
 pub fn part_from_tool(at: glam::DVec3, angle: f64) -> Frame {
     let rotation = DQuat::from_rotation_z(angle.to_radians()) * DQuat::from_rotation_x(std::f64::consts::PI);
     Frame { position: at, rotation }

@@ -72,6 +72,20 @@ pub struct Track {
 
 impl Track {
     /// The path through a plan's layers, as the programs of `programmer` follow it; `travel_speed` in mm/s.
+    ///
+    /// ```
+    /// use bead_plan::layer::Layer;
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use bead_program::program::Programmer;
+    /// use bead_robot::Track;
+    /// use glam::DVec3;
+    ///
+    /// // Down by the clearance of 20 mm, along the pass of 100 mm, and up again.
+    /// let (points, width, pace) = (vec![DVec3::ZERO, DVec3::X * 100.0], Along::Same(5.0), Along::Same(10.0));
+    /// let pass = Pass { kind: PassKind::Wall, closed: false, points, width, pace, wait: 0.0 };
+    /// let track = Track::of(&[Layer { height: 2.0, passes: vec![pass], ..Layer::default() }], Programmer::new(20.0), 100.0);
+    /// assert!((track.length() - (20.0 + 100.0 + 20.0)).abs() < 1e-9);
+    /// ```
     pub fn of<L: Borrow<Layer>>(layers: &[L], programmer: Programmer, travel_speed: f64) -> Self {
         let mut track = Self { travel_speed, ..Self::default() };
         let mut programmer = programmer.unfitted();

@@ -35,6 +35,18 @@ impl Levels {
 
     /// The next of the layers that lead from the height `built` (mm) to the end, each the same part of the planned ones;
     /// `None` where less than half a layer is missing. Their number is the one that changes their thickness least.
+    ///
+    /// ```
+    /// use beadwright::{Layer, adapt::Levels};
+    ///
+    /// // Three layers of 2 mm were planned; the first came out 2.1 mm high, so two of 1.95 mm follow.
+    /// let layers = [2.0, 4.0, 6.0].map(|z| Layer { z, height: 2.0, ..Layer::default() });
+    /// let levels = Levels::of(&layers).ok_or("no layers")?;
+    /// let rung = levels.next(2.1).ok_or("nothing is missing")?;
+    /// assert!((rung.height - 1.95).abs() < 1e-9);
+    /// assert!(levels.next(5.5).is_none(), "less than half a layer");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn next(&self, built: f64) -> Option<Rung> {
         let (from, planned) = (self.number_at(built), self.tops.len() - 1);
         let left = planned as f64 - from;

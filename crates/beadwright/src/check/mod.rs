@@ -194,6 +194,19 @@ fn is_finite(layer: &Layer) -> bool {
 
 /// Runs all checks on a plan.
 ///
+/// ```
+/// use beadwright::{Along, Layer, Pass, PassKind, Profile, Task, check, glam::DVec3, plan};
+///
+/// // A pass whose points all lie on one spot.
+/// let profile = Profile::built_in("cmt-al2319-kuka")?;
+/// let (points, width, pace) = (vec![DVec3::Z * 2.0; 2], Along::Same(7.54), Along::Same(10.5));
+/// let pass = Pass { kind: PassKind::Wall, closed: false, points, width, pace, wait: 0.0 };
+/// let layer = Layer { z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
+/// let found = check::check(&[layer], &profile, plan::deposit_settings(&profile), &Task::new())?;
+/// assert!(found.iter().any(|finding| finding.kind == "points"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Cancelled`].
 pub fn check<L: Borrow<Layer>>(

@@ -94,6 +94,21 @@ pub const FORMATS: &[Format] = &[
 ];
 
 /// The format of files with this extension.
+///
+/// ```
+/// use beadwright::export::{Beads, format};
+/// use beadwright::{Profile, Task, example, plan};
+///
+/// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
+/// profile.fill.strategy = "raster".to_owned();
+/// let star = example::find("star").ok_or("no such example")?.mesh();
+/// let plan = plan("star", &star, &profile, &Task::new())?;
+/// let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: None };
+/// // A line with the names of the columns, and one for each piece.
+/// let table = (format("csv").ok_or("no such format")?.write)(&beads)?;
+/// assert_eq!(String::from_utf8(table)?.lines().count(), 1 + beads.pieces().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn format(extension: &str) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.extension.eq_ignore_ascii_case(extension))
 }

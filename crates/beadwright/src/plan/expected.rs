@@ -20,6 +20,18 @@ pub struct Expected {
 }
 
 /// What a solid will take; `None` where its volume is not known, since the surface is not closed.
+///
+/// ```
+/// use beadwright::{Profile, example, plan::expected};
+///
+/// // Ten layers of 2 mm; in each, beads one stepover apart fill two arms of 100 × 36 mm that share a square.
+/// let profile = Profile::built_in("cmt-al2319-kuka")?;
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let expected = expected(&cross, &profile).ok_or("not closed")?;
+/// assert_eq!(expected.layers, 10.0);
+/// assert!((expected.layer_length * profile.stepover() - (2.0 * 100.0 * 36.0 - 36.0 * 36.0)).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn expected(mesh: &Mesh, profile: &Profile) -> Option<Expected> {
     let layers = (mesh.size().z / profile.layers.height).max(1.0).round();
     let length = Some(mesh.volume()).filter(|volume| *volume > 0.0)? / (profile.layers.height * profile.stepover());

@@ -82,6 +82,19 @@ pub const MAX_LAYERS: usize = 100_000;
 /// Plans a part placed on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
 /// for files and headings.
 ///
+/// ```
+/// use beadwright::{Profile, Task, example, plan};
+///
+/// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
+/// profile.fill.strategy = "zigzag".to_owned();
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let plan = plan("cross", &cross, &profile, &Task::new())?;
+/// let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
+/// assert_eq!(plan.summary.metrics.arc_starts, passes);
+/// assert!(plan.layers.is_sorted_by(|below, above| below.z < above.z));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`PlanError`].
 pub fn plan<'a>(

@@ -6,6 +6,14 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 /// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is treated as
 /// text. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
 ///
+/// ```
+/// use beadwright::profile::edit::with_value;
+///
+/// let text = "[bead]\nwidth = 4.5  # mm\n";
+/// assert_eq!(with_value(text, "bead.width", "5.0")?, "[bead]\nwidth = 5.0  # mm\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ProfileError::Key`] for a key inside a value that is not a table, [`ProfileError::Text`] if the text is not TOML.
 pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileError> {

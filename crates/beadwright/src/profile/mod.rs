@@ -166,6 +166,17 @@ pub struct Profile {
 impl Profile {
     /// Reads and checks a profile from TOML text.
     ///
+    /// ```
+    /// use beadwright::{Profile, ProfileError};
+    ///
+    /// // The refusal names the line of the impossible value.
+    /// let text = Profile::built_in_text("cmt-al2319-kuka")?.replace("width = 7.54", "width = -1.0");
+    /// let wrong = 1 + text.lines().take_while(|line| !line.starts_with("width = -1.0")).count();
+    /// let refused = Profile::parse(&text);
+    /// assert!(matches!(refused, Err(ProfileError::Value { line, .. }) if line == wrong));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ProfileError`] with the line, the key and what would be right.
     pub fn parse(text: &str) -> Result<Self, ProfileError> {
@@ -193,6 +204,14 @@ impl Profile {
 
     /// The profile as TOML text, with every key that has a value.
     ///
+    /// ```
+    /// use beadwright::Profile;
+    ///
+    /// let profile = Profile::built_in("cmt-steel-abb")?;
+    /// assert_eq!(Profile::parse(&profile.toml_text()?)?, profile);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ProfileError::Text`] for numbers that TOML cannot hold.
     pub fn toml_text(&self) -> Result<String, ProfileError> {
@@ -200,6 +219,16 @@ impl Profile {
     }
 
     /// A built-in profile.
+    ///
+    /// ```
+    /// use beadwright::Profile;
+    ///
+    /// let profile = Profile::built_in("cmt-al2319-kuka")?;
+    /// assert_eq!((profile.wire.material.as_str(), profile.wire.diameter), ("ER2319", 1.2));
+    /// // Inclined flat tops lie 0.715 bead widths apart.
+    /// assert!((profile.stepover() - 0.715 * profile.bead.width).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`ProfileError::UnknownName`] with the nearest name.
@@ -325,6 +354,20 @@ impl Profile {
     }
 
     /// How a layer is filled.
+    ///
+    /// ```
+    /// use beadwright::planar::{DVec2, Polygon, Ring};
+    /// use beadwright::{Profile, fill};
+    ///
+    /// // Half a bead of 7.54 mm stays free at each edge; the 42.46 mm in between take nine lines, at most 5.39 mm apart.
+    /// let profile = Profile::built_in("cmt-al2319-kuka")?;
+    /// let plate = Polygon::simple(Ring::new([(0.0, 0.0), (60.0, 0.0), (60.0, 50.0), (0.0, 50.0)].map(DVec2::from).to_vec()));
+    /// let raster = fill::strategy("raster").ok_or("no such strategy")?;
+    /// let laid = raster.fill(&plate, &profile.fill_settings(0));
+    /// assert_eq!(laid.stages[0].len(), 9);
+    /// assert!(laid.stages[0].iter().all(|line| (line.length() - (60.0 - 7.54)).abs() < 0.01));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn fill_settings(&self, layer: usize) -> FillSettings<'_> {
         let fill = &self.fill;
         let turned = match fill.raster_turn {
@@ -422,6 +465,21 @@ impl Profile {
 
     /// What a program of a part needs besides its layers. In a dry run the part's name says so at the beginning, since
     /// long names are cut off at the end.
+    ///
+    /// ```
+    /// use beadwright::dialect::{self, reading::Options};
+    /// use beadwright::{Along, Layer, Pass, PassKind, Profile, glam::DVec3};
+    ///
+    /// // A program with a pass of 60 mm, written and read back.
+    /// let points = vec![DVec3::new(0.0, 0.0, 1.35), DVec3::new(60.0, 0.0, 1.35)];
+    /// let (width, pace) = (Along::Same(5.0), Along::Same(4.0));
+    /// let pass = Pass { kind: PassKind::Wall, closed: false, points, width, pace, wait: 0.0 };
+    /// let layer = Layer { z: 1.35, height: 1.35, passes: vec![pass], ..Layer::default() };
+    /// let files = dialect::write("gcode", &[layer], &Profile::built_in("plasma-304-cnc")?.job("bar"))?;
+    /// let program = dialect::read(&files["bar.nc"], &mut |_| None, &Options::default())?;
+    /// assert!((program.totals().deposited_length_mm - 60.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn job(&self, part: &str) -> Job<'_> {
         Job {
             part: if self.dry_run { format!("dry_{part}") } else { part.to_owned() },

@@ -48,6 +48,20 @@ use serde_json::json;
 use std::collections::BTreeSet;
 
 /// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
+///
+/// ```
+/// use beadwright::{Profile, Task, example, model::RepairReport, plan, report::Report};
+///
+/// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
+/// profile.fill.strategy = "zigzag".to_owned();
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let plan = plan("cross", &cross, &profile, &Task::new())?;
+/// let mut report = Report::new(&plan.header, &profile);
+/// plan.layers.iter().for_each(|layer| report.layer(layer, None));
+/// let page = report.finish(&plan.summary, &RepairReport::default(), &[], &[]);
+/// assert!(page.contains("<h1>cross</h1>"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Report {
     header: Header,

@@ -28,6 +28,15 @@ const UNITS: f64 = 100.0;
 const LEGEND_WIDTH: f64 = 91.0;
 
 /// The picture of a layer, y upwards.
+///
+/// ```
+/// use beadwright::planar::{DVec2, Polygon, Ring};
+/// use beadwright::{Layer, report::svg};
+///
+/// let plate = Polygon::simple(Ring::new([(0.0, 0.0), (60.0, 0.0), (60.0, 50.0), (0.0, 50.0)].map(DVec2::from).to_vec()));
+/// let picture = svg::layer(&Layer { islands: vec![plate], ..Layer::default() }, "plate & bore");
+/// assert!(picture.starts_with("<svg") && picture.contains("<title>plate &amp; bore</title>"));
+/// ```
 pub fn layer(layer: &Layer, title: &str) -> String {
     let frame = Frame::of(layer);
     let mut svg = frame.open(title);

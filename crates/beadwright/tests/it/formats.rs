@@ -254,7 +254,7 @@ fn broken_archives_are_refused() {
             ),
             item,
         ),
-        "refers to a vertex",
+        "refers to a missing vertex",
     );
     refused(
         threemf("millimeter", &object(1, &mesh_xml(&mesh)), "<item objectid=\"1\" transform=\"1 0 0\"/>"),

@@ -26,6 +26,17 @@ pub struct Closest {
 
 impl Nurbs {
     /// The point of the curve nearest to `target`, mm.
+    ///
+    /// ```
+    /// use bead_part::curve::Nurbs;
+    /// use glam::DVec3;
+    ///
+    /// let line = Nurbs::line(DVec3::ZERO, DVec3::X * 10.0)?;
+    /// let closest = line.closest(DVec3::new(4.0, 3.0, 0.0));
+    /// assert!((closest.distance - 3.0).abs() < 1e-9);
+    /// assert!(closest.point.distance(DVec3::X * 4.0) < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn closest(&self, target: DVec3) -> Closest {
         let samples = self.even_parameters();
         let points: Vec<DVec3> = samples.iter().map(|&u| self.point(u)).collect();

@@ -39,6 +39,19 @@ impl Nurbs {
     /// the first with no kink. An open curve begins and ends in the first and the last point. Between points the
     /// curve is free to be smooth: give points as densely as the shape must be kept.
     ///
+    /// ```
+    /// use bead_part::curve::Nurbs;
+    /// use glam::{DVec2, DVec3};
+    /// use std::f64::consts::FRAC_PI_2;
+    ///
+    /// // A quarter of a circle.
+    /// let angle = |k: i32| FRAC_PI_2 * f64::from(k) / 100.0;
+    /// let points: Vec<DVec3> = (0..=100).map(|k| (DVec2::from_angle(angle(k)) * 10.0).extend(0.0)).collect();
+    /// let fit = Nurbs::fitted(&points, false, 0.01)?;
+    /// assert!(fit.error <= 0.01 && fit.curve.control_points().len() < 20);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CurveError::Tolerance`] for an `error` not above 0, and those of [`Nurbs::interpolated`].
     pub fn fitted(points: &[DVec3], closed: bool, error: f64) -> Result<Fit, CurveError> {

@@ -128,6 +128,17 @@ impl ArcLength<'_> {
     }
 
     /// The point at `length` (mm) from the start.
+    ///
+    /// ```
+    /// use bead_part::curve::Nurbs;
+    /// use glam::DVec3;
+    ///
+    /// let line = Nurbs::polyline(vec![DVec3::ZERO, DVec3::X * 30.0, DVec3::new(30.0, 10.0, 0.0)])?;
+    /// let lengths = line.arc_length();
+    /// assert!((lengths.total() - 40.0).abs() < 1e-9);
+    /// assert!(lengths.point(35.0).distance(DVec3::new(30.0, 5.0, 0.0)) < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn point(&self, length: f64) -> DVec3 {
         self.curve.point(self.parameter(length))
     }

@@ -52,6 +52,17 @@ impl Nurbs {
 
     /// The circle about `centre` with half axes `u` and `v`, mm.
     ///
+    /// ```
+    /// use bead_part::curve::Nurbs;
+    /// use glam::DVec3;
+    /// use std::f64::consts::TAU;
+    ///
+    /// let circle = Nurbs::circle(DVec3::ZERO, DVec3::X * 10.0, DVec3::Y * 10.0)?;
+    /// assert!(circle.is_closed());
+    /// assert!((circle.length() - TAU * 10.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CurveError::NotFinite`].
     pub fn circle(centre: DVec3, u: DVec3, v: DVec3) -> Result<Self, CurveError> {

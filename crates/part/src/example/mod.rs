@@ -127,6 +127,16 @@ impl Example {
     }
 
     /// The part as a mesh, mm.
+    ///
+    /// ```
+    /// use bead_part::example;
+    ///
+    /// // Two arms of 100 × 36 mm that share a square, 20 mm high.
+    /// let cross = example::find("cross").ok_or("no such example")?.mesh();
+    /// let area = 2.0 * 100.0 * 36.0 - 36.0 * 36.0;
+    /// assert!((cross.volume() - area * 20.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn mesh(&self) -> Mesh {
         let Solid { vertices, triangles } = (self.build)();
         Mesh::from_triangles(vertices, triangles).0

@@ -10,6 +10,17 @@ use planar::{Polygon, Ring};
 use std::collections::BTreeMap;
 
 /// The part of a mesh above the height `z` (mm), set onto z = 0; none where nothing lies above.
+///
+/// ```
+/// use bead_part::{example, model::cut};
+///
+/// // A cross 20 mm high, of two arms of 100 × 36 mm.
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let (rest, _) = cut::above(&cross, 5.0).ok_or("nothing is left")?;
+/// let area = 2.0 * 100.0 * 36.0 - 36.0 * 36.0;
+/// assert!((rest.volume() - area * 15.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn above(mesh: &Mesh, z: f64) -> Option<(Mesh, RepairReport)> {
     let mut cut = Cut { mesh, z, vertices: mesh.vertices.clone(), crossings: BTreeMap::new(), rim: BTreeMap::new() };
     let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(mesh.triangles.len());

@@ -288,6 +288,18 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
 
 impl Mesh {
     /// A mesh from vertices and triangles, repaired like an imported one.
+    ///
+    /// ```
+    /// use bead_part::model::Mesh;
+    /// use glam::DVec3;
+    ///
+    /// // A tetrahedron whose first triangle is wound the wrong way.
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let triangles = vec![[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    /// let (mesh, report) = Mesh::from_triangles(corners, triangles);
+    /// assert_eq!((report.flipped, report.open_edges), (1, 0));
+    /// assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-12);
+    /// ```
     pub fn from_triangles(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Self, RepairReport) {
         repair::mend(vertices, triangles)
     }

@@ -24,6 +24,20 @@ pub enum Model {
 }
 
 /// How a model is placed. The default leaves it as it is, and guesses the unit.
+///
+/// ```
+/// use bead_part::model::{Model, Placement};
+/// use bead_part::{example, task::Task};
+/// use glam::DVec3;
+///
+/// // A wall of 120 × 4.5 × 72 mm, laid on its side.
+/// let bytes = example::find("wall").ok_or("no such example")?.stl();
+/// let lying = Placement { turn: DVec3::new(90.0, 0.0, 0.0), ..Placement::default() };
+/// let (low, high) = Model::read(&bytes, &Task::new())?.place(&lying, None, 4.0)?.bounds();
+/// assert_eq!(low.z, 0.0);
+/// assert!((high - low).distance(DVec3::new(120.0, 72.0, 4.5)) < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
@@ -123,6 +137,19 @@ pub enum PartError {
 
 impl Model {
     /// Reads a solid, curves or outlines. The content decides, not the file's name.
+    ///
+    /// ```
+    /// use bead_part::model::{Model, Placement};
+    /// use bead_part::{example, task::Task};
+    /// use glam::DVec3;
+    ///
+    /// // A wall of 120 × 4.5 × 72 mm.
+    /// let bytes = example::find("wall").ok_or("no such example")?.stl();
+    /// let part = Model::read(&bytes, &Task::new())?.place(&Placement::default(), None, 4.0)?;
+    /// let (low, high) = part.bounds();
+    /// assert_eq!(high - low, DVec3::new(120.0, 4.5, 72.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`PartError`].
@@ -226,6 +253,17 @@ impl Placement {
 
     /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is
     /// the part as placed now. Without such a face the turn stays as it is.
+    ///
+    /// ```
+    /// use bead_part::{example, model::Placement};
+    ///
+    /// // The largest faces of a wall are its sides, and it is 4.5 mm thick.
+    /// let mut wall = example::find("wall").ok_or("no such example")?.mesh();
+    /// let turn = Placement::default().laid_flat(&wall);
+    /// wall.place(1.0, turn);
+    /// assert!((wall.size().z - 4.5).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn laid_flat(&self, mesh: &Mesh) -> DVec3 {
         stand::faces(mesh).next().map_or(self.turn, |face| self.turned_onto(face))
     }

@@ -58,6 +58,16 @@ impl RepairReport {
     }
 
     /// The faults as sentences; empty when the mesh is clean.
+    ///
+    /// ```
+    /// use bead_part::model::Mesh;
+    /// use glam::DVec3;
+    ///
+    /// // A tetrahedron without its slanted face.
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let (_, report) = Mesh::from_triangles(corners, vec![[0, 2, 1], [0, 1, 3], [2, 0, 3]]);
+    /// assert_eq!(report.sentences(), ["3 open edges: the surface has holes."]);
+    /// ```
     pub fn sentences(&self) -> Vec<String> {
         let plural = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
         let mut lines: Vec<String> =

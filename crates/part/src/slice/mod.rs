@@ -110,6 +110,19 @@ pub enum LayerFit {
 }
 
 /// Layers of about one height (mm) for a mesh that stands on z = 0, fitted to its height.
+///
+/// ```
+/// use bead_part::example;
+/// use bead_part::slice::{LayerFit, fitted_slabs};
+///
+/// // 72 mm in layers of about 5 mm: too low by 2 mm, too high by 3 mm, or layers a little thicker.
+/// let wall = example::find("wall").ok_or("no such example")?.mesh();
+/// let tops = [LayerFit::Fixed, LayerFit::Last, LayerFit::Even]
+///     .map(|fit| fitted_slabs(&wall, 5.0, fit).last().map_or(0.0, |slab| slab.z));
+/// assert_eq!(tops[..2], [70.0, 75.0]);
+/// assert!((tops[2] - 72.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn fitted_slabs(mesh: &Mesh, height: f64, fit: LayerFit) -> Vec<Slab> {
     let top = mesh.bounds().1.z.max(0.0);
     let slabs = |count: usize, height: f64| (0..count).map(|k| Slab { z: (k + 1) as f64 * height, height }).collect();
@@ -138,6 +151,19 @@ pub fn even_slabs(mesh: &Mesh, height: f64) -> Vec<Slab> {
 }
 
 /// A mesh prepared for cutting; layers can be cut in any order.
+///
+/// ```
+/// use bead_part::slice::{SliceOptions, Slicer};
+/// use bead_part::{example, task::Task};
+///
+/// // A wall of 120 × 4.5 × 72 mm in layers of 2 mm.
+/// let (wall, task) = (example::find("wall").ok_or("no such example")?.mesh(), Task::new());
+/// let options = SliceOptions { layer_height: 2.0, close_gap: 0.1, simplify: 0.01 };
+/// let slices = Slicer::new(&wall, options, &task)?.all(&task)?;
+/// assert_eq!(slices.len(), 36);
+/// assert!(slices.iter().all(|slice| (slice.area() - 120.0 * 4.5).abs() < 1e-3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Slicer<'a> {
     mesh: &'a Mesh,
     options: SliceOptions,

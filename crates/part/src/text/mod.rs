@@ -15,6 +15,14 @@ pub enum TextError {
 /// The text of a file, without byte order mark and with `\n` at the end of each line. UTF-16 is understood if it begins
 /// with its mark; bytes that are not text become `\u{fffd}`.
 ///
+/// ```
+/// use bead_part::text;
+///
+/// // A byte order mark, a line that ends as on Windows, and one that ends as on an old Mac.
+/// assert_eq!(text::of(b"\xef\xbb\xbfone\r\ntwo\r")?, "one\ntwo\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`TextError`] for UTF-32, and for UTF-16 without a mark.
 pub fn of(bytes: &[u8]) -> Result<String, TextError> {

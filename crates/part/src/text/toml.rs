@@ -6,6 +6,13 @@ pub fn line_of(text: &str, byte: usize) -> usize {
 }
 
 /// The line that contains a key such as `bead.width`.
+///
+/// ```
+/// use bead_part::text::toml::line_of_key;
+///
+/// let text = "name = \"ours\"\n[bead]\nwidth = 6.0\nheight = 2.0\n";
+/// assert_eq!(line_of_key(text, "bead.height"), 4);
+/// ```
 pub fn line_of_key(text: &str, key: &str) -> usize {
     let Ok(root) = toml::de::DeTable::parse(text) else { return 1 };
     let (mut table, mut at) = (Some(root.get_ref()), 0);
@@ -18,6 +25,13 @@ pub fn line_of_key(text: &str, key: &str) -> usize {
 }
 
 /// Turns the parser's message into a sentence and finds the nearest of the words it expected.
+///
+/// ```
+/// use bead_part::text::toml::explain;
+///
+/// let message = "unknown field `widht`, expected `width` or `height`";
+/// assert_eq!(explain(message), "unknown key \"widht\". Did you mean \"width\"?");
+/// ```
 pub fn explain(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {

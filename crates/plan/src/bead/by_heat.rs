@@ -23,6 +23,15 @@ pub struct BeadByHeat {
 
 impl BeadByHeat {
     /// Width on metal at `temperature` (°C), as a multiple of the `nominal` one (mm).
+    ///
+    /// ```
+    /// use bead_plan::bead::BeadByHeat;
+    ///
+    /// // 0.01 mm/K over 100 K: 1 mm more than the 5 mm at the law's own temperature.
+    /// let law = BeadByHeat { temperature: 150.0, width: 0.01, rise: -0.002 };
+    /// assert!((law.widening(5.0, 250.0) - 1.2).abs() < 1e-12);
+    /// assert_eq!(law.widening(5.0, 150.0), 1.0);
+    /// ```
     pub fn widening(&self, nominal: f64, temperature: f64) -> f64 {
         self.change(self.width / nominal, temperature)
     }

@@ -39,6 +39,15 @@ impl Law {
 
     /// The pace of a bead of `width` (mm): the speed at which the nominal wire feed lays it, relative to the nominal
     /// speed.
+    ///
+    /// ```
+    /// use bead_plan::bead::{Bead, Law};
+    ///
+    /// // A bead twice as wide holds twice the metal, or four times as much where it is twice as high too.
+    /// let nominal = Bead::parabola(6.0, 2.0);
+    /// assert!((Law::ConstantHeight.pace(&nominal, 12.0) - 0.5).abs() < 1e-12);
+    /// assert!((Law::ConstantRatio.pace(&nominal, 12.0) - 0.25).abs() < 1e-12);
+    /// ```
     pub fn pace(&self, nominal: &Bead, width: f64) -> f64 {
         nominal.area() / self.bead(nominal, width).area()
     }

@@ -44,11 +44,28 @@ impl Bead {
     }
 
     /// Height of a closed layer of such beads `stepover` (mm) apart, mm: the area is spread over the stepover.
+    ///
+    /// ```
+    /// use bead_plan::bead::Bead;
+    ///
+    /// let bead = Bead::parabola(6.0, 2.0);
+    /// assert!((bead.area() - 2.0 / 3.0 * 6.0 * 2.0).abs() < 1e-12);
+    /// // 8 mm² over 4 mm.
+    /// assert!((bead.rise(4.0) - 2.0).abs() < 1e-12);
+    /// ```
     pub fn rise(&self, stepover: f64) -> f64 {
         self.area() / stepover
     }
 
     /// The bead of this width and section whose layer at `stepover` rises by `layer_height` (all mm).
+    ///
+    /// ```
+    /// use bead_plan::bead::Bead;
+    ///
+    /// let bead = Bead::parabola(6.0, 2.0).for_rise(4.0, 2.5);
+    /// assert_eq!(bead.width, 6.0);
+    /// assert!((bead.area() - 4.0 * 2.5).abs() < 1e-12);
+    /// ```
     #[must_use]
     pub fn for_rise(self, stepover: f64, layer_height: f64) -> Self {
         let area = stepover * layer_height;
@@ -97,6 +114,17 @@ impl MassBalance {
 
     /// Compares wire feed × wire area × efficiency with deposition speed × bead area. The wire feed is in m/min, the
     /// diameter in mm, the deposition speed in mm/s.
+    ///
+    /// ```
+    /// use bead_plan::bead::{Bead, MassBalance};
+    ///
+    /// // 6 m/min of 1.2 mm wire are 113 mm³/s, far more than 8 mm² at 8 mm/s take.
+    /// let bead = Bead::parabola(6.0, 2.0);
+    /// let balance = MassBalance::new(bead, 6.0, 1.2, 1.0, 8.0);
+    /// assert!(balance.warning().is_some());
+    /// let balance = MassBalance::new(bead, 6.0, 1.2, 1.0, balance.fitting_speed);
+    /// assert!((balance.ratio() - 1.0).abs() < 1e-12 && balance.warning().is_none());
+    /// ```
     pub fn new(bead: Bead, wire_feed: f64, wire_diameter: f64, efficiency: f64, deposition_speed: f64) -> Self {
         let wire = wire_feed * 1000.0 / 60.0 * wire_area(wire_diameter) * efficiency;
         Self { wire, bead: deposition_speed * bead.area(), fitting_speed: wire / bead.area() }

@@ -22,6 +22,17 @@ pub enum Section {
 
 impl Section {
     /// Area of a bead of this width and height, mm².
+    ///
+    /// ```
+    /// use bead_plan::bead::Section;
+    /// use std::f64::consts::PI;
+    ///
+    /// // A stadium is a rectangle between two half discs.
+    /// let (width, height) = (0.5, 0.2);
+    /// let area = (width - height) * height + PI * height * height / 4.0;
+    /// assert!((Section::Stadium.area(width, height) - area).abs() < 1e-12);
+    /// assert!((Section::Stadium.height_of(width, area) - height).abs() < 1e-12);
+    /// ```
     pub fn area(self, width: f64, height: f64) -> f64 {
         match self {
             Self::Parabola => 2.0 / 3.0 * width * height,

@@ -132,6 +132,15 @@ impl WallBead {
     /// The wall of mean `thickness` (mm) of beads of `area` (mm²): the metal of a bead fills the rise of a layer, so its
     /// layers are `area`/`thickness` high.
     ///
+    /// ```
+    /// use bead_plan::bead::wall::WallBead;
+    ///
+    /// let wall = WallBead::for_wall(6.0, 12.0)?;
+    /// assert!((wall.thickness() - 6.0).abs() < 1e-9 && (wall.rise() - 2.0).abs() < 1e-9);
+    /// assert_eq!(wall.total(3), wall.height() + 2.0 * wall.rise());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`WallError::Size`] for impossible values, [`WallError::Thickness`] where no accepted λ makes such a wall.
     pub fn for_wall(thickness: f64, area: f64) -> Result<Self, WallError> {

@@ -164,6 +164,20 @@ impl Judge {
     }
 
     /// Judges the next layer.
+    ///
+    /// ```
+    /// use bead_plan::deposit::{DepositSettings, Judge, Nominal};
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use bead_plan::{bead::Bead, layer::Layer};
+    /// use glam::DVec3;
+    ///
+    /// let bead = Bead::parabola(6.0, 2.0);
+    /// let settings = DepositSettings::new(Nominal { bead, pace: 8.0, rise: bead.rise(4.0) }, 0.0);
+    /// let (points, width, pace) = (vec![DVec3::ZERO, DVec3::X * 50.0], Along::Same(6.0), Along::Same(8.0));
+    /// let pass = Pass { kind: PassKind::Infill, closed: false, points, width, pace, wait: 0.0 };
+    /// let judgement = Judge::new(settings).layer(&Layer { height: 2.0, passes: vec![pass], ..Layer::default() });
+    /// assert!((judgement.figures.deposited_volume - 50.0 * bead.area()).abs() < 1e-9);
+    /// ```
     pub fn layer(&mut self, layer: &Layer) -> Judgement {
         if let Some(stack) = &mut self.stack {
             stack.add(layer);

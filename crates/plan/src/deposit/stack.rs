@@ -94,6 +94,20 @@ impl Stack {
     }
 
     /// Height of the metal at the grid point nearest to a place, mm; `None` beyond the grid.
+    ///
+    /// ```
+    /// use bead_plan::bead::Bead;
+    /// use bead_plan::deposit::{DepositSettings, Nominal, Stack};
+    /// use bead_plan::pass::{Along, Pass, PassKind};
+    /// use glam::{DVec2, DVec3};
+    ///
+    /// let nominal = Nominal { bead: Bead::parabola(6.0, 2.0), pace: 8.0, rise: 2.0 };
+    /// let (points, width, pace) = (vec![DVec3::ZERO, DVec3::X * 80.0], Along::Same(6.0), Along::Same(8.0));
+    /// let bounds = planar::Bounds { min: DVec2::ZERO, max: DVec2::X * 80.0 };
+    /// let mut stack = Stack::new(&bounds, DepositSettings::new(nominal, 0.0));
+    /// stack.weld(&[Pass { kind: PassKind::Wall, closed: false, points, width, pace, wait: 0.0 }]);
+    /// assert!(stack.height_at(DVec2::X * 40.0).is_some_and(|height| (height - 2.0).abs() < 0.1));
+    /// ```
     pub fn height_at(&self, place: DVec2) -> Option<f64> {
         self.grid.nearest(place).map(|at| self.top[at].into())
     }

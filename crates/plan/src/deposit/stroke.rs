@@ -56,6 +56,17 @@ pub fn strokes(pass: &Pass, nominal: &Nominal) -> impl Iterator<Item = Stroke> {
 
 impl Stroke {
     /// Height it adds at a point, mm.
+    ///
+    /// ```
+    /// use bead_plan::{bead::Bead, deposit::Stroke};
+    /// use glam::DVec2;
+    ///
+    /// // Far from its ends, a piece is the parabola: the crown, and three quarters of it half-way to the edge.
+    /// let piece = Stroke { from: DVec2::ZERO, to: DVec2::X * 60.0, bead: Bead::parabola(6.0, 2.0) };
+    /// assert!((piece.height_at(DVec2::new(30.0, 0.0)) - 2.0).abs() < 1e-6);
+    /// assert!((piece.height_at(DVec2::new(30.0, 1.5)) - 1.5).abs() < 1e-6);
+    /// assert_eq!(piece.height_at(DVec2::new(30.0, 4.0)), 0.0);
+    /// ```
     pub fn height_at(&self, p: DVec2) -> f64 {
         self.frame().map_or(0.0, |frame| frame.height_at(p))
     }

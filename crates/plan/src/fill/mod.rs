@@ -63,6 +63,13 @@ pub const STRATEGIES: [&dyn Strategy; 12] = [
 ];
 
 /// The strategy with this name.
+///
+/// ```
+/// use bead_plan::fill;
+///
+/// assert_eq!(fill::strategy("zigzag").map(|strategy| strategy.name()), Some("zigzag"));
+/// assert!(fill::strategy("zigzg").is_none());
+/// ```
 pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
     STRATEGIES.into_iter().find(|s| s.name() == name)
 }

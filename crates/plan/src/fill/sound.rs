@@ -38,6 +38,19 @@ pub enum Fault {
 }
 
 /// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm.
+///
+/// ```
+/// use bead_plan::fill::Path;
+/// use bead_plan::fill::sound::{Fault, fault};
+/// use planar::{DVec2, Polygon, Ring};
+///
+/// let island = Polygon::simple(Ring::new([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from).to_vec()));
+/// let contour = |corners: [(f64, f64); 4]| Path::contour(Ring::new(corners.map(DVec2::from).to_vec()), 2.0);
+/// let square = contour([(1.0, 1.0), (9.0, 1.0), (9.0, 9.0), (1.0, 9.0)]);
+/// assert_eq!(fault(&[&square], &island, 0.0), None);
+/// let hourglass = contour([(1.0, 1.0), (9.0, 9.0), (9.0, 1.0), (1.0, 9.0)]);
+/// assert_eq!(fault(&[&hourglass], &island, 0.0), Some(Fault::Crossing { place: DVec2::splat(5.0) }));
+/// ```
 pub fn fault(paths: &[&Path], island: &Polygon, allowance: f64) -> Option<Fault> {
     let lines: Vec<Vec<DVec2>> = paths.iter().map(|path| path.path()).collect();
     if let Some(&place) = lines.iter().flatten().find(|p| !p.is_finite()) {

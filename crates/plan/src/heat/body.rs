@@ -257,6 +257,20 @@ impl Body {
     }
 
     /// Heat that the metal holds above the temperature of the surroundings, J.
+    ///
+    /// ```
+    /// use bead_plan::heat::{Air, Body, Grid, Stuff};
+    /// use glam::DVec3;
+    ///
+    /// // A cube of steel whose surroundings take nothing keeps what its middle is given.
+    /// let steel = Stuff { capacity: 0.0045, conductivity: 0.044 };
+    /// let grid = Grid::even(DVec3::ZERO, DVec3::splat(2.0), [5, 5, 5]);
+    /// let mut cube = Body::new(grid, vec![steel; 5], Air::none(20.0));
+    /// cube.fill(5, 20.0);
+    /// cube.heat(62, 100.0);
+    /// cube.step(3.0);
+    /// assert!((cube.energy() - 100.0).abs() < 1e-6);
+    /// ```
     pub fn energy(&self) -> f64 {
         self.theta.iter().zip(&self.capacity).map(|(theta, capacity)| theta * capacity).sum()
     }

@@ -6,6 +6,18 @@ use super::tour::{Ends, Gate, Stop, Visit};
 pub const MAX_STOPS: usize = 9;
 
 /// The optimum, for at most [`MAX_STOPS`] stops; starts of closed passes lie on their gates.
+///
+/// ```
+/// use bead_plan::order::exact;
+/// use bead_plan::order::tour::{Ends, Stop, length};
+/// use glam::DVec2;
+///
+/// let stops = [30.0, 10.0, 20.0].map(|x| Stop::anywhere([DVec2::X * x]));
+/// let ends = Ends::From(DVec2::ZERO);
+/// let tour = exact::tour(&stops, ends);
+/// assert_eq!(tour.iter().map(|visit| visit.stop).collect::<Vec<_>>(), [1, 2, 0]);
+/// assert_eq!(length(&tour, ends), 30.0);
+/// ```
 pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     let gates: Vec<Vec<Gate>> = stops.iter().map(|s| s.gates().collect()).collect();
     let found = match ends {

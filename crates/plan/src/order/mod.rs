@@ -124,6 +124,19 @@ impl OrderSettings {
 }
 
 /// Puts the passes of a layer in order. `torch` is where the torch is before and after (`None`: the origin).
+///
+/// ```
+/// use bead_plan::fill::{Fill, Path};
+/// use bead_plan::order::{Method, OrderSettings, order};
+/// use planar::{DVec2, Ring};
+///
+/// // Two triangles: the torch, at the origin, comes to the second one first.
+/// let ring = |x: f64| Ring::new([(x, 0.0), (x + 5.0, 0.0), (x, 5.0)].map(DVec2::from).to_vec());
+/// let stage = vec![Path::contour(ring(30.0), 4.0), Path::contour(ring(10.0), 4.0)];
+/// let settings = OrderSettings { method: Method::Exact, ..OrderSettings::default() };
+/// let laid = order(vec![Fill { stages: vec![stage], fixed_order: false }], &settings, &mut None);
+/// assert!(laid[0].points.contains(&DVec2::new(10.0, 0.0)));
+/// ```
 pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Option<DVec2>) -> Vec<Path> {
     let mut ordered = Vec::with_capacity(islands.iter().flat_map(|f| &f.stages).map(Vec::len).sum());
     direction::settle_open(&mut islands, settings);

@@ -30,6 +30,17 @@ impl Spot {
     }
 
     /// The dot of a process that lays `rate` mm³ of metal per second.
+    ///
+    /// ```
+    /// use bead_plan::process::Spot;
+    /// use std::f64::consts::PI;
+    ///
+    /// // 60 mm³ in a second: a dome of 2/3 π a² h.
+    /// let dot = Spot { time: 1.0, height: 3.0 }.dot(60.0);
+    /// let radius = dot.diameter_of(60.0).ok_or("not tried")? / 2.0;
+    /// assert!((2.0 / 3.0 * PI * radius * radius * 3.0 - 60.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn dot(&self, rate: f64) -> Dot {
         let metal = rate * self.time;
         Dot { time: self.time, metal, diameter: 2.0 * (1.5 * metal / (PI * self.height)).sqrt() }

@@ -19,6 +19,19 @@ struct Move {
 }
 
 /// The points of a pass, each with the pace (mm/s) of the move to it; the pace of the first point means nothing.
+///
+/// ```
+/// use bead_plan::pass::{Along, Pass, PassKind};
+/// use bead_plan::{process::StartStop, weld};
+/// use glam::DVec3;
+///
+/// // A closed pass continues over its own start.
+/// let points = vec![DVec3::ZERO, DVec3::X * 10.0, DVec3::new(10.0, 10.0, 0.0), DVec3::Y * 10.0];
+/// let (width, pace) = (Along::Same(5.0), Along::Same(8.0));
+/// let pass = Pass { kind: PassKind::Contour, closed: true, points, width, pace, wait: 0.0 };
+/// let path = weld::path(&pass, &StartStop { end_overlap: 4.0, ..StartStop::default() });
+/// assert!(path.last().is_some_and(|(end, _)| end.distance(DVec3::X * 4.0) < 1e-9));
+/// ```
 pub fn path(pass: &Pass, ends: &StartStop) -> Vec<(DVec3, f64)> {
     moves(pass, ends).into_iter().map(|m| (m.to, m.pace)).collect()
 }

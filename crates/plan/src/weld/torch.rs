@@ -183,6 +183,18 @@ impl Torch {
     /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
     /// place to rise from. Where a layer does not rise above the last one, another part begins, and the travel leads over all
     /// that is built.
+    ///
+    /// ```
+    /// use bead_plan::{pass::PassKind, weld::Torch};
+    /// use glam::DVec3;
+    ///
+    /// // Up by the clearance, 4 mm across, and down again.
+    /// let mut torch = Torch::new(5.0);
+    /// torch.approach(DVec3::ZERO);
+    /// torch.weld(PassKind::Infill, &[(DVec3::ZERO, 8.0), (DVec3::X * 40.0, 8.0)]);
+    /// let way = torch.approach(DVec3::new(40.0, 4.0, 0.0));
+    /// assert_eq!((way.legs.len(), way.length), (3, 5.0 + 4.0 + 5.0));
+    /// ```
     pub fn approach(&mut self, start: DVec3) -> Way {
         if self.lit.before && self.at.is_some() {
             return Way::default();
@@ -232,6 +244,16 @@ impl Torch {
 
     /// Welds a pass from where the torch is: points and paces, as [`path`](super::path) gives them. A dot has no crater
     /// that would have to be filled.
+    ///
+    /// ```
+    /// use bead_plan::{pass::PassKind, weld::Torch};
+    /// use glam::DVec3;
+    ///
+    /// // 40 mm at 8 mm/s, then 40 mm at 4 mm/s.
+    /// let moves = [(DVec3::ZERO, 8.0), (DVec3::X * 40.0, 8.0), (DVec3::X * 80.0, 4.0)];
+    /// let welded = Torch::new(5.0).weld(PassKind::Infill, &moves);
+    /// assert_eq!((welded.length, welded.moving), (80.0, 5.0 + 10.0));
+    /// ```
     pub fn weld(&mut self, kind: PassKind, moves: &[(DVec3, f64)]) -> Welded {
         let (mut length, mut steady, mut metal) = (0.0, 0.0, 0.0);
         for ends in moves.windows(2) {

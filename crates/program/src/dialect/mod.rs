@@ -211,6 +211,13 @@ pub fn names() -> Vec<&'static str> {
 }
 
 /// The dialect with this name.
+///
+/// ```
+/// use bead_program::dialect;
+///
+/// assert_eq!(dialect::find("rapid").map(|dialect| dialect.language), Some("RAPID"));
+/// assert!(dialect::names().iter().all(|name| dialect::find(name).is_some()));
+/// ```
 pub fn find(name: &str) -> Option<&'static Dialect> {
     ALL.iter().find(|dialect| dialect.name == name).copied()
 }

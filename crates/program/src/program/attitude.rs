@@ -27,6 +27,14 @@ impl Attitude {
     }
 
     /// The attitude on the way to another, at the fraction `part` of the way.
+    ///
+    /// ```
+    /// use bead_program::program::Attitude;
+    /// use glam::DVec2;
+    ///
+    /// let at = |x: f64, table: f64| Attitude { lean: DVec2::new(x, 0.0), table: Some(table) };
+    /// assert_eq!(at(0.0, 10.0).towards(&at(0.5, 50.0), 0.5), at(0.25, 30.0));
+    /// ```
     pub fn towards(&self, to: &Self, part: f64) -> Self {
         let table = to.table.map(|angle| self.table.map_or(angle, |from| from + (angle - from) * part));
         Self { lean: self.lean.lerp(to.lean, part), table }

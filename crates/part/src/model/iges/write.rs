@@ -33,6 +33,17 @@ const PARAMETER_WIDTH: usize = 64;
 const COUNT: usize = 8;
 
 /// An IGES file of named curves, mm. Characters beyond ASCII become question marks.
+///
+/// ```
+/// use bead_part::curve::Nurbs;
+/// use bead_part::model::iges::{WriteOptions, read, write};
+/// use glam::DVec3;
+///
+/// let line = Nurbs::line(DVec3::ZERO, DVec3::new(120.0, 0.0, 0.0))?;
+/// let text = write(&[("wall", &line)], &WriteOptions::default());
+/// assert_eq!(read(text.as_bytes())?.curves[0].parts, [line]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write(curves: &[(&str, &Nurbs)], options: &WriteOptions) -> String {
     let mut file = String::new();
     let mut directory = String::new();

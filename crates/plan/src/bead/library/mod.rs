@@ -149,6 +149,14 @@ impl BeadLibrary {
 
     /// Reads a library.
     ///
+    /// ```
+    /// use bead_plan::bead::library::{BeadLibrary, Columns, Measured, demonstration_csv};
+    ///
+    /// let library = BeadLibrary::fit(&Measured::read(&demonstration_csv(), &Columns::default())?)?;
+    /// assert_eq!(BeadLibrary::parse(&library.to_toml())?, library);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`LibraryError::File`] where the text is not a library or its values are inconsistent.
     pub fn parse(text: &str) -> Result<Self, LibraryError> {
@@ -188,6 +196,17 @@ impl BeadLibrary {
     }
 
     /// The bead at `values`, one per input in the library's order and in its units.
+    ///
+    /// ```
+    /// use bead_plan::bead::library::{BeadLibrary, Columns, Measured, demonstration_csv};
+    ///
+    /// // Invented beads, measured from 60 to 250 A and from 4 to 12 mm/s.
+    /// let library = BeadLibrary::fit(&Measured::read(&demonstration_csv(), &Columns::default())?)?;
+    /// let bead = library.predict(&[125.0, 8.0])?;
+    /// assert!((2.5..3.0).contains(&bead.ratio()));
+    /// assert!(library.predict(&[300.0, 8.0]).is_err(), "no bead was measured there");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// When the values lie outside the measured range, or the fit predicts an impossible bead.

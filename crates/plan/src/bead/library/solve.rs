@@ -95,6 +95,18 @@ pub struct Recipe {
 impl BeadLibrary {
     /// Parameters inside the measured range and the limits that lay the wanted bead.
     ///
+    /// ```
+    /// use bead_plan::bead::library::{BeadLibrary, Columns, Layering, Measured, Wish, demonstration_csv};
+    ///
+    /// let library = BeadLibrary::fit(&Measured::read(&demonstration_csv(), &Columns::default())?)?;
+    /// let bead = library.predict(&[125.0, 8.0])?.bead();
+    /// let layering = Layering::Overlapping { stepover: 0.7 * bead.width };
+    /// let wish = Wish { layering, ..Wish::new(bead.width, bead.rise(0.7 * bead.width)) };
+    /// let recipe = library.solve(&wish)?;
+    /// assert!((recipe.prediction.width.value / bead.width - 1.0).abs() < 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`LibraryError::OutOfReach`] names the blocking bounds and the nearest bead; [`LibraryError::Outside`] a limit
     /// that shares nothing with the measured range.

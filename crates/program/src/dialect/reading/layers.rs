@@ -52,6 +52,15 @@ pub struct ReadTotals {
 impl ReadProgram {
     /// The passes by layer, lowest layer first. A pass belongs to the height of its first point, even if it rises (vase
     /// mode); a program that returns to a height adds to the layer already there.
+    ///
+    /// ```
+    /// use bead_program::dialect::reading::{Options, read};
+    ///
+    /// let text = "G21 G90\nG0 X0 Y0 Z2\nM3 S1\nG1 X30 F600\nM5\nG0 Z4\nG0 X0\nM3 S1\nG1 X30\nM5\n";
+    /// let layers = read(text, &mut |_| None, &Options::default())?.layers();
+    /// assert_eq!(layers.iter().map(|layer| (layer.z, layer.height)).collect::<Vec<_>>(), [(2.0, 2.0), (4.0, 2.0)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn layers(&self) -> Vec<ReadLayer> {
         let passes = self.passes();
         let mut order: Vec<(f64, usize)> = passes.iter().map(height).zip(0..).collect();

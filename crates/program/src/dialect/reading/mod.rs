@@ -94,6 +94,16 @@ pub struct ArcCodes {
 impl ReadProgram {
     /// Assumes a speed, mm/s, for every move without metal for which the program gives none: rapids (G0), and joint moves
     /// along the chord of their path. Returns how many there are, and their length, mm.
+    ///
+    /// ```
+    /// use bead_program::dialect::reading::{Options, read};
+    ///
+    /// // Up by 2 mm and back by 30 mm, after a first rapid that may come from anywhere.
+    /// let text = "G21 G90\nG0 X0 Y0 Z2\nM3 S1\nG1 X30 F600\nM5\nG0 Z4\nG0 X0\nM3 S1\nG1 X30\nM5\n";
+    /// let mut program = read(text, &mut |_| None, &Options::default())?;
+    /// assert_eq!(program.take_rapids_at(100.0), (2, 2.0 + 30.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn take_rapids_at(&mut self, speed: f64) -> (usize, f64) {
         let (mut count, mut length) = (0, 0.0);
         for i in 1..self.moves.len() {
@@ -258,6 +268,16 @@ pub type FindModule<'a> = dyn FnMut(&str) -> Option<String> + 'a;
 
 /// Reads a program, whatever its language; `module` finds the text of the modules that it calls.
 ///
+/// ```
+/// use bead_program::dialect::reading::{Options, read};
+///
+/// // 60 mm at 600 mm/min, which are 10 mm/s.
+/// let text = "G21 G90\nG0 X0 Y0 Z2\nM3 S1\nG1 X60 F600\nM5\n";
+/// let totals = read(text, &mut |_| None, &Options::default())?.totals();
+/// assert_eq!((totals.arc_starts, totals.deposited_length_mm, totals.time_s), (1, 60.0, 6.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ReadError`] when the dialect is unknown, a number is malformed, a called module is missing or no move lays
 /// metal.
@@ -266,6 +286,16 @@ pub fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Resul
 }
 
 /// The dialect of a program, if it is one of those that can be read: the first line that is typical of one decides.
+///
+/// ```
+/// use bead_program::dialect::reading::recognise;
+///
+/// let name = |text: &str| recognise(text).map(|dialect| dialect.name);
+/// assert_eq!(name("; a part\nG1 X10 F600\n"), Some("gcode"));
+/// assert_eq!(name("DEF PART( )\nEND\n"), Some("krl"));
+/// assert_eq!(name("MODULE Part\nENDMODULE\n"), Some("rapid"));
+/// assert_eq!(name("Dear Sir,\n"), None);
+/// ```
 pub fn recognise(text: &str) -> Option<&'static Dialect> {
     let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
     lines.filter_map(|line| ALL.iter().find(|dialect| (dialect.typical)(line))).next().copied()
