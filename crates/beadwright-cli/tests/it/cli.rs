@@ -377,7 +377,7 @@ fn curves_are_inspected_and_welded_as_walls() {
     assert!(said.contains("6 centre-lines") && said.contains("strategy wall"), "{said}");
     assert!(files(&folder.path().join("out")).contains_key("tian.mod"));
     assert!(refused(folder.path(), &["compare", "tian.igs"], 1).contains("here a solid is needed"));
-    assert!(refused(folder.path(), &["example", "cross", "-o", "cross.igs"], 1).contains("no thin wall"));
+    assert!(refused(folder.path(), &["example", "cross", "-o", "cross.igs"], 1).contains("not a thin wall"));
 }
 
 #[test]
