@@ -10,7 +10,7 @@ impl Random {
     /// use bead_plan::random::Random;
     ///
     /// let (mut one, mut other) = (Random::new(7), Random::new(7));
-    /// assert!((0..100).all(|_| one.next() == other.next()));
+    /// assert!((0..100).all(|_| one.bits() == other.bits()));
     /// assert!((0..100).all(|_| one.below(6) < 6));
     /// ```
     pub fn new(seed: u64) -> Self {
@@ -18,7 +18,7 @@ impl Random {
     }
 
     /// A number of 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -28,12 +28,12 @@ impl Random {
 
     /// A number in 0..n.
     pub fn below(&mut self, n: usize) -> usize {
-        ((u128::from(self.next()) * n as u128) >> 64) as usize
+        ((u128::from(self.bits()) * n as u128) >> 64) as usize
     }
 
     /// A number in 0.0..1.0.
     pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// A number from the normal distribution of mean 0 and deviation 1 (Box and Muller 1958).

@@ -72,7 +72,7 @@ impl Errors {
         let mut random = Random::new(self.seed);
         let seed = [layer as u64, pass as u64]
             .into_iter()
-            .fold(random.next(), |seed, number| Random::new(seed ^ number.wrapping_mul(0x9E37_79B9_7F4A_7C15)).next());
+            .fold(random.bits(), |seed, number| Random::new(seed ^ number.wrapping_mul(0x9E37_79B9_7F4A_7C15)).bits());
         Random::new(seed)
     }
 }

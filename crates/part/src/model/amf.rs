@@ -25,7 +25,7 @@ fn read(text: impl BufRead, task: &Task) -> Result<Import, ImportError> {
     let mut elements = Elements::new(text, "AMF");
     let mut file = File::new();
     let (mut value, mut steps) = (String::new(), 0_u64);
-    while let Some(step) = elements.next()? {
+    while let Some(step) = elements.step()? {
         steps += 1;
         if steps.is_multiple_of(65_536) {
             task.check()?;

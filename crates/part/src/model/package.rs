@@ -75,7 +75,7 @@ impl<'a> Package<'a> {
         let mut found = None;
         if let Ok(entry) = self.archive.by_name("_rels/.rels") {
             let mut elements = Elements::new(BufReader::new(entry.take(1 << 20)), "3MF");
-            while let Some(step) = elements.next()? {
+            while let Some(step) = elements.step()? {
                 let Step::Begin(element) = step else { continue };
                 let is_model = element.attribute("Type").is_some_and(|kind| kind.ends_with("/3dmodel"));
                 if element.name() == "Relationship" && is_model {

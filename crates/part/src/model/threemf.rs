@@ -51,7 +51,7 @@ fn read_model(
     let mut others = Vec::new();
     let mut open: Option<(u32, Resource)> = None;
     let mut steps = 0_u64;
-    while let Some(step) = elements.next()? {
+    while let Some(step) = elements.step()? {
         steps += 1;
         if steps.is_multiple_of(65_536) {
             task.check()?;

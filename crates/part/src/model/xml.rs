@@ -35,7 +35,7 @@ impl<R: BufRead> Elements<R> {
     }
 
     /// The next step; `None` at the end of the file.
-    pub fn next(&mut self) -> Result<Option<Step>, ImportError> {
+    pub fn step(&mut self) -> Result<Option<Step>, ImportError> {
         loop {
             self.buffer.clear();
             let place = self.reader.buffer_position();

@@ -64,7 +64,7 @@ pub fn is_toolpath(bytes: &[u8]) -> bool {
         let mut package = Package::open(bytes)?;
         let main = package.main()?;
         let mut elements = package.elements(&main)?;
-        while let Some(step) = elements.next()? {
+        while let Some(step) = elements.step()? {
             if let Step::Begin(element) = step {
                 return Ok(package::required_extensions(&element));
             }
@@ -121,7 +121,7 @@ fn model(package: &mut Package<'_>, path: &str) -> Result<Resource, ImportError>
     let mut elements = package.elements(path)?;
     let (mut resources, mut wanted, mut unit): (Vec<Resource>, Option<u32>, f64) = (Vec::new(), None, 1.0);
     let mut style = String::new();
-    while let Some(step) = elements.next()? {
+    while let Some(step) = elements.step()? {
         let Step::Begin(element) = step else { continue };
         match (element.name(), resources.last_mut()) {
             ("model", _) => {

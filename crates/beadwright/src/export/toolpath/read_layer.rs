@@ -43,7 +43,7 @@ pub(super) fn read(
 ) -> Result<Layer, ImportError> {
     let mut reader = Reader { resource, top: slab.map(|slab| slab[1]), ..Reader::new(resource) };
     let mut elements = package.elements(path)?;
-    while let Some(step) = elements.next()? {
+    while let Some(step) = elements.step()? {
         let done = match step {
             Step::Begin(element) => reader.begin(&element),
             Step::End(name) if name == "segment" => reader.end(),
