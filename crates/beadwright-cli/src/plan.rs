@@ -373,7 +373,7 @@ impl<'a> Files<'a> {
         let Some(files) = self.files else { return Ok(None) };
         drop(self.folder);
         let mut folder = Folder::new(output)?;
-        folder.extend([files.refused(summary, repair)])?;
+        folder.extend([files.refused(summary, repair, remedy::words)])?;
         folder.commit()?;
         Ok(Some(output.join(REFUSED)))
     }
@@ -393,7 +393,6 @@ impl Sink for Files<'_> {
     fn begin(&mut self, header: &Header) -> anyhow::Result<()> {
         let Some(programs) = self.programs.take() else { return Ok(()) };
         let (files, chunks) = PlanFiles::begin(header, self.profile, programs, self.selection.clone())?;
-        let files = files.in_words(remedy::words);
         self.files = Some(files);
         Ok(self.folder.extend(chunks)?)
     }

@@ -194,7 +194,6 @@ pub struct PlanFiles {
     /// Totals of what the programs weld.
     totals: Metrics,
     names: BTreeSet<String>,
-    words: Words,
 }
 
 impl PlanFiles {
@@ -230,16 +229,9 @@ impl PlanFiles {
             selection,
             totals,
             names,
-            words: no_words,
         };
         files.note(&chunks);
         Ok((files, chunks))
-    }
-
-    /// The files with remedies in the words of the program that people use.
-    #[must_use]
-    pub fn in_words(self, words: Words) -> Self {
-        Self { words, ..self }
     }
 
     /// Takes the next layer, and what the deposit model says about it; returns their text.
@@ -333,16 +325,17 @@ impl PlanFiles {
             metrics["programs"] = serde_json::json!(totals);
         }
         metrics["built"] = serde_json::json!(self.built);
-        let findings = check::all_findings(summary, &repair.sentences(), &found, self.words);
+        let findings = check::all_findings(summary, &repair.sentences(), &found, no_words);
         metrics["findings"] = serde_json::json!(findings);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &findings)));
         Ok(chunks)
     }
 
-    /// The report on a plan whose programs are not written, which shows the places that are to blame.
-    pub fn refused(self, summary: &Summary, repair: &RepairReport) -> Chunk {
-        let findings = check::all_findings(summary, &repair.sentences(), &[], self.words);
+    /// The report on a plan whose programs are not written, which shows the places that are to blame; remedies are in the `words` of
+    /// the program that people use.
+    pub fn refused(self, summary: &Summary, repair: &RepairReport, words: Words) -> Chunk {
+        let findings = check::all_findings(summary, &repair.sentences(), &[], words);
         Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &findings))
     }
 

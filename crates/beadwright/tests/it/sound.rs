@@ -144,6 +144,21 @@ fn lines_that_touch_along_a_stretch_do_not_cross() {
     }
 }
 
+/// A pass that begins on the end of another, as where the arc is struck again, does not cross it, however its start is rounded.
+#[test]
+fn lines_that_begin_on_others_do_not_cross_them() {
+    for turn in [0.0, 0.2, 0.3, 0.7, 1.7, 2.9] {
+        let way = DVec2::from_angle(turn);
+        let bend: Vec<DVec2> =
+            [(0.0, 0.0), (3.7, 0.9), (4.4, 1.1), (9.0, 1.3), (9.5, 7.0)].map(|p| way.rotate(DVec2::from(p))).to_vec();
+        for share in (1..40).map(|k| f64::from(k) / 40.0) {
+            let start = bend[1].lerp(bend[2], share);
+            let again = [&[start], &bend[2..], &[way.rotate(DVec2::new(20.0, 7.0))]].concat();
+            assert_eq!(sound::crossings(&[bend[..4].to_vec(), again]).next(), None, "turned {turn}, from {share}");
+        }
+    }
+}
+
 /// Where the hybrid cannot, the best of the other strategies fills, with hardly more arc starts than islands.
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]

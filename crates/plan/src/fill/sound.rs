@@ -192,7 +192,9 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
     }
     let place = p + u * t;
     let through = || Bend::of(&lines[i], k, place)?.is_crossed_by(&Bend::of(&lines[j], l, place)?).then_some(());
-    let inner = [(t, u), (w, v)].iter().all(|(x, way)| x.min(1.0 - x) * way.length() > FINEST_MM);
+    // How far the ends of each piece lie from the line of the other: next to nothing where they run along each other.
+    let sine = across.abs() / (u.length() * v.length());
+    let inner = [(t, u), (w, v)].iter().all(|(x, way)| x.min(1.0 - x) * way.length() * sine > FINEST_MM);
     (inner || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
 }
 
