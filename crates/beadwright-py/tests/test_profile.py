@@ -56,7 +56,7 @@ def test_a_key_that_is_not_there() -> None:
 
 
 def test_a_type_that_cannot_be() -> None:
-    with pytest.raises(BeadwrightError, match="object cannot stand"):
+    with pytest.raises(BeadwrightError, match="of type object cannot be in a profile"):
         Profile().set({"bead.width": object()})  # type: ignore[dict-item]
 
 

@@ -164,4 +164,4 @@ def _toml(key: str, value: Value) -> str:
         return f"[{', '.join(_toml(key, item) for item in value)}]"
     if isinstance(value, dict):
         return f"{{ {', '.join(f'{json.dumps(name)} = {_toml(key, item)}' for name, item in value.items())} }}"
-    raise BeadwrightError(f"{key}: a {type(value).__name__} cannot be a value in a profile.", key)
+    raise BeadwrightError(f"{key}: a value of type {type(value).__name__} cannot be in a profile.", key)
