@@ -2,7 +2,7 @@
 //!
 //! `fuzz/run TARGET SECONDS` runs one, `fuzz/run` all of them.
 
-#[path = "../crates/beadwright/tests/families/mod.rs"]
+#[path = "../crates/beadwright/tests/it/families/mod.rs"]
 mod families;
 
 use beadwright::dialect::reading::{self, Options};

@@ -3,7 +3,6 @@
 use crate::plan::{self, Arguments, Files, Refused, print_findings, print_head, print_summary, refused};
 use crate::several::Programs;
 use crate::{progress, remedy, say};
-use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
 use beadwright::model::together::Place;
@@ -56,7 +55,7 @@ fn each(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let named = |one: &Planned<'_>| -> Vec<String> {
-        one.summary.forbidden.iter().map(|reason| format!("{}: {reason}", one.name)).collect()
+        remedy::reasons(&one.summary).iter().map(|reason| format!("{}: {reason}", one.name)).collect()
     };
     let reasons: Vec<String> =
         planned.iter().flat_map(named).chain(clearance.close().iter().map(Close::sentence)).collect();
@@ -110,8 +109,7 @@ impl Planned<'_> {
     /// Writes the files and reports them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
-        let found =
-            check::all_findings(&summary, &model.repair().sentences(), files.check(&Task::new())?, remedy::words);
+        let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&Task::new())?);
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {

@@ -8,7 +8,6 @@ use beadwright::check;
 use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
-use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
@@ -230,16 +229,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
-        let found = check::all_findings(&summary, &[], &[], remedy::words).into_iter();
-        let reasons = found.filter(|finding| finding.severity == Severity::Serious);
-        return Err(Refused { reasons: reasons.map(|finding| finding.sentence()).collect(), report }.into());
+        return Err(Refused { reasons: remedy::reasons(&summary), report }.into());
     }
     let faults = check::rehearse(&profile).into_iter();
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     let own = model.notes().iter().cloned();
     summary.notes.splice(0..0, own.chain(faults).chain(note).chain(files.notes()));
-    let found = check::all_findings(&summary, &model.repair().sentences(), files.check(&task)?, remedy::words);
+    let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?);
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 

@@ -2,9 +2,11 @@
 
 use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
+use beadwright::check;
 use beadwright::dialect::reading::ReadError;
+use beadwright::finding::{Finding, Severity};
 use beadwright::model::{ImportError, PartError};
-use beadwright::plan::PlanError;
+use beadwright::plan::{PlanError, Summary};
 use beadwright::read_back::ReadBackError;
 
 /// What the command offers against a kind of finding.
@@ -20,6 +22,18 @@ pub(crate) fn words(kind: &str) -> Option<&'static str> {
         "reach" => "reach --suggest",
         _ => return None,
     })
+}
+
+/// All that is to be said of a plan, the worst first, with remedies in the words of the command; `model` and `found` as in
+/// [`check::all_findings`].
+pub(crate) fn findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
+    check::all_findings(summary, model, found).into_iter().map(|finding| finding.in_words(words)).collect()
+}
+
+/// Why the programs of a plan should not be started, as sentences with remedies in the words of the command.
+pub(crate) fn reasons(summary: &Summary) -> Vec<String> {
+    let serious = findings(summary, &[], &[]).into_iter().filter(|finding| finding.severity == Severity::Serious);
+    serious.map(|finding| finding.sentence()).collect()
 }
 
 /// A sentence, where there are flags.

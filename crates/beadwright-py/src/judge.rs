@@ -10,6 +10,7 @@ use beadwright::compare::{self as library, Chosen, Entry, Totals};
 use beadwright::deposit::DepositSettings;
 use beadwright::deposit::field::{Grid, bands};
 use beadwright::deposit::stroke::strokes;
+use beadwright::layer;
 use beadwright::metrics::Metrics;
 use beadwright::planar::Bounds;
 use beadwright::read_back;
@@ -73,12 +74,7 @@ pub(crate) fn page(title: &str, lead: &str, judged: Vec<PyRef<'_, Judged>>) -> S
 }
 
 /// The grid that is asked for, or one that fits the part, of `layers` layers.
-pub(crate) fn fitted(
-    grid: Option<f64>,
-    settings: DepositSettings,
-    bounds: &Bounds,
-    layers: usize,
-) -> PyResult<DepositSettings> {
+fn fitted(grid: Option<f64>, settings: DepositSettings, bounds: &Bounds, layers: usize) -> PyResult<DepositSettings> {
     read_back::with_grid(grid, settings, bounds, layers).map_err(|error| raise(&error.to_string(), Some("grid"), None))
 }
 
@@ -87,11 +83,9 @@ fn seen_from_above((low, high): (DVec3, DVec3)) -> Bounds {
     Bounds { min: low.truncate(), max: high.truncate() }
 }
 
-/// The extent of layers with their slices, mm.
-pub(crate) fn extent(layers: &[Layer]) -> Bounds {
-    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
-    Bounds::of(points.chain(outlines)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
+/// What layers with their slices cover, mm.
+fn extent(layers: &[Layer]) -> Bounds {
+    layer::bounds(layers).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO })
 }
 
 /// Plans a solid with each strategy, and judges the chosen layers (indices from 0; all of them if none are given).

@@ -69,7 +69,10 @@ pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, C
     let found = check::grouped(&check::check_figures(layers, profile, judged));
     let mut summary = planned.summary.clone();
     summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());
-    Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found, words))
+    Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found)
+        .into_iter()
+        .map(|finding| finding.in_words(words))
+        .collect())
 }
 
 /// The programs alone: the text of each file by its name.

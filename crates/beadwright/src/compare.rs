@@ -2,7 +2,7 @@
 
 use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, Stack, stack::Growth};
 use crate::dialect::reading::ReadTotals;
-use crate::layer::Layer;
+use crate::layer::{self, Layer};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
@@ -229,9 +229,7 @@ pub fn program(
     chosen: &Chosen,
     task: &Task,
 ) -> Result<Entry, Cancelled> {
-    let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
-    let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
-    let bounds = Bounds::of(points.chain(outlines)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
+    let bounds = layer::bounds(layers).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let mut entry = EntryBuilder::new(settings, &bounds, chosen);
     for (done, layer) in layers.iter().enumerate() {
         task.step(Stage::Deposit, done as f64 / layers.len() as f64)?;

@@ -62,11 +62,6 @@ pub struct Finding {
 /// The remedy for a kind of finding in the words of the program that people use: flags, arguments, buttons.
 pub type Words = fn(kind: &str) -> Option<&'static str>;
 
-/// The words of the library, which has none.
-pub fn no_words(_kind: &str) -> Option<&'static str> {
-    None
-}
-
 /// Turns part of a sentence into a sentence.
 pub fn as_sentence(text: &str) -> String {
     let mut letters = text.chars();

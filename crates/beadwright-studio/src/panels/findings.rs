@@ -5,7 +5,7 @@ use crate::studio::Studio;
 use crate::view::Mode;
 use beadwright::Finding;
 use beadwright::check::{self, Check};
-use beadwright::finding::{Severity, no_words};
+use beadwright::finding::Severity;
 use eframe::egui::{CollapsingHeader, Color32, Response, RichText, Ui};
 
 /// Checks about what the deposit model computes.
@@ -22,10 +22,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     let own = &studio.plans.own;
     let repaired = own.part.as_ref().map(|part| part.repair().sentences()).unwrap_or_default();
     let grouped = check::grouped(&findings);
-    let all = own
-        .summary
-        .as_ref()
-        .map_or(grouped.clone(), |summary| check::all_findings(summary, &repaired, &grouped, no_words));
+    let all = own.summary.as_ref().map_or(grouped.clone(), |summary| check::all_findings(summary, &repaired, &grouped));
     if all.is_empty() {
         ui.label(studio.t("no-findings"));
     }

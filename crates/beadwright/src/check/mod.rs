@@ -32,7 +32,7 @@ mod wire_balance;
 pub use rehearsal::rehearse;
 
 use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
-use crate::finding::{Finding, Severity, Words, as_sentence};
+use crate::finding::{Finding, Severity, as_sentence};
 use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::plan::{self, Summary};
@@ -246,7 +246,7 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
 /// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
 /// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are in the `words` of the
 /// program that people use.
-pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding], words: Words) -> Vec<Finding> {
+pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
     let new = |kind, severity| move |text: &String| Finding::new(kind, severity, text.clone());
     let said: BTreeSet<String> = warned.iter().map(Finding::sentence).collect();
@@ -259,7 +259,7 @@ pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding], word
     let mut known = BTreeSet::new();
     all.retain(|finding| known.insert(finding.text.clone()));
     all.sort_by_key(|finding| finding.severity);
-    all.into_iter().map(|finding| finding.in_words(words)).collect()
+    all
 }
 
 /// Whether a warning of the plan already says what a check of that name finds.

@@ -20,7 +20,7 @@ use crate::check::{self, LayerFigures};
 use crate::deposit::{Figures, Judgement, stack::Growth};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
-use crate::finding::{Finding, Words, no_words};
+use crate::finding::{Finding, Words};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -325,7 +325,7 @@ impl PlanFiles {
             metrics["programs"] = serde_json::json!(totals);
         }
         metrics["built"] = serde_json::json!(self.built);
-        let findings = check::all_findings(summary, &repair.sentences(), &found, no_words);
+        let findings = check::all_findings(summary, &repair.sentences(), &found);
         metrics["findings"] = serde_json::json!(findings);
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
         chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &findings)));
@@ -335,7 +335,8 @@ impl PlanFiles {
     /// The report on a plan whose programs are not written, which shows the places that are to blame; remedies are in the `words` of
     /// the program that people use.
     pub fn refused(self, summary: &Summary, repair: &RepairReport, words: Words) -> Chunk {
-        let findings = check::all_findings(summary, &repair.sentences(), &[], words);
+        let findings = check::all_findings(summary, &repair.sentences(), &[]).into_iter();
+        let findings: Vec<Finding> = findings.map(|finding| finding.in_words(words)).collect();
         Chunk::new(REFUSED, self.report.finish(summary, repair, &[], &findings))
     }
 

@@ -31,7 +31,7 @@ fn report() -> String {
     let plan = common::planned("cross", &profile);
     let mut report = Report::new(&plan.header, &profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    let findings = beadwright::check::all_findings(&plan.summary, &[], &[], beadwright::finding::no_words);
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
     report.finish(&plan.summary, &RepairReport::default(), &[], &findings)
 }
 

@@ -28,7 +28,7 @@ fn process() -> Process {
 fn page(plan: &Plan, profile: &Profile) -> String {
     let mut report = Report::new(&plan.header, profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    let findings = beadwright::check::all_findings(&plan.summary, &[], &[], beadwright::finding::no_words);
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
     report.finish(&plan.summary, &RepairReport::default(), &["a&b.src".to_owned()], &findings)
 }
 

@@ -37,7 +37,7 @@ fn chromium() -> Option<PathBuf> {
 fn page(plan: &Plan, profile: &Profile) -> String {
     let mut report = Report::new(&plan.header, profile);
     plan.layers.iter().for_each(|layer| report.layer(layer, None));
-    let findings = beadwright::check::all_findings(&plan.summary, &[], &[], beadwright::finding::no_words);
+    let findings = beadwright::check::all_findings(&plan.summary, &[], &[]);
     report.finish(&plan.summary, &RepairReport::default(), &["a.src".to_owned()], &findings)
 }
 
