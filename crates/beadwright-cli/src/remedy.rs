@@ -12,14 +12,16 @@ use beadwright::read_back::ReadBackError;
 /// What the command offers against a kind of finding.
 pub(crate) fn words(kind: &str) -> Option<&'static str> {
     Some(match kind {
-        "gap-closed" => "inspect --repair shows and mends it",
-        "open-contour-dropped" => "inspect --repair --fill-holes MM, --surface solid or wall",
-        "high-start" | "nothing-below" => "--from-z MM, --lay-flat",
-        "in-the-air" => "--orient, --lay-flat, --from-z MM",
-        "hanging-island" | "overhang" => "--orient",
-        "bare" | "void" => "compare",
-        "built-height" => "adapt",
-        "reach" => "reach --suggest",
+        "gap-closed" => "inspect --repair shows and repairs it.",
+        "open-contour-dropped" => {
+            "inspect --repair --fill-holes MM repairs the model, --surface says what the surface is."
+        }
+        "high-start" | "nothing-below" => "--from-z MM begins higher up, --lay-flat turns the part.",
+        "in-the-air" => "--orient and --lay-flat turn the part, --from-z MM begins higher up.",
+        "hanging-island" | "overhang" => "--orient turns the part.",
+        "bare" | "void" => "beadwright compare shows what other strategies leave.",
+        "built-height" => "beadwright adapt corrects the layers that follow a scan.",
+        "reach" => "reach --suggest looks for a better place.",
         _ => return None,
     })
 }

@@ -59,11 +59,11 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
 /// What the package offers against a kind of finding.
 pub(crate) fn words(kind: &str) -> Option<&'static str> {
     Some(match kind {
-        "high-start" | "nothing-below" => "Part.above(z), stand=\"flat\"",
-        "in-the-air" => "stand=\"orient\" or \"flat\", Part.above(z)",
-        "hanging-island" | "overhang" => "stand=\"orient\"",
-        "bare" | "void" => "compare",
-        "reach" => "reach(…, suggest=True)",
+        "high-start" | "nothing-below" => "Part.above(z) begins higher up, stand=\"flat\" turns the part.",
+        "in-the-air" => "stand=\"orient\" and \"flat\" turn the part, Part.above(z) begins higher up.",
+        "hanging-island" | "overhang" => "stand=\"orient\" turns the part.",
+        "bare" | "void" => "compare() shows what other strategies leave.",
+        "reach" => "suggest=True looks for a better place.",
         _ => return None,
     })
 }

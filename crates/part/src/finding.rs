@@ -59,7 +59,7 @@ pub struct Finding {
     pub remedy: Option<String>,
 }
 
-/// The remedy for a kind of finding in the words of the program that people use: flags, arguments, buttons.
+/// What helps against a kind of finding in the program that people use, as a sentence: flags, arguments, buttons.
 pub type Words = fn(kind: &str) -> Option<&'static str>;
 
 /// Turns part of a sentence into a sentence.
@@ -83,12 +83,8 @@ impl Finding {
     /// Adds the words of the program that people use to the remedy.
     #[must_use]
     pub fn in_words(mut self, words: Words) -> Self {
-        if let Some(more) = words(self.kind) {
-            self.remedy = Some(match self.remedy {
-                Some(remedy) => format!("{} ({more}).", remedy.trim_end_matches('.')),
-                None => format!("What helps: {more}."),
-            });
-        }
+        let sentences = self.remedy.take().into_iter().chain(words(self.kind).map(str::to_owned));
+        self.remedy = sentences.reduce(|all, more| format!("{all} {more}"));
         self
     }
 
