@@ -8,7 +8,7 @@
 use crate::goal::{self, Goal};
 use crate::{ReproduceError, Reproduced};
 use beadwright::bead::wall::WallBead;
-use beadwright::bead::wire_area;
+use beadwright::bead::{Overlap, wire_area};
 use beadwright::check;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::field::{self, Grid};
@@ -225,7 +225,7 @@ fn curves(part: &Part, degrees: f64) -> Result<WallCurves, ReproduceError> {
 fn profile(part: &Part, area: f64) -> Result<Profile, ReproduceError> {
     let mut profile = Profile::built_in("cmt-steel-abb").map_err(wrong)?;
     profile.fill.strategy = "wall".to_owned();
-    profile.fill.stepover = Some(part.wall);
+    (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(part.wall));
     profile.bead.width = part.wall;
     profile.bead.height = profile.bead.section.height_of(part.wall, area);
     profile.process.current = Some(part.current);

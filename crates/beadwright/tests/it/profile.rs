@@ -1,7 +1,9 @@
 //! Profiles: the built-in ones, and what is said of a wrong one, with its line and key.
 
 use beadwright::bead::MassBalance;
+use beadwright::deposit::Judge;
 use beadwright::dialect;
+use beadwright::plan::deposit_settings;
 use beadwright::process::StartStop;
 use beadwright::profile::{BUILT_IN, Profile};
 use toml_edit::{Document, DocumentMut, Item, Value};
@@ -636,5 +638,17 @@ mod schema {
                 assert!(table.keys().all(|key| known[key].is_object()), "{name}: [{section}] {table:?}");
             }
         }
+    }
+}
+
+#[test]
+fn built_in_profiles_fill_a_plate_without_voids() {
+    for (name, _) in BUILT_IN.iter().filter(|(name, _)| !name.starts_with("fdm")) {
+        let profile = Profile::built_in(name).unwrap();
+        let plan = crate::common::planned("plate", &profile);
+        let mut judge = Judge::new(deposit_settings(&profile));
+        let voids = plan.layers.iter().map(|layer| judge.layer(layer).figures.void_percent());
+        let worst = voids.fold(0.0, f64::max);
+        assert!(worst < 3.0, "{name}: {worst:.1} % of a layer stays empty");
     }
 }

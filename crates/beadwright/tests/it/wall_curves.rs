@@ -1,5 +1,6 @@
 //! Walls given by curves: read from IGES, lofted, leaning, and the same as those given by a solid.
 
+use beadwright::bead::Overlap;
 use beadwright::curve::Nurbs;
 use beadwright::example;
 use beadwright::layer::Layer;
@@ -16,7 +17,7 @@ fn profile(width: f64, height: f64) -> Profile {
     let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
     profile.fill.strategy = "wall".to_owned();
     (profile.bead.width, profile.bead.height) = (width, height);
-    profile.fill.stepover = Some(width);
+    (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(width));
     profile
 }
 
