@@ -1,6 +1,7 @@
 //! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers over what
 //! lies below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
+use super::cover::Cover;
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
 use super::support::Support;
@@ -47,7 +48,7 @@ impl<S: Sink> Emitter<'_, S> {
     /// # Errors
     /// Whatever the sink fails with.
     pub(super) fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
-        let Filled { slice, fills, planned_area, shared, .. } = filled;
+        let Filled { slice, fills, planned_area, reaches, shared, .. } = filled;
         let Slice { index, z, height, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
@@ -62,6 +63,12 @@ impl<S: Sink> Emitter<'_, S> {
             Layer { index, z, height, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
         if self.profile.is_level() {
             level_layers::share(&mut layer, self.grown.as_ref(), self.profile);
+        }
+        if !reaches.is_empty() {
+            let cover = Cover::of_layer(&layer, &reaches, self.profile);
+            layer.planned_area = cover.area;
+            let warning = |(kind, place, size)| Warning { kind, layer: index, place, size };
+            layer.warnings.extend(cover.doubts.into_iter().map(warning));
         }
         if let Some(helix) = &mut self.helix {
             let turn = helix.turn(&mut layer, self.profile.bead.width);

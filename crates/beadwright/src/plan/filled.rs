@@ -1,9 +1,9 @@
-//! A slice with its passes, and the places in it that a bead cannot reach.
+//! A slice with its passes.
 
 use super::candidates;
+use super::cover::{Cover, Reach};
 use super::scan_lines::Planned;
 use crate::fill::contour::rings_only;
-use crate::fill::coverage::Coverage;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
 use crate::process::Dot;
@@ -12,7 +12,7 @@ use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
-use planar::{Bounds, Join, Polygon, Region};
+use planar::{Bounds, Join, Polygon};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
@@ -22,6 +22,8 @@ pub(super) struct Filled {
     pub(super) slice: Slice,
     pub(super) fills: Vec<Fill>,
     pub(super) planned_area: f64,
+    /// Of each island what beads reach, as long as its cover is not known: it is measured once the metal is shared out.
+    pub(super) reaches: Vec<Option<Reach>>,
     /// Number of warnings that the slice came with.
     pub(super) known: usize,
     /// Whether other layers have the same passes.
@@ -126,6 +128,7 @@ fn fill_layer(
     settings: &FillSettings,
 ) -> Filled {
     let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
+    let mut reaches = Vec::new();
     for (i, island) in slice.islands.iter().enumerate() {
         let reach = Reach::of(island, strategy.narrowest(settings));
         let roomy = reach.area > 0.0 || strategy.welds_thin_walls() || island.holds_disc(settings.wall.thinnest / 2.0);
@@ -149,74 +152,21 @@ fn fill_layer(
                 is_left_out
             }
         };
-        let cover = Cover::of(&own, island, profile, &reach);
-        planned_area += cover.area;
-        let places =
-            if is_left_out { vec![(WarningKind::IslandTooSmall, middle(island), island.area())] } else { cover.doubts };
         let warning = |(kind, place, size)| Warning { kind, layer: slice.index, place, size };
-        slice.warnings.extend(places.into_iter().map(warning));
+        if is_left_out {
+            slice.warnings.push(warning((WarningKind::IslandTooSmall, middle(island), island.area())));
+        } else if !profile.is_level() {
+            let cover = Cover::of(&own, island, profile, &reach);
+            planned_area += cover.area;
+            slice.warnings.extend(cover.doubts.into_iter().map(warning));
+        }
+        if profile.is_level() {
+            reaches.push((!is_left_out).then_some(reach));
+        }
         fills.push(own);
     }
-    Filled { slice, fills, planned_area, known: came_with, shared: false }
+    Filled { slice, fills, planned_area, reaches, known: came_with, shared: false }
 }
-
-/// How well passes cover an island.
-struct Cover {
-    /// mm²
-    area: f64,
-    /// What matters of the rest: what it is, where, and its area, mm².
-    doubts: Vec<(WarningKind, DVec2, f64)>,
-}
-
-/// What beads leave bare is reported when it is more than this part of an island.
-const WORTH_TELLING: f64 = 0.01;
-
-/// A place too thin for a bead counts as welded if less than this part of it is left bare.
-const WELDED: f64 = 0.5;
-
-impl Cover {
-    fn of(fill: &Fill, island: &Polygon, profile: &Profile, reach: &Reach) -> Self {
-        let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-        let (whole, area, width) = (Region::from(island.clone()), island.area(), profile.bead.width);
-        let is_sparse = profile.fill.infill_density < 1.0 && !paths.is_empty();
-        if is_sparse && reach.lost.is_empty() {
-            return Self { area: reach.area, doubts: Vec::new() };
-        }
-        let Some(coverage) = Coverage::of(&paths, &whole, width) else {
-            return Self { area: 0.0, doubts: Vec::new() };
-        };
-        let mut unreached = (area - reach.area).max(0.0);
-        let mut doubts = Vec::new();
-        for piece in reach.thin_places() {
-            let size = piece.area();
-            let is_welded = coverage.bare_of(&piece.clone().into()).area < WELDED * size;
-            if is_welded {
-                unreached -= size;
-            }
-            let kind = if is_welded { WarningKind::ThinWall } else { WarningKind::ThinFeature };
-            doubts.push((kind, piece.outer.points().first().copied().unwrap_or_default(), size));
-        }
-        if is_sparse {
-            // Bare on purpose.
-            return Self { area: reach.area, doubts };
-        }
-        let (bare, least) = (coverage.bare().area, WORTH_TELLING * area);
-        // What no bead reaches, such as sharp corners, is not left bare by the strategy.
-        let left = bare - unreached;
-        if left > least {
-            let inner = coverage.bare_of(&whole.offset(-FLANK * width, Join::ROUND));
-            let size = if left > FLANKS_TOO * area { left } else { inner.area - unreached };
-            doubts.extend((size > least).then_some((WarningKind::Bare, inner.place, size)));
-        }
-        Self { area: (area - bare).max(0.0), doubts }
-    }
-}
-
-/// Strips along the outline count, too, if they are this part of an island or more.
-const FLANKS_TOO: f64 = 0.02;
-
-/// A bead is so flat over this part of its width that strips of it along the outline make little difference.
-const FLANK: f64 = 0.1;
 
 /// The fill of an island by its strategy, or, where that cannot be welded, a simpler one of its own, or, with a warning, the
 /// best by another strategy.
@@ -311,51 +261,6 @@ fn arc_time(pass: &Path, profile: &Profile, layer: usize) -> f64 {
         ends[0].distance(ends[1]) / process.speed_at(pace)
     };
     path.windows(2).enumerate().map(time).sum()
-}
-
-/// A feature of this area or more is reported, in squared bead widths.
-const THIN_FEATURE: f64 = 0.25;
-
-/// Lost pieces end this far, in bead widths, before what a bead reaches: their edges then touch nowhere else.
-const CLEAR: f64 = 0.01;
-
-/// The part of an island that a bead reaches without leaving it.
-struct Reach {
-    /// Its width, mm.
-    width: f64,
-    /// mm²
-    area: f64,
-    /// The rest, with corners; empty where that is too little to look at.
-    lost: Region,
-}
-
-impl Reach {
-    /// The part of an island that a bead of the given width, mm, reaches.
-    ///
-    /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
-    /// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes
-    /// are computed only at necks, and where this figure shows that something is lost; the area is then too large by a hair,
-    /// [`CLEAR`] along what is lost.
-    fn of(island: &Polygon, width: f64) -> Self {
-        let (r, area) = (width / 2.0, island.area());
-        let centre = island.centres_of_disc(r, Join::ROUND);
-        if centre.is_empty() {
-            return Self { width, area: 0.0, lost: island.clone().into() };
-        }
-        if let Some(opened) = island.reached_by_disc(r, &centre)
-            && island.is_roomy_for_disc(r, &centre, THIN_FEATURE * width * width)
-        {
-            return Self { width, area: opened.clamp(0.0, area), lost: Region::default() };
-        }
-        let lost = Region::from(island.clone()).difference(&centre.offset(r + CLEAR * width, Join::ROUND));
-        Self { width, area: (area - lost.area()).max(0.0), lost }
-    }
-
-    /// What is too thin for a bead, except corners.
-    fn thin_places(&self) -> impl Iterator<Item = &Polygon> {
-        let smallest = THIN_FEATURE * self.width * self.width;
-        self.lost.polygons().iter().filter(move |piece| piece.area() > smallest)
-    }
 }
 
 /// The middle of the box around an island.

@@ -13,7 +13,8 @@
 //! | [`choice`] | which strategy a part is planned with |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
 //! | [`expected`](expected()) | roughly how much a plan will contain |
-//! | `filled` | a slice with its passes, and the places in it that a bead cannot reach |
+//! | `cover` | how much of a slice beads cover, and what they leave bare |
+//! | `filled` | a slice with its passes |
 //! | `judged` | how the deposit model treats plans |
 //! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
@@ -29,6 +30,7 @@ mod candidates;
 mod centre_lines;
 pub mod choice;
 pub mod clearance;
+mod cover;
 mod emitter;
 mod expected;
 mod filled;

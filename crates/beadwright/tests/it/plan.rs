@@ -9,8 +9,9 @@ use beadwright::dialect::rapid::RapidArc;
 use beadwright::fill::STRATEGIES;
 use beadwright::layer::Layer;
 use beadwright::model::Mesh;
+use beadwright::pass::{Pass, Segment};
 use beadwright::plan::{self, Plan};
-use beadwright::planar::DVec2;
+use beadwright::planar::{DVec2, Region, polyline};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
@@ -192,6 +193,36 @@ fn dense_strategies_lay_about_the_volume_of_the_part() {
 }
 
 /// Writes the plan with a post and returns its files.
+/// The metal of level layers is shared out once they are filled.
+#[test]
+fn what_a_plan_covers_is_what_its_beads_cover() {
+    let profile = profile("plasma-304-cnc", "loop", 0.0);
+    let plan = plan_of(&crate::common::tube(40.0, 14.0, 4.0, 0.1), &profile);
+    for layer in &plan.layers {
+        let islands = Region::from_normalised(layer.islands.clone());
+        let step = 0.05;
+        let rows = islands.rows(-50.0, step, 2000);
+        let points = rows.iter().enumerate().flat_map(|(row, ends)| {
+            let y = -50.0 + step * row as f64;
+            ends.chunks_exact(2).flat_map(move |span| {
+                (0..).map(move |k| DVec2::new(span[0] + step * (k as f64 + 0.5), y)).take_while(|p| p.x < span[1])
+            })
+        });
+        let pieces: Vec<Segment> = layer.passes.iter().flat_map(Pass::segments).collect();
+        let is_covered = |p: &DVec2| {
+            pieces.iter().any(|piece| {
+                let (a, b) = (piece.from.truncate(), piece.to.truncate());
+                let radius = piece.width * 0.505;
+                (*p - a.midpoint(b)).abs().max_element() < 2.0 * radius + a.distance(b)
+                    && polyline::distance_squared_to_segment(*p, a, b) < radius * radius
+            })
+        };
+        let covered = points.filter(is_covered).count() as f64 * step * step;
+        assert!((layer.planned_area / covered - 1.0).abs() < 2e-3, "{} of {covered}", layer.planned_area);
+        assert!(covered > 0.96 * layer.slice_area, "{covered} of {}", layer.slice_area);
+    }
+}
+
 fn written(plan: &Plan, profile: &Profile, name: &str) -> BTreeMap<String, String> {
     dialect::write(name, &plan.layers, &profile.job("Test part-1")).unwrap()
 }

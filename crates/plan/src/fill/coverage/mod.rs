@@ -70,6 +70,21 @@ impl Grid {
         region.turned(DVec2::from_angle(-self.angle)).rows(self.first, self.step, self.count)
     }
 
+    /// The rows that a region may reach.
+    fn rows_at(&self, region: &Region) -> Range<usize> {
+        let turn = DVec2::from_angle(-self.angle);
+        let points = region.polygons().iter().flat_map(|island| island.outer.points());
+        let Some(bounds) = Bounds::of(points.map(|p| turn.rotate(*p))) else { return 0..0 };
+        let row = |y: f64| ((y - self.first) / self.step).max(0.0);
+        let (low, high) = (row(bounds.min.y).floor() as usize, row(bounds.max.y).ceil() as usize + 1);
+        low.min(self.count)..high.min(self.count)
+    }
+
+    /// Some of the rows.
+    fn part(&self, rows: &Range<usize>) -> Self {
+        Self { first: self.first + rows.start as f64 * self.step, count: rows.len(), ..*self }
+    }
+
     /// The rows that suit a region, and where they cross its boundary.
     fn across(region: &Region, width: f64) -> Option<(Self, PerRow<f64>)> {
         let area = region.area();
@@ -105,19 +120,21 @@ impl Coverage {
 
     /// What is left bare of the region.
     pub fn bare(&self) -> Bare {
-        self.bare_between(&self.inside)
+        self.bare_between(&self.inside, 0)
     }
 
     /// What is left bare of another region that lies within this one.
     pub fn bare_of(&self, region: &Region) -> Bare {
-        self.bare_between(&self.grid.rows(region))
+        let rows = self.grid.rows_at(region);
+        self.bare_between(&self.grid.part(&rows).rows(region), rows.start)
     }
 
-    /// What is left bare between the first and the second place on each row, the third and the fourth, and so on.
-    fn bare_between(&self, inside: &PerRow<f64>) -> Bare {
+    /// What is left bare between the first and the second place on each row from a number on, the third and the fourth, and
+    /// so on.
+    fn bare_between(&self, inside: &PerRow<f64>, from: usize) -> Bare {
         let Grid { angle, first, step, .. } = self.grid;
         let (mut found, mut widest) = (Bare::default(), 0.0);
-        for (k, (inside, covered)) in inside.iter().zip(self.covered.iter()).enumerate() {
+        for (k, (inside, covered)) in (from..).zip(inside.iter().zip(self.covered.iter().skip(from))) {
             for span in inside.chunks_exact(2) {
                 for gap in gaps(span[0]..span[1], covered) {
                     let length = gap.end - gap.start;
