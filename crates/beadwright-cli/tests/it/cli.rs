@@ -47,7 +47,7 @@ fn a_rapid_program_is_written_and_simulated() {
         let plan = ["plan", "cross.stl", "-p", "cmt-steel-abb", "--post", "rapid", "-o", variant, "--set", setting];
         ok(folder.path(), &[&plan[..], &["--no-deposit"]].concat());
         let written = files(&folder.path().join(variant));
-        assert!(["cross.mod", "cross.pgf", "cross_L012.mod"].iter().all(|name| written.contains_key(*name)));
+        assert!(["cross.mod", "cross.pgf", "cross_L011.mod"].iter().all(|name| written.contains_key(*name)));
         let metrics: serde_json::Value = serde_json::from_slice(&written["metrics.json"]).unwrap();
         let program = format!("{variant}/cross.mod");
         let json = ok(folder.path(), &["simulate", &program, "-p", "cmt-steel-abb", "--grid", "1", "--json"]);
@@ -584,8 +584,9 @@ fn a_dry_run_has_names_of_its_own_and_no_arc() {
 fn programs_of_every_robot_are_simulated_and_inspected() {
     let folder = folder_with("cross");
     let posts = ["--post", "fanuc", "--post", "inform", "--post", "urscript"];
+    let one_volume = ["--set", "urscript.max_megabytes=8"];
     let plan = ["plan", "cross.stl", "-p", "cmt-steel-robots", "-o", "out", "--no-deposit"];
-    ok(folder.path(), &[&plan[..], &posts].concat());
+    ok(folder.path(), &[&plan[..], &posts, &one_volume].concat());
     let json = |command: &str, file: &str| -> serde_json::Value {
         let more: &[&str] = if command == "simulate" { &["--grid", "2"] } else { &[] };
         let words = [&[command, file, "-p", "cmt-steel-robots", "--json"], more].concat();
