@@ -43,6 +43,9 @@ pub(crate) struct Arguments {
     /// laid.
     #[arg(long, value_name = "solid|wall", value_parser = ["solid", "wall"])]
     surface: Option<String>,
+    /// Meaning of curves that run side by side: the two sides of a wall, or the centre-lines of walls.
+    #[arg(long, value_name = "sides|centre", value_parser = ["sides", "centre"])]
+    curves: Option<String>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
@@ -182,7 +185,8 @@ impl Arguments {
         let strategy = self.strategy.iter().map(|s| format!("fill.strategy=\"{s}\""));
         let literal = self.literal.then(|| "hybrid.literal=true".to_owned());
         let surface = self.surface.iter().map(|surface| format!("slice.surface=\"{surface}\""));
-        self.set.iter().cloned().chain(strategy).chain(surface).chain(literal).collect()
+        let curves = self.curves.iter().map(|curves| format!("wall.curves=\"{curves}\""));
+        self.set.iter().cloned().chain(strategy).chain(surface).chain(curves).chain(literal).collect()
     }
 }
 

@@ -51,6 +51,7 @@ pub(crate) fn of_plan<E>(error: &PlanError<E>) -> Option<&'static str> {
         PlanError::Open { .. } => {
             Some("--surface solid and --surface wall set it; inspect --repair --fill-holes MM mends the model.")
         }
+        PlanError::SideBySide(_) | PlanError::NoSides { .. } => Some("--curves sides and --curves centre set it."),
         PlanError::NoHelix { .. } => Some("--surface wall sets it."),
         _ => None,
     }

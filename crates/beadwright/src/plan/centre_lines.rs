@@ -1,15 +1,16 @@
 //! Walls of one bead by their centre-lines: curves, or the lines in which layers cut an open surface.
 
 use super::filled::{Filled, drop_short};
-use super::levels;
+use super::{PlanError, levels};
 use crate::fill::wall::{self, graph::Line};
 use crate::fill::{Path, coverage};
-use crate::model::wall_curves::{Section, WallCurves};
+use crate::model::wall_curves::{CurvesAre, Section, WallCurves};
 use crate::profile::Profile;
 use crate::slice::{Lines, Slab, Slice};
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::medial::Node;
+use std::borrow::Cow;
 
 /// The lines in which a layer cuts an open surface as passes.
 pub(super) fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profile: &Profile) -> Filled {
@@ -17,6 +18,43 @@ pub(super) fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profi
     let mut filled = weld_sections(&sections, |_| half, index, slab, profile);
     filled.slice.warnings.splice(0..0, warnings);
     filled
+}
+
+/// The sides of a wall lie at most this far apart, in bead widths: two beads would have room between them.
+const SIDES: f64 = 2.0;
+
+/// The centre-lines of a wall: its curves, or the middle lines between them if they are its sides.
+pub(super) fn centre_lines<'a, E>(
+    curves: &'a WallCurves,
+    profile: &Profile,
+) -> Result<Cow<'a, WallCurves>, PlanError<E>> {
+    let within = SIDES * profile.bead.width;
+    match profile.wall.curves {
+        Some(CurvesAre::Centre) => Ok(Cow::Borrowed(curves)),
+        Some(CurvesAre::Sides) => curves.between_sides(within).map(Cow::Owned).ok_or(PlanError::NoSides { within }),
+        None => match curves.sides(within).first() {
+            Some(sides) => Err(PlanError::SideBySide(*sides)),
+            None => Ok(Cow::Borrowed(curves)),
+        },
+    }
+}
+
+/// Beads may be wider or narrower than the wall between its sides by this fraction without a word.
+const AS_THICK: f64 = 0.1;
+
+/// How thick a wall is between its sides, as a sentence where its beads have another width.
+pub(super) fn other_thickness(curves: &WallCurves, profile: &Profile) -> Option<String> {
+    let (within, width) = (SIDES * profile.bead.width, profile.bead.width);
+    let sides = curves.sides(within).into_iter().filter(|_| profile.wall.curves == Some(CurvesAre::Sides));
+    let thickness = sides.map(|sides| sides.thickness).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (least, greatest) = thickness?;
+    let is_other = (least / width - 1.0).abs().max((greatest / width - 1.0).abs()) > AS_THICK;
+    is_other.then(|| {
+        format!(
+            "The sides of the wall lie {least:.2} to {greatest:.2} mm apart, the bead is {width} mm wide: what is welded has the \
+             width of the bead (bead.width)."
+        )
+    })
 }
 
 /// The centre-lines of a layer as passes.

@@ -66,7 +66,7 @@ use crate::profile::Profile;
 use crate::slice::{self, BATCH, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, WarningSummary, Warnings};
-use centre_lines::{weld_curves, weld_lines};
+use centre_lines::{centre_lines, weld_curves, weld_lines};
 use emitter::Emitter;
 use filled::Filled;
 use glam::DVec2;
@@ -236,7 +236,10 @@ pub fn slabs<'a>(
     let warmth = warm::predicted(part, profile, task)?;
     match part {
         PartRef::Mesh(mesh) => slabs_at(&warmth, mesh, profile, task),
-        PartRef::Curves(curves, height) => Ok(levels::of_curves(curves, height, &profile.single_wall()?, &warmth)),
+        PartRef::Curves(curves, height) => {
+            let curves = centre_lines(curves, profile)?;
+            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, &warmth))
+        }
     }
 }
 
@@ -260,6 +263,8 @@ fn plan_curves<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
+    let given = curves;
+    let curves = &*centre_lines(given, profile)?;
     let slabs = levels::of_curves(curves, height, &profile.single_wall()?, warmth);
     let bounds = curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let (low, high) = (bounds.min.extend(0.0), bounds.max.extend(height));
@@ -273,7 +278,8 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let summary = run([name, &profile.fill.strategy], extent, heat, profile, task, sink, fill_batch)?;
+    let mut summary = run([name, &profile.fill.strategy], extent, heat, profile, task, sink, fill_batch)?;
+    summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
             "each curve is shorter than fill.min_pass_length, or than the distance within which ends are joined \

@@ -1,6 +1,6 @@
 //! One layer ahead of the others, to look at while the rest is planned.
 
-use super::centre_lines::weld_curves;
+use super::centre_lines::{centre_lines, weld_curves};
 use super::emitter::Emitter;
 use super::filled::{Filled, fill_planned};
 use super::support::Support;
@@ -31,6 +31,7 @@ pub fn preview(
     let filled = match part {
         Part::Mesh(import) => of_mesh(&import.mesh, profile, index, task)?,
         Part::Curves { curves, height, .. } => {
+            let curves = &*centre_lines(curves, profile)?;
             let slabs = levels::of_curves(curves, *height, &profile.single_wall()?, &Warmth::default());
             let index = index.min(slabs.len().saturating_sub(1));
             slabs.get(index).map(|slab| weld_curves(curves, index, *slab, profile))

@@ -6,6 +6,7 @@ use crate::deposit::Figures;
 use crate::fill;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
+use crate::model::wall_curves::Sides;
 use crate::task::Cancelled;
 use crate::warning::Warnings;
 use glam::DVec3;
@@ -100,6 +101,23 @@ pub enum PlanError<E> {
         width: f64,
         /// A place on it, mm.
         place: DVec3,
+    },
+    /// Curves that may be the sides of one wall or the centre-lines of two.
+    #[error(
+        "curves run side by side {:.2} to {:.2} mm apart, near x {:.1} y {:.1} z {:.1} mm. If they are the two sides of a wall, \
+         set wall.curves = \"sides\": one bead is laid in the middle between them. If they are the centre-lines of walls, set \
+         wall.curves = \"centre\".",
+        .0.thickness.0, .0.thickness.1, .0.place.x, .0.place.y, .0.place.z
+    )]
+    SideBySide(Sides),
+    /// Curves that should be the sides of walls are not.
+    #[error(
+        "not every curve has exactly one other at its side, less than {within:.1} mm away at the same height, as the sides of a \
+         wall have (wall.curves). Leave the curves of one wall out of the file, or set wall.curves = \"centre\"."
+    )]
+    NoSides {
+        /// How far apart the sides of a wall may be, mm.
+        within: f64,
     },
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]

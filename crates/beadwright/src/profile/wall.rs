@@ -2,6 +2,7 @@
 
 use crate::fill::wall::WallSettings;
 use crate::limit::{TINY, section};
+use crate::model::wall_curves::CurvesAre;
 
 section! {
     /// How the strategy `wall` lays beads (Li et al.); every key has a default.
@@ -25,6 +26,10 @@ section! {
         /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. The strategy `wall` welds
         /// all of them.
         thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie next to a thinner wall rather than in it";
+        /// What curves that run side by side are, closer than two beads: the `sides` of a wall, which gets one bead in the
+        /// middle between them, or the `centre` lines of walls; without it, such curves are not planned.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        curves: Option<CurvesAre> = None;
         /// Whether closed walls become the turns of one helix, from the bottom to the top with one arc start; default false.
         /// Each layer must be one closed wall.
         helix: bool = false;

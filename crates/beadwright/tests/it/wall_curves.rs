@@ -6,12 +6,14 @@ use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::PartRef;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
-use beadwright::model::wall_curves::{WallCurves, WallCurvesError};
+use beadwright::model::wall_curves::{CurvesAre, WallCurves, WallCurvesError};
 use beadwright::pass::Pass;
 use beadwright::plan;
+use beadwright::planar::polyline;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::{DAffine3, DVec3};
+use std::f64::consts::FRAC_PI_2;
 
 fn profile(width: f64, height: f64) -> Profile {
     let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
@@ -128,4 +130,79 @@ fn what_is_no_wall_is_refused_with_the_place() {
     assert!(matches!(curves(&uneven), Err(WallCurvesError::Uneven { lower: 2, upper: 1, .. })));
     let nothing = WallCurves::of_iges(&IgesFile::default(), &DAffine3::IDENTITY);
     assert_eq!(nothing, Err(WallCurvesError::None { curves: 0 }));
+}
+
+/// The two sides of a wall of a thickness (mm) along a line that bends, and its middle.
+fn two_sides(thickness: f64, closed: bool) -> ([Nurbs; 2], Nurbs) {
+    let half = thickness / 2.0;
+    if closed {
+        return ([circle(30.0 - half, 0.0), circle(30.0 + half, 0.0)], circle(30.0, 0.0));
+    }
+    // A quarter of a turn between two straight stretches.
+    let line = |by: f64| {
+        let bend = (0..=60).map(|k| {
+            let (y, x) = (f64::from(k) / 60.0 * FRAC_PI_2).sin_cos();
+            DVec3::new(-(20.0 + by) * x, (20.0 + by) * y, 0.0)
+        });
+        let ends = [DVec3::new(-20.0 - by, -40.0, 0.0), DVec3::new(50.0, 20.0 + by, 0.0)];
+        Nurbs::polyline(std::iter::once(ends[0]).chain(bend).chain([ends[1]]).collect()).unwrap()
+    };
+    ([line(-half), line(half)], line(0.0))
+}
+
+#[test]
+fn two_sides_are_planned_as_one_wall_along_their_middle() {
+    for closed in [false, true] {
+        for thickness in [3.0, 3.5, 4.0] {
+            let (sides, middle) = two_sides(thickness, closed);
+            let mut profile = profile(3.5, 2.0);
+            let plan = |given: &WallCurves, profile: &Profile| {
+                plan::plan("wall", PartRef::Curves(given, 20.0), profile, &Task::new())
+            };
+            let given = curves(&sides).unwrap();
+            assert!(
+                matches!(plan(&given, &profile), Err(plan::PlanError::SideBySide(_))),
+                "{thickness} was not asked about"
+            );
+            profile.wall.curves = Some(CurvesAre::Sides);
+            let [by_sides, by_middle] = [
+                plan(&given, &profile).unwrap(),
+                plan(&curves(&[middle]).unwrap(), &{
+                    let mut alone = profile.clone();
+                    alone.wall.curves = None;
+                    alone
+                })
+                .unwrap(),
+            ];
+            assert_eq!(by_sides.summary.notes.iter().any(|note| note.contains("apart")), thickness != 3.5);
+            assert_eq!(by_sides.layers.len(), by_middle.layers.len());
+            for (a, b) in by_sides.layers.iter().zip(&by_middle.layers) {
+                assert_eq!((a.passes.len(), b.passes.len()), (1, 1));
+                let (a, b) = (a.passes[0].line(), b.passes[0].line());
+                let away = a.iter().map(|p| {
+                    let squares = b.windows(2).map(|ends| polyline::distance_squared_to_segment(*p, ends[0], ends[1]));
+                    squares.fold(f64::INFINITY, f64::min).sqrt()
+                });
+                assert!(away.fold(0.0, f64::max) < 0.03, "{thickness}");
+            }
+            profile.wall.curves = Some(CurvesAre::Centre);
+            assert!(plan(&given, &profile).unwrap().layers[0].passes.len() > 1);
+        }
+    }
+}
+
+#[test]
+fn curves_that_are_no_pairs_are_refused_as_sides() {
+    let mut profile = profile(4.0, 2.0);
+    let rings = curves(&[circle(20.0, 0.0), circle(23.5, 0.0), circle(27.0, 0.0)]).unwrap();
+    let plan = |profile: &Profile| plan::plan("wall", PartRef::Curves(&rings, 10.0), profile, &Task::new());
+    assert!(
+        matches!(plan(&profile), Err(plan::PlanError::SideBySide(sides)) if (sides.thickness.0 - 3.5).abs() < 0.02)
+    );
+    profile.wall.curves = Some(CurvesAre::Sides);
+    assert!(matches!(plan(&profile), Err(plan::PlanError::NoSides { within }) if within == 8.0));
+    // Far apart, they are centre-lines without a word.
+    profile.wall.curves = None;
+    let apart = curves(&[circle(20.0, 0.0), circle(40.0, 0.0)]).unwrap();
+    assert!(plan::plan("wall", PartRef::Curves(&apart, 10.0), &profile, &Task::new()).is_ok());
 }

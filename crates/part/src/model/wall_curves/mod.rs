@@ -1,5 +1,13 @@
 //! Walls given by curves instead of a solid: the centre-lines of one layer, or of several heights with the wall lofted
 //! between them.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `sides` | the middle between curves that are the two sides of a wall |
+
+mod sides;
+
+pub use sides::{CurvesAre, Sides};
 
 use super::iges::IgesFile;
 use crate::curve::Nurbs;
