@@ -30,6 +30,7 @@ pub use read::ProfileError;
 pub use slice::SliceSection;
 pub use wall::WallSection;
 
+use crate::bead::pace::PaceSettings;
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
 use crate::dialect::inform::InformSpeed;
@@ -41,7 +42,6 @@ use crate::layer::Layer;
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
-use crate::pass::PassKind;
 use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::robot::Track;
@@ -291,30 +291,16 @@ impl Profile {
         WallBead::for_wall(self.bead.width, self.bead().area())
     }
 
-    /// What layer `index` (from 0) of that thickness (mm) adds to a wall, mm; `None` where walls are not predicted. The
-    /// first is thicker than what it adds: the bead on the substrate is a cap, higher than the others but with the same metal.
-    pub fn wall_rise(&self, index: usize, height: f64) -> Option<f64> {
-        let wall = self.wall_bead().ok().flatten()?;
-        Some(if index == 0 { wall.rise() } else { height })
-    }
-
-    /// Pace, mm/s, of a bead by its width, mm, in layer `index` (from 0) of that thickness (mm). In a wall the bead fills
-    /// its width over what the layer adds. Elsewhere the law of the bead holds, and layers fitted evenly to a part, or to
-    /// its walls, get the metal that fills them.
-    pub fn pace_in(&self, index: usize, height: f64, kind: PassKind) -> impl Fn(f64) -> f64 + '_ {
-        let (bead, nominal, rise) = (self.bead(), self.process.deposition_speed, self.wall_rise(index, height));
-        let fitted = self.layers.fit == LayerFit::Even && height > 0.0 && !self.is_level();
-        let thinner = match rise {
-            Some(rise) => bead.rise(self.stepover()) / rise,
-            None if fitted => self.layers.height / height,
-            None => 1.0,
-        };
-        let wall = rise.filter(|_| kind == PassKind::Wall);
-        let dot = self.dot().filter(|_| kind == PassKind::Spot);
-        move |width| match (wall, dot) {
-            (_, Some(dot)) => dot.pace(width),
-            (Some(rise), None) => nominal * bead.area() / (width * rise),
-            (None, None) => nominal * thinner * self.bead.law.pace(&bead, width),
+    /// What determines the pace of beads. Layers fitted evenly to a part, or to its walls, get the metal that fills them.
+    pub fn pace_settings(&self) -> PaceSettings<'_> {
+        let fitted = self.layers.fit == LayerFit::Even && !self.is_level();
+        PaceSettings {
+            bead: self.bead(),
+            law: &self.bead.law,
+            nominal: self.process.deposition_speed,
+            stepover: self.stepover(),
+            wall: self.wall_bead().ok().flatten(),
+            filled: fitted.then_some(self.layers.height),
         }
     }
 

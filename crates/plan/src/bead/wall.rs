@@ -210,6 +210,12 @@ impl WallBead {
         self.rise
     }
 
+    /// What layer `index` (from 0) of that thickness (mm) adds to the wall, mm. The first is thicker than what it adds: the bead
+    /// on the substrate is a cap, higher than the others but with the same metal.
+    pub fn rise_of_layer(&self, index: usize, thickness: f64) -> f64 {
+        if index == 0 { self.rise } else { thickness }
+    }
+
     /// What a layer adds in height, mm, where the wall leans by `lean` (radians) from the build direction: h_n cos φ.
     /// The paper's eq (8) prints h_n sin α, which is this with α measured from the horizontal plane.
     pub fn rise_leaning(&self, lean: f64) -> f64 {
