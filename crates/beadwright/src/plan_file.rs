@@ -177,10 +177,10 @@ pub enum PlanFileError {
 /// Reads a plan file.
 ///
 /// ```
-/// use beadwright::{Profile, Task, example, plan, plan_file};
+/// use beadwright::{Profile, StrategyName, Task, example, plan, plan_file};
 ///
 /// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
-/// profile.fill.strategy = "zigzag".to_owned();
+/// profile.fill.strategy = StrategyName::Zigzag;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let plan = plan("cross", &cross, &profile, &Task::new())?;
 /// let layers: String = plan.layers.iter().map(plan_file::layer).collect();

@@ -3,7 +3,6 @@
 use super::MAX_LAYERS;
 use crate::bead::wall::WallError;
 use crate::deposit::Figures;
-use crate::fill;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::task::Cancelled;
@@ -69,9 +68,6 @@ pub enum PlanError<E> {
     /// Stopped by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The profile names a strategy that does not exist.
-    #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
-    UnknownStrategy(String),
     /// The plan would be too large.
     #[error(
         "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. \

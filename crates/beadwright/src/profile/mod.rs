@@ -36,7 +36,7 @@ use crate::bead::{Bead, MassBalance};
 use crate::dialect::inform::InformSpeed;
 use crate::dialect::reading::Options;
 use crate::dialect::{Job, Sections};
-use crate::fill::FillSettings;
+use crate::fill::{FillSettings, StrategyName};
 use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 use crate::layer::Layer;
 use crate::limit::Limit;
@@ -268,7 +268,7 @@ impl Profile {
     /// [`WallError`] for a bead from which no wall can be predicted.
     pub fn wall_bead(&self) -> Result<Option<WallBead>, WallError> {
         let predicted = match self.layers.predict {
-            Predict::Auto => self.fill.strategy == "wall",
+            Predict::Auto => self.fill.strategy == StrategyName::Wall,
             Predict::Always => true,
             Predict::Never => false,
         };
@@ -279,7 +279,7 @@ impl Profile {
     /// leaves room on purpose, or where a paper is followed to the letter.
     pub fn is_level(&self) -> bool {
         let walls = self.wall_bead().is_ok_and(|wall| wall.is_some());
-        let literal = self.hybrid.literal && self.fill.strategy == "hybrid";
+        let literal = self.hybrid.literal && self.fill.strategy == StrategyName::Hybrid;
         self.layers.level && self.fill.infill_density >= 1.0 && !walls && !literal
     }
 
@@ -343,13 +343,12 @@ impl Profile {
     ///
     /// ```
     /// use beadwright::planar::{DVec2, Polygon, Ring};
-    /// use beadwright::{Profile, fill};
+    /// use beadwright::{Profile, StrategyName};
     ///
     /// // Half a bead of 7.54 mm stays free at each edge; the 42.46 mm in between take nine lines, at most 5.39 mm apart.
     /// let profile = Profile::built_in("cmt-al2319-kuka")?;
     /// let plate = Polygon::simple(Ring::new([(0.0, 0.0), (60.0, 0.0), (60.0, 50.0), (0.0, 50.0)].map(DVec2::from).to_vec()));
-    /// let raster = fill::strategy("raster").ok_or("no such strategy")?;
-    /// let laid = raster.fill(&plate, &profile.fill_settings(0));
+    /// let laid = StrategyName::Raster.strategy().fill(&plate, &profile.fill_settings(0));
     /// assert_eq!(laid.stages[0].len(), 9);
     /// assert!(laid.stages[0].iter().all(|line| (line.length() - (60.0 - 7.54)).abs() < 0.01));
     /// # Ok::<(), Box<dyn std::error::Error>>(())

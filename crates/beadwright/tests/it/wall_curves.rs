@@ -3,6 +3,7 @@
 use beadwright::bead::Overlap;
 use beadwright::curve::Nurbs;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::PartRef;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
@@ -15,7 +16,7 @@ use glam::{DAffine3, DVec3};
 
 fn profile(width: f64, height: f64) -> Profile {
     let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
-    profile.fill.strategy = "wall".to_owned();
+    profile.fill.strategy = StrategyName::Wall;
     (profile.bead.width, profile.bead.height) = (width, height);
     (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(width));
     profile
