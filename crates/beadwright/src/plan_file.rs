@@ -130,6 +130,7 @@ pub struct PlanFile {
 
 /// Why a plan file cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanFileError {
     /// Not JSON, or not a plan.
     #[error("this is not a plan.json of Beadwright: {0}. Make the plan again with `beadwright plan`.")]

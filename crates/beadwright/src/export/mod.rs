@@ -56,6 +56,7 @@ pub struct Format {
 
 /// Why a plan cannot be exported.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExportError {
     /// Nothing to write.
     #[error("the plan has no passes, so there is nothing to export")]

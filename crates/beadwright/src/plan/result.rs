@@ -64,6 +64,7 @@ impl Summary {
 
 /// Why a plan could not be made. `E` is the error of the sink.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError<E> {
     /// Stopped by the caller.
     #[error(transparent)]

@@ -23,6 +23,7 @@ pub struct WallBead {
 
 /// Why the height of a wall cannot be predicted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WallError {
     /// Width or height is zero, negative or not a number.
     #[error("a bead of width {width} mm and height {height} mm is impossible: both must be above 0 mm.")]

@@ -16,6 +16,7 @@ macro_rules! strategies {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        #[non_exhaustive]
         pub enum StrategyName {
             $($(#[$about])* $name,)*
         }
