@@ -1,8 +1,6 @@
 //! The built-in strategies by the names that people type.
 
-use super::{
-    Strategy, compound, contour, fermat, hilbert, hybrid, mat, one_loop, partition, raster, spiral, wall, zigzag,
-};
+use super::Strategy;
 use bead_part::text::toml::nearest;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -48,29 +46,29 @@ macro_rules! strategies {
 
 strategies! {
     /// Rings that fill an island evenly, joined into one path.
-    Loop: one_loop::OneLoop,
+    Loop: super::one_loop::OneLoop,
     /// Parallel scan lines, all in one direction.
-    Raster: raster::Raster,
+    Raster: super::raster::Raster,
     /// Scan lines joined along the boundary.
-    Zigzag: zigzag::Zigzag,
+    Zigzag: super::zigzag::Zigzag,
     /// Rings parallel to the boundary, until nothing is left.
-    Contour: contour::Contour,
+    Contour: super::contour::Contour,
     /// Zigzag inside, then perimeters (Liu et al. 2022).
-    Compound: compound::Compound,
+    Compound: super::compound::Compound,
     /// Contours, and their pockets filled along their medial axis (Zhao et al. 2023).
-    Hybrid: hybrid::Hybrid,
+    Hybrid: super::hybrid::Hybrid,
     /// Contours connected into one path (Park et al. 2003).
-    Spiral: spiral::Spiral,
+    Spiral: super::spiral::Spiral,
     /// Connected Fermat spirals (Zhao et al. 2016).
-    Fermat: fermat::Fermat,
+    Fermat: super::fermat::Fermat,
     /// A Hilbert curve.
-    Hilbert: hilbert::Hilbert,
+    Hilbert: super::hilbert::Hilbert,
     /// Zigzags in nearly convex cells (Ding et al. 2014).
-    Partition: partition::Partition,
+    Partition: super::partition::Partition,
     /// Rings from the medial axis outwards (Ding et al. 2016).
-    Mat: mat::Mat,
+    Mat: super::mat::Mat,
     /// Thin walls along their middle, in the fewest paths that do not cross (Li et al.).
-    Wall: wall::Wall,
+    Wall: super::wall::Wall,
 }
 
 impl StrategyName {
