@@ -7,7 +7,7 @@ mod families;
 
 use beadwright::dialect::reading::{self, Options};
 use beadwright::export::toolpath;
-use beadwright::fill::STRATEGIES;
+use beadwright::fill::StrategyName;
 use beadwright::model::{MAX_REACH_MM, Model, Placement, import_damaged, outline};
 use beadwright::planar::{DVec2, FillRule, Join, Region, Ring};
 use beadwright::profile::{BUILT_IN, Profile, edit};
@@ -168,7 +168,7 @@ pub fn plan(data: &[u8]) {
         Region::from_rings(&rings(rest), FillRule::EvenOdd).into_polygons()
     };
     let mut profile = PROFILES[usize::from(choice / 16) % PROFILES.len()].clone();
-    STRATEGIES[usize::from(choice % 16) % STRATEGIES.len()].name().clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::ALL[usize::from(choice % 16) % StrategyName::ALL.len()];
     let Some(mesh) = families::extruded(&islands, 2.0 * profile.layers.height) else { return };
     let Ok(plan) = beadwright::plan("part", &mesh, &profile, &Task::new()) else { return };
     for layer in &plan.layers {

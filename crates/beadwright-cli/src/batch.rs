@@ -14,6 +14,7 @@ mod table;
 
 use crate::plan::{parse_grid, parse_height};
 use crate::{file, model, profile, progress, say};
+use beadwright::fill::StrategyName;
 use row::{Asked, Row, Run};
 use std::io::Write;
 use std::path::PathBuf;
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
     profile: Vec<String>,
     /// Strategy instead of the profile's; may be given several times.
     #[arg(long, short, value_name = "NAME")]
-    strategy: Vec<String>,
+    strategy: Vec<StrategyName>,
     /// Values of a key of the profile, such as fill.strategy=loop,zigzag, or N of them from A to B, such as
     /// layers.height=1.8:2.2:3; if given several times, every value of one is combined with every value of the others.
     #[arg(long, value_name = "KEY=V1,V2,…|KEY=A:B:N", value_parser = sweep::parse)]
@@ -106,8 +107,8 @@ fn verdict(table: &Table) -> anyhow::Result<()> {
 impl Arguments {
     /// Every file with every profile, strategy and swept value, in this order.
     fn runs(&self) -> anyhow::Result<Vec<Run>> {
-        let strategies: Vec<Option<&String>> =
-            if self.strategy.is_empty() { vec![None] } else { self.strategy.iter().map(Some).collect() };
+        let strategies: Vec<Option<StrategyName>> =
+            if self.strategy.is_empty() { vec![None] } else { self.strategy.iter().copied().map(Some).collect() };
         let factors = [self.files.len(), self.profile.len(), strategies.len()];
         let plans = factors.into_iter().chain(self.sweep.iter().map(Sweep::len)).fold(1, usize::saturating_mul);
         anyhow::ensure!(
@@ -118,11 +119,11 @@ impl Arguments {
         let mut runs = Vec::with_capacity(plans);
         for file in &self.files {
             for profile in &self.profile {
-                for strategy in &strategies {
+                for &strategy in &strategies {
                     let run = |swept: &Vec<(String, String)>| Run {
                         file: file.clone(),
                         profile: profile.clone(),
-                        strategy: strategy.cloned(),
+                        strategy,
                         swept: swept.clone(),
                     };
                     runs.extend(points.iter().map(run));

@@ -5,7 +5,7 @@ use crate::{model, profile, program, progress};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
 use beadwright::files::write_file;
-use beadwright::fill;
+use beadwright::fill::StrategyName;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     set: Vec<String>,
     /// Strategy to compare; may be given several times; all strategies if left out.
     #[arg(long, short, value_name = "NAME")]
-    strategy: Vec<String>,
+    strategy: Vec<StrategyName>,
     /// Program for the same part, to judge alongside them; may be given several times.
     #[arg(long, value_name = "FILE")]
     program: Vec<PathBuf>,
@@ -44,15 +44,14 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(arguments.profile.as_deref().unwrap_or(profile::USUAL), &arguments.set)?;
-    let all = || fill::STRATEGIES.iter().map(|s| s.name().to_owned()).collect();
-    let names: Vec<String> = if arguments.strategy.is_empty() { all() } else { arguments.strategy.clone() };
+    let names = if arguments.strategy.is_empty() { StrategyName::ALL } else { &arguments.strategy };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(profile.bead.width, &task)?;
     say_size(&import.mesh, &profile)?;
     let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();
-    for name in &names {
+    for &name in names {
         let entry = compare::strategy(&import.mesh, &profile, name, settings, &chosen, &task);
         entries.push(entry.with_context(|| format!("{}", arguments.model.model.display()))?);
     }
@@ -74,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let lead = format!("Profile {}, beads of {} mm; {}", profile.name, profile.bead.width, compare::SCORE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
-    for (name, layer) in names.iter().flat_map(|name| middle.map(|layer| (name, layer))) {
+    for (name, layer) in names.iter().flat_map(|&name| middle.map(|layer| (name, layer))) {
         compare::add_steps(&mut page, &import.mesh, &profile, name, layer.index, &task)?;
     }
     write_file(&arguments.output, page.html().as_bytes())?;

@@ -7,7 +7,9 @@ use beadwright::Finding;
 use beadwright::check;
 use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
+use beadwright::dialect;
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
@@ -19,7 +21,6 @@ use beadwright::profile::Profile;
 use beadwright::read_back;
 use beadwright::report::{self, rows};
 use beadwright::task::Task;
-use beadwright::{dialect, fill};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     pub(crate) height: Option<f64>,
     #[arg(long, short, value_name = "NAME", help = strategy_help())]
-    pub(crate) strategy: Option<String>,
+    pub(crate) strategy: Option<StrategyName>,
     /// Meaning of an open surface: the skin of a solid, whose contours are filled, or a wall, along which one bead is
     /// laid.
     #[arg(long, value_name = "solid|wall", value_parser = ["solid", "wall"])]
@@ -95,7 +96,7 @@ pub(crate) struct Arguments {
 }
 
 fn strategy_help() -> String {
-    format!("Strategy instead of the profile's: {}", fill::STRATEGIES.map(|strategy| strategy.name()).join(", "))
+    format!("Strategy instead of the profile's: {}", StrategyName::list())
 }
 
 fn post_help() -> String {

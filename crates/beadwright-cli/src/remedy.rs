@@ -88,6 +88,6 @@ fn scan(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
             "--align fit aligns the scan with the part."
         }
         SeeError::Height { .. } => "--align plate takes the plate in the scan as z = 0.",
-        SeeError::NoLayer { .. } => return None,
+        _ => return None,
     })
 }

@@ -43,7 +43,7 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
         return match error {
             ProfileError::Text { line, .. } => Some(format!("line {line}")),
             ProfileError::Value { key, .. } | ProfileError::Key { key } => Some(key.clone()),
-            ProfileError::UnknownName { .. } | ProfileError::File { .. } => None,
+            _ => None,
         };
     }
     if let Some(OwnError { file, line, .. }) = error.downcast_ref() {

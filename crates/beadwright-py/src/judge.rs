@@ -1,7 +1,7 @@
 //! What layers would build: the deposit model's figures, pages and height fields.
 
 use crate::array::{Array, Item};
-use crate::error::raise;
+use crate::error::{Refuse, raise};
 use crate::part::Part;
 use crate::plan::Plan;
 use crate::profile::Profile;
@@ -10,6 +10,7 @@ use beadwright::compare::{self as library, Chosen, Entry, Totals};
 use beadwright::deposit::DepositSettings;
 use beadwright::deposit::field::{Grid, bands};
 use beadwright::deposit::stroke::strokes;
+use beadwright::fill::StrategyName;
 use beadwright::layer;
 use beadwright::metrics::Metrics;
 use beadwright::planar::Bounds;
@@ -113,9 +114,11 @@ pub(crate) fn compare<'py>(
     let count = (mesh.bounds().1.z / profile.layers.height) as usize;
     let settings = fitted(grid, plan::deposit_settings(profile), &seen_from_above(mesh.bounds()), count)?;
     let chosen: Chosen = layers;
+    let strategies: Result<Vec<StrategyName>, _> = strategies.iter().map(|name| name.parse()).collect();
+    let strategies = strategies.refuse(None)?;
     Running::new(threads, progress).run(py, Some(&part.name), |task| {
-        let judged = |name: &String| {
-            let entry = library::strategy(mesh, profile, name, settings, &chosen, task)?;
+        let judged = |name: &StrategyName| {
+            let entry = library::strategy(mesh, profile, *name, settings, &chosen, task)?;
             Ok::<_, beadwright::PlanError<_>>(Judged { entry, notes: Vec::new(), faults: Vec::new() })
         };
         strategies.iter().map(judged).collect::<Result<Vec<_>, _>>()

@@ -1,7 +1,7 @@
 //! Profiles: TOML text, checked, and changed key by key.
 
 use crate::error::{Refuse, raise};
-use beadwright::fill;
+use beadwright::fill::StrategyName;
 use beadwright::profile::{self, BUILT_IN, ProfileError, edit};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub(crate) fn profile_names() -> Vec<&'static str> {
 /// Names of the strategies.
 #[pyfunction]
 pub(crate) fn strategy_names() -> Vec<&'static str> {
-    fill::STRATEGIES.map(|strategy| strategy.name()).to_vec()
+    StrategyName::ALL.iter().map(|strategy| strategy.name()).collect()
 }
 
 /// Parses a profile; `base` (Python) gives the text of what `inherits` names, or none for a built-in one. Exceptions from it

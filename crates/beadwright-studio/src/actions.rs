@@ -3,6 +3,7 @@
 use crate::export::Export;
 use crate::jobs::Ask;
 use crate::text::Language;
+use beadwright::fill::StrategyName;
 use beadwright::model::Placement;
 use eframe::egui::{Context, Id, Key, KeyboardShortcut, Modifiers, Popup};
 use std::path::PathBuf;
@@ -83,7 +84,7 @@ pub enum Action {
     /// Sets the height of a wall made from curves, mm.
     Height(f64),
     /// Plans with a second strategy too.
-    CompareWith(&'static str),
+    CompareWith(StrategyName),
     /// Removes a message, by its index.
     Dismiss(usize),
     /// Computes the steps of the strategies in the layer in view.

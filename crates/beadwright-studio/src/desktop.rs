@@ -1,5 +1,6 @@
 //! The window on the desktop, and the arguments it starts with.
 
+use beadwright::fill::StrategyName;
 use beadwright_studio::Studio;
 use beadwright_studio::settings::Store;
 use beadwright_studio::view::{Mode, Side};
@@ -47,7 +48,7 @@ struct Arguments {
     robot: bool,
     /// Second strategy to plan and show next to the first.
     #[arg(long, value_name = "STRATEGY")]
-    compare_with: Option<String>,
+    compare_with: Option<StrategyName>,
     /// Change a value of the profile, such as fill.strategy=hybrid; may be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     set: Vec<(String, String)>,
@@ -125,7 +126,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         }
     }
     arguments.scan.iter().for_each(|scan| studio.open_scan(scan));
-    if let Some(strategy) = &arguments.compare_with {
+    if let Some(strategy) = arguments.compare_with {
         studio.compare_with(Some(strategy));
     }
     let view = studio.view();

@@ -132,7 +132,7 @@ fn section(key: &str, definition: &Value, about: String, defs: &Value) -> Vec<Se
 }
 
 fn field_of(key: &str, name: &str, property: &Value, optional: bool, defs: &Value) -> Option<Field> {
-    let kind = words(key).map(Kind::Choice).or_else(|| kind(property, defs))?;
+    let kind = kind(property, defs)?;
     Some(Field {
         key: key.to_owned(),
         name: name.to_owned(),
@@ -140,12 +140,6 @@ fn field_of(key: &str, name: &str, property: &Value, optional: bool, defs: &Valu
         kind,
         optional,
     })
-}
-
-/// Words that the schema does not list.
-fn words(key: &str) -> Option<Vec<(String, String)>> {
-    (key == "fill.strategy")
-        .then(|| beadwright::fill::STRATEGIES.map(|strategy| (strategy.name().to_owned(), String::new())).to_vec())
 }
 
 fn kind(property: &Value, defs: &Value) -> Option<Kind> {

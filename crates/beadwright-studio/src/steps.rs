@@ -1,7 +1,7 @@
 //! How a strategy comes to the passes of a layer: pockets and skeleton regions of the hybrid, rings and flips of the loop.
 
 use crate::jobs::{self, Job};
-use beadwright::fill::{hybrid, one_loop};
+use beadwright::fill::{StrategyName, hybrid, one_loop};
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use eframe::egui::Context;
@@ -20,9 +20,9 @@ impl Steps {
     /// The steps of every island of a layer; none for strategies that have no such steps.
     fn of(layer: &Layer, profile: &Profile) -> Vec<Self> {
         let (settings, islands) = (profile.fill_settings(layer.index), layer.islands.iter());
-        match profile.fill.strategy.as_str() {
-            "hybrid" => islands.map(|island| Self::Hybrid(hybrid::Steps::of(island, &settings))).collect(),
-            "loop" => islands
+        match profile.fill.strategy {
+            StrategyName::Hybrid => islands.map(|island| Self::Hybrid(hybrid::Steps::of(island, &settings))).collect(),
+            StrategyName::Loop => islands
                 .flat_map(|island| one_loop::steps(island, &settings))
                 .map(|(steps, middle)| Self::Loop(Box::new(steps), middle))
                 .collect(),

@@ -18,6 +18,7 @@ use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
 use crate::view3d::{Camera, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
+use beadwright::fill::StrategyName;
 use beadwright::profile::{Profile, edit};
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
@@ -30,7 +31,7 @@ use std::time::Duration;
 /// A second plan of the same part, with another strategy.
 pub struct Other {
     /// The strategy.
-    pub strategy: String,
+    pub strategy: StrategyName,
     /// Its planner.
     pub planner: Planner,
     /// Its plan.
@@ -399,18 +400,18 @@ impl Studio {
         if let Some(other) = &mut self.plans.other {
             other.looked.forget();
             other.plan.restart();
-            other.planner.plan(&with_strategy(project, &other.strategy), self.view.last);
+            other.planner.plan(&with_strategy(project, other.strategy), self.view.last);
         }
     }
 
     /// Plans the part with a second strategy too, shown next to the first; none removes the second plan.
-    pub fn compare_with(&mut self, strategy: Option<&str>) {
+    pub fn compare_with(&mut self, strategy: Option<StrategyName>) {
         let Some(strategy) = strategy else {
             self.plans.other = None;
             return;
         };
         let mut other = Other {
-            strategy: strategy.to_owned(),
+            strategy,
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
             looked: Looked::default(),
@@ -443,7 +444,7 @@ fn bell(ctx: &Context, render_state: Option<&RenderState>) -> impl Fn(Urgency) +
 }
 
 /// A project with another strategy.
-fn with_strategy(mut project: Project, strategy: &str) -> Project {
+fn with_strategy(mut project: Project, strategy: StrategyName) -> Project {
     if let Ok(text) = edit::with_value(&project.profile, "fill.strategy", &format!("\"{strategy}\"")) {
         project.profile = text;
     }

@@ -62,7 +62,7 @@ fn main() {
 /// How far the figures lie apart; `None` without the model or a plan of it.
 fn compare(name: &str, scale: f64, profile: &str, strategy: &str, turn: f64) -> Option<f64> {
     let mut profile = Profile::built_in(profile).unwrap_or_else(|_| Profile::parse(profile).unwrap());
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     let folder = std::env::var("BEADWRIGHT_MODELS")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/models").to_owned());
     let bytes = std::fs::read(PathBuf::from(folder).join(format!("{name}.stl"))).ok()?;

@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use beadwright::deposit::{Figures, Judge};
-use beadwright::fill::{self, Strategy};
+use beadwright::fill::{self, Strategy, StrategyName};
 use beadwright::layer::Layer;
 use beadwright::model::{self, Mesh};
 use beadwright::pass::Pass;
@@ -61,7 +61,7 @@ fn main() {
             let slicer = Slicer::new(&mesh, profile.slice_options(), &Task::new()).unwrap();
             let layers = slicer.all(&Task::new()).unwrap();
             for strategy in given("--strategies", everyone) {
-                let strategy = fill::strategy(&strategy).unwrap_or_else(|| panic!("no strategy {strategy}"));
+                let strategy = strategy.parse::<StrategyName>().unwrap_or_else(|error| panic!("{error}")).strategy();
                 let row = Row::of(&layers, strategy, &profile, mesh.bounds().0.midpoint(mesh.bounds().1).truncate());
                 println!("{name:24} {:9} {turn:>3}°: {row}", strategy.name());
             }

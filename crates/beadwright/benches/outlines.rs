@@ -7,7 +7,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
 
 use beadwright::bead::Section;
-use beadwright::fill::{self, FillSettings, Path};
+use beadwright::fill::{FillSettings, Path, StrategyName};
 use beadwright::planar::{DVec2, FillRule, Lattice, Region, Ring};
 use beadwright::profile::Profile;
 use rayon::prelude::*;
@@ -94,7 +94,7 @@ fn row(file: &path::Path, rounds: u32) -> Row {
     // Flat beads side by side, thin enough that their round sides do not count.
     (settings.stepover, settings.bead.height, settings.min_pass_length) = (WIDTH, 1e-3, 0.0);
     (settings.one_loop.width_limits, settings.wall.width_limits, settings.one_loop.rounds) = (limits, limits, rounds);
-    let strategy = fill::strategy("loop").unwrap();
+    let strategy = StrategyName::Loop.strategy();
     let clock = Instant::now();
     let fills = region.polygons().iter().flat_map(|island| strategy.fill(island, &settings).stages);
     let passes: Vec<Path> = fills.flatten().collect();

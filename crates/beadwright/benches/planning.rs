@@ -5,6 +5,7 @@
 
 use beadwright::deposit::Judge;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::model::{self, Mesh};
 use beadwright::order::Method;
 use beadwright::order::tour::{Ends, Stop};
@@ -155,7 +156,7 @@ fn loop_of_holes(bencher: Bencher, holes: usize) {
 fn fill_layer(bencher: Bencher, strategy: &str, island: &Polygon) {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let settings = profile.fill_settings(0);
-    let strategy = beadwright::fill::strategy(strategy).unwrap();
+    let strategy = strategy.parse::<StrategyName>().unwrap().strategy();
     bencher.bench(|| strategy.fill(black_box(island), &settings));
 }
 

@@ -7,7 +7,7 @@
 //! draws only the pictures. plate_holes.stl is read from `BEADWRIGHT_MODELS` (default ../shared/models).
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use beadwright::fill::STRATEGIES;
+use beadwright::fill::StrategyName;
 use beadwright::glam::DVec3;
 use beadwright::model::{self, Mesh};
 use beadwright::profile::Profile;
@@ -33,11 +33,11 @@ fn main() {
     if words.iter().any(|word| word == "--pictures") {
         return pictures(&profile);
     }
-    let mut rows: Vec<(String, &str, String)> = Vec::new();
+    let mut rows: Vec<(String, StrategyName, String)> = Vec::new();
     for (name, scale) in PARTS.into_iter().filter(|part| chosen(given("--parts"), part.0)) {
         let mesh = mesh(name);
         let part = if scale == 1.0 { name.to_owned() } else { format!("{name} × {scale}") };
-        for strategy in STRATEGIES.map(|s| s.name()).into_iter().filter(|s| chosen(given("--strategies"), s)) {
+        for &strategy in StrategyName::ALL.iter().filter(|s| chosen(given("--strategies"), s.name())) {
             let worst = TURNS.map(|turn| row(&mesh, scale, turn, strategy, &profile)).into_iter();
             let worst = worst.reduce(|a, b| std::array::from_fn(|k| a[k].max(b[k]))).unwrap();
             let [void, layer, over, starts, metres, turns, minutes, refilled, lost] = worst;
@@ -55,7 +55,7 @@ fn main() {
 }
 
 /// Writes the common table, and the figures of each strategy into its page.
-fn write(rows: &[(String, &str, String)]) {
+fn write(rows: &[(String, StrategyName, String)]) {
     let mut common = String::new();
     for of_part in rows.chunk_by(|a, b| a.0 == b.0) {
         let lines: Vec<_> = of_part
@@ -65,7 +65,7 @@ fn write(rows: &[(String, &str, String)]) {
         common += &table(&of_part[0].0, lines.iter().map(|(name, cells)| (name.as_str(), cells.as_str())));
     }
     fill("strategies.md", "table", &common);
-    for strategy in STRATEGIES.map(|s| s.name()) {
+    for &strategy in StrategyName::ALL {
         let own = rows.iter().filter(|row| row.1 == strategy);
         let figures = table("part", own.map(|(part, _, cells)| (part.as_str(), cells.as_str())));
         fill(&format!("strategies/{strategy}.md"), "figures", &figures);
@@ -93,10 +93,10 @@ fn fill(page: &str, mark: &str, text: &str) {
 
 /// A layer of the gear by each strategy, of the frame by `wall`.
 fn pictures(profile: &Profile) {
-    for strategy in STRATEGIES.map(|s| s.name()) {
-        let part = if strategy == "wall" { "tian" } else { "gear" };
+    for &strategy in StrategyName::ALL {
+        let part = if strategy == StrategyName::Wall { "tian" } else { "gear" };
         let mut profile = profile.clone();
-        profile.fill.strategy = strategy.to_owned();
+        profile.fill.strategy = strategy;
         let plan = plan::plan(part, &mesh(part), &profile, &Task::new()).unwrap();
         let title = format!("{strategy}: layer {} of the example {part}", DRAWN + 1);
         let picture = report::svg::layer(&plan.layers[DRAWN], &title);
@@ -115,13 +115,13 @@ fn mesh(name: &str) -> Mesh {
 
 /// Void in %, over all layers and on the worst one; overfill in %; arc starts, metres of bead, turns and minutes a layer;
 /// islands that contours had to fill, and passes left out since they were too short, in all.
-fn row(mesh: &Mesh, scale: f64, turn: f64, strategy: &str, profile: &Profile) -> [f64; 9] {
+fn row(mesh: &Mesh, scale: f64, turn: f64, strategy: StrategyName, profile: &Profile) -> [f64; 9] {
     let (mut mesh, mut profile) = (mesh.clone(), profile.clone());
     mesh.place(scale, DVec3::new(0.0, 0.0, turn));
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy;
     let entry =
         compare::strategy(&mesh, &profile, strategy, plan::deposit_settings(&profile), &None, &Task::new()).unwrap();
-    let warnings = plan::plan(strategy, &mesh, &profile, &Task::new()).unwrap().summary.warnings;
+    let warnings = plan::plan(strategy.name(), &mesh, &profile, &Task::new()).unwrap().summary.warnings;
     let count = |kind| warnings.summaries().filter(|w| w.kind == kind).map(|w| w.count).sum::<usize>() as f64;
     let (figures, totals, layers) = (&entry.figures, &entry.totals, entry.layers.len() as f64);
     let worst = entry.layers.iter().map(|layer| layer.figures.void_percent()).fold(0.0, f64::max);

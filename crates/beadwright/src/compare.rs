@@ -2,6 +2,7 @@
 
 use crate::deposit::{DepositSettings, Figures, Judge, Patch, Picture, Stack, stack::Growth};
 use crate::dialect::reading::ReadTotals;
+use crate::fill::StrategyName;
 use crate::layer::{self, Layer};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
@@ -152,14 +153,14 @@ fn bounds(mesh: &Mesh) -> Bounds {
 /// Plans a mesh with a strategy and judges the chosen layers; only these are kept.
 ///
 /// ```
-/// use beadwright::{Profile, Task, compare, example, plan};
+/// use beadwright::{Profile, StrategyName, Task, compare, example, plan};
 /// use std::collections::BTreeSet;
 ///
 /// // Only the lowest layer is judged.
 /// let profile = Profile::built_in("cmt-al2319-kuka")?;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let (settings, lowest) = (plan::deposit_settings(&profile), Some(BTreeSet::from([0])));
-/// let entry = compare::strategy(&cross, &profile, "zigzag", settings, &lowest, &Task::new())?;
+/// let entry = compare::strategy(&cross, &profile, StrategyName::Zigzag, settings, &lowest, &Task::new())?;
 /// assert_eq!((entry.name.as_str(), entry.layers.len()), ("zigzag", 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -169,18 +170,18 @@ fn bounds(mesh: &Mesh) -> Bounds {
 pub fn strategy(
     mesh: &Mesh,
     profile: &Profile,
-    name: &str,
+    name: StrategyName,
     settings: DepositSettings,
     chosen: &Chosen,
     task: &Task,
 ) -> Result<Entry, PlanError<Infallible>> {
     let mut profile = profile.clone();
-    profile.fill.strategy = name.to_owned();
+    profile.fill.strategy = name;
     let mut planned = Planned { entry: EntryBuilder::new(settings, &bounds(mesh), chosen), profile: &profile };
-    let metrics = plan::plan_into(name, mesh, &profile, task, &mut planned)?.metrics;
+    let metrics = plan::plan_into(name.name(), mesh, &profile, task, &mut planned)?.metrics;
     let entry = planned.entry;
     let totals = Totals { turns: entry.turns, ..Totals::of_plan(&metrics) };
-    Ok(entry.entry(name, totals))
+    Ok(entry.entry(name.name(), totals))
 }
 
 impl Totals {
@@ -342,7 +343,7 @@ pub fn add_steps(
     page: &mut Sheet,
     mesh: &Mesh,
     profile: &Profile,
-    strategy: &str,
+    strategy: StrategyName,
     layer: usize,
     task: &Task,
 ) -> Result<(), Cancelled> {
@@ -352,8 +353,8 @@ pub fn add_steps(
     let Some(slice) = slices.get(layer % BATCH) else { return Ok(()) };
     let settings = profile.fill_settings(layer);
     let sketches = match strategy {
-        "loop" => steps::loop_sketches(&slice.islands, &settings),
-        "hybrid" => steps::sketches(&slice.islands, &settings),
+        StrategyName::Loop => steps::loop_sketches(&slice.islands, &settings),
+        StrategyName::Hybrid => steps::sketches(&slice.islands, &settings),
         _ => return Ok(()),
     };
     page.heading(&format!("The steps of the {strategy} on layer {}", layer + 1));

@@ -54,7 +54,7 @@ pub use bead_robot as robot;
 pub use crate::bead::Bead;
 pub use crate::check::check;
 pub use crate::deposit::{Figures, Judge};
-pub use crate::fill::{FillSettings, Strategy};
+pub use crate::fill::{FillSettings, Strategy, StrategyName};
 pub use crate::finding::Finding;
 pub use crate::layer::Layer;
 pub use crate::metrics::Metrics;

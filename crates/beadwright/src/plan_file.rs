@@ -130,6 +130,7 @@ pub struct PlanFile {
 
 /// Why a plan file cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanFileError {
     /// Not JSON, or not a plan.
     #[error("this is not a plan.json of Beadwright: {0}. Make the plan again with `beadwright plan`.")]
@@ -177,10 +178,10 @@ pub enum PlanFileError {
 /// Reads a plan file.
 ///
 /// ```
-/// use beadwright::{Profile, Task, example, plan, plan_file};
+/// use beadwright::{Profile, StrategyName, Task, example, plan, plan_file};
 ///
 /// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
-/// profile.fill.strategy = "zigzag".to_owned();
+/// profile.fill.strategy = StrategyName::Zigzag;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let plan = plan("cross", &cross, &profile, &Task::new())?;
 /// let layers: String = plan.layers.iter().map(plan_file::layer).collect();

@@ -61,6 +61,7 @@ pub struct ReadBack {
 
 /// Why a program cannot be read back.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadBackError {
     /// It is in no known language, or holds nothing to judge.
     #[error(transparent)]

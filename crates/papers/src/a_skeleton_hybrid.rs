@@ -6,6 +6,7 @@ use beadwright::bead::MassBalance;
 use beadwright::compare::{self, Entry};
 use beadwright::dialect;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::fill::hybrid::ScanAlong;
 use beadwright::model::Mesh;
 use beadwright::plan;
@@ -31,7 +32,7 @@ const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
 /// [`ReproduceError`] when the task was cancelled.
 pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let mut profile = Profile::built_in("cmt-al2319-kuka").map_err(|e| wrong(&e))?;
-    profile.fill.strategy = "hybrid".to_owned();
+    profile.fill.strategy = StrategyName::Hybrid;
     // The paper's layers are of one height, its beads of one speed.
     profile.layers.level = false;
     let literal = literal(&profile, ScanAlong::Auto);
@@ -47,13 +48,13 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     );
     goal::tabulate(&mut page, &goals);
     page.heading("The steps on layer 5, to the letter of the paper");
-    compare::add_steps(&mut page, &mesh, &literal, "hybrid", LAYER, task).map_err(|e| wrong(&e))?;
+    compare::add_steps(&mut page, &mesh, &literal, StrategyName::Hybrid, LAYER, task).map_err(|e| wrong(&e))?;
     page.heading("The steps on layer 5, our default");
     page.text(
         "Narrow regions get beads along their medial axis, widths follow the room, beads are linked to contours that end \
          near them, and where regions would need more arc starts than contours, the smallest are left to the contours.",
     );
-    compare::add_steps(&mut page, &mesh, &profile, "hybrid", LAYER, task).map_err(|e| wrong(&e))?;
+    compare::add_steps(&mut page, &mesh, &profile, StrategyName::Hybrid, LAYER, task).map_err(|e| wrong(&e))?;
     page.heading("What the deposit model says about all layers");
     page.text(
         "Figure 5 of the paper: along the long side of a region, lines are long but stairs stay at its edges; along the \
@@ -96,20 +97,28 @@ fn literal(profile: &Profile, along: ScanAlong) -> Profile {
     profile
 }
 
-fn judged(mesh: &Mesh, profile: &Profile, strategy: &str, task: &Task) -> Result<Entry, ReproduceError> {
+fn judged(mesh: &Mesh, profile: &Profile, strategy: StrategyName, task: &Task) -> Result<Entry, ReproduceError> {
     compare::strategy(mesh, profile, strategy, plan::deposit_settings(profile), &None, task).map_err(|e| wrong(&e))
 }
 
 /// The paper, its two directions of lines, what it is compared with, and our own.
 fn entries(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Entry>, ReproduceError> {
-    let named =
-        |name: &str, profile: &Profile| Ok(Entry { name: name.to_owned(), ..judged(mesh, profile, "hybrid", task)? });
+    let named = |name: &str, profile: &Profile| {
+        Ok(Entry { name: name.to_owned(), ..judged(mesh, profile, StrategyName::Hybrid, task)? })
+    };
     let mut entries = vec![
         named("hybrid, literal", &literal(profile, ScanAlong::Short))?,
         named("literal, along the long side", &literal(profile, ScanAlong::Long))?,
         named("hybrid, default", profile)?,
     ];
-    for strategy in ["contour", "zigzag", "compound", "partition", "mat", "loop"] {
+    for strategy in [
+        StrategyName::Contour,
+        StrategyName::Zigzag,
+        StrategyName::Compound,
+        StrategyName::Partition,
+        StrategyName::Mat,
+        StrategyName::Loop,
+    ] {
         entries.push(judged(mesh, profile, strategy, task)?);
     }
     Ok(entries)
@@ -122,8 +131,9 @@ fn goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
     let (mut most, mut void, mut saved, mut better): (f64, f64, f64, f64) = (0.0, 0.0, f64::INFINITY, f64::INFINITY);
     for turn in TURNS {
         let mesh = part("propeller", turn)?;
-        let [ours, along, contour] = [(&short, "hybrid"), (&long, "hybrid"), (profile, "contour")]
-            .map(|(profile, strategy)| judged(&mesh, profile, strategy, task));
+        let [ours, along, contour] =
+            [(&short, StrategyName::Hybrid), (&long, StrategyName::Hybrid), (profile, StrategyName::Contour)]
+                .map(|(profile, strategy)| judged(&mesh, profile, strategy, task));
         let (ours, along, contour) = (ours?, along?, contour?);
         (most, void) = (most.max(starts(&ours)), void.max(ours.figures.void_percent()));
         saved = saved.min(starts(&contour) - starts(&ours));
@@ -154,7 +164,10 @@ fn goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
         let (mut more, mut times): (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
         for turn in TURNS {
             let mesh = part(name, turn)?;
-            let (ours, contour) = (judged(&mesh, profile, "hybrid", task)?, judged(&mesh, profile, "contour", task)?);
+            let (ours, contour) = (
+                judged(&mesh, profile, StrategyName::Hybrid, task)?,
+                judged(&mesh, profile, StrategyName::Contour, task)?,
+            );
             more = more.max(starts(&ours) - starts(&contour));
             times = times.min(contour.figures.void_percent() / ours.figures.void_percent().max(1e-3));
         }

@@ -5,7 +5,7 @@ use crate::goal::{self, Goal};
 use crate::{ReproduceError, Reproduced};
 use beadwright::compare::{self, Entry};
 use beadwright::example;
-use beadwright::fill::RasterSpacing;
+use beadwright::fill::{RasterSpacing, StrategyName};
 use beadwright::plan;
 use beadwright::profile::{Profile, RasterTurn};
 use beadwright::report::plot::{Curve, Plot};
@@ -21,12 +21,12 @@ const PAPER: f64 = 0.591;
 const TANGENT: f64 = 0.738;
 
 /// What the paper says of its four specimens, and our own strategy next to them.
-const SPECIMENS: [(&str, &str, f64, &str); 5] = [
-    ("zigzag", "zigzag only", PAPER, "the outline is ragged"),
-    ("contour", "contour only", PAPER, "pores along the middle"),
-    ("compound", "compound, 0.738 w", TANGENT, "pores where zigzag meets contour"),
-    ("compound", "compound, 0.591 w", PAPER, "dense, the shape is kept"),
-    ("loop", "our loop", PAPER, "not in the paper"),
+const SPECIMENS: [(StrategyName, &str, f64, &str); 5] = [
+    (StrategyName::Zigzag, "zigzag only", PAPER, "the outline is ragged"),
+    (StrategyName::Contour, "contour only", PAPER, "pores along the middle"),
+    (StrategyName::Compound, "compound, 0.738 w", TANGENT, "pores where zigzag meets contour"),
+    (StrategyName::Compound, "compound, 0.591 w", PAPER, "dense, the shape is kept"),
+    (StrategyName::Loop, "our loop", PAPER, "not in the paper"),
 ];
 
 /// The parts on which the distance is tried.
@@ -55,15 +55,21 @@ struct Case<'a> {
     scale: f64,
     /// About the vertical, degrees.
     turn: f64,
-    strategy: &'a str,
+    strategy: StrategyName,
     /// From the contour to the zigzag, in bead widths.
     gap: f64,
     lattice: RasterSpacing,
 }
 
 /// The paper's own case.
-const CROSS: Case<'_> =
-    Case { part: "cross", scale: 1.0, turn: 0.0, strategy: "compound", gap: PAPER, lattice: RasterSpacing::Even };
+const CROSS: Case<'_> = Case {
+    part: "cross",
+    scale: 1.0,
+    turn: 0.0,
+    strategy: StrategyName::Compound,
+    gap: PAPER,
+    lattice: RasterSpacing::Even,
+};
 
 /// The void of one part at all angles, %, at the paper's distance and at that of the scan lines.
 struct Turned {
@@ -125,7 +131,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          size (0.3 to 1.5 mm) and height (0.1 mm) that the paper measured are those of its machine.",
     );
     for (part, size, scale) in FIGURE_8 {
-        let strategies = ["zigzag", "contour", "compound"];
+        let strategies = [StrategyName::Zigzag, StrategyName::Contour, StrategyName::Compound];
         let entries = strategies.map(|strategy| Case { part, scale, strategy, ..CROSS }.judged(task));
         let entries = entries.into_iter().collect::<Result<Vec<_>, _>>()?;
         let rows: Vec<Row> = entries.iter().map(|entry| row(&entry.name, "dense, even", entry)).collect();

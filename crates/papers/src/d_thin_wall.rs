@@ -16,6 +16,7 @@ use beadwright::deposit::stroke::strokes;
 use beadwright::deposit::{DepositSettings, Judge, Mask, Picture};
 use beadwright::dialect;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::wall_curves::WallCurves;
 use beadwright::model::{Mesh, PartRef, iges};
@@ -224,7 +225,7 @@ fn curves(part: &Part, degrees: f64) -> Result<WallCurves, ReproduceError> {
 /// The process for a part: beads of `area` (mm²) at the paper's speed, and the wire that brings them.
 fn profile(part: &Part, area: f64) -> Result<Profile, ReproduceError> {
     let mut profile = Profile::built_in("cmt-steel-abb").map_err(wrong)?;
-    profile.fill.strategy = "wall".to_owned();
+    profile.fill.strategy = StrategyName::Wall;
     (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(part.wall));
     profile.bead.width = part.wall;
     profile.bead.height = profile.bead.section.height_of(part.wall, area);

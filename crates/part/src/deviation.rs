@@ -109,6 +109,7 @@ impl Serialize for Doubt {
 
 /// Why a scan cannot be compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DeviationError {
     /// No point.
     #[error("the scan holds no points, so there is nothing to compare.")]

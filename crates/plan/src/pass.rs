@@ -1,6 +1,7 @@
 //! A pass in space: the path with the arc on, and the width and pace along it.
 
-use crate::process::Process;
+use crate::bead::pace::LayerPace;
+use crate::process::{Dot, Process};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,15 @@ impl PassKind {
             Self::Skeleton => "skeleton",
             Self::Wall => "wall",
             Self::Spot => "spot",
+        }
+    }
+
+    /// Pace, mm/s, of a pass of this width, mm, in a layer; `dot` is what the process lays where the torch stands still.
+    pub fn pace(self, layer: &LayerPace<'_>, dot: Option<Dot>, width: f64) -> f64 {
+        match (self, dot) {
+            (Self::Spot, Some(dot)) => dot.pace(width),
+            (Self::Wall, _) => layer.of_wall(width),
+            _ => layer.of_bead(width),
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::urdf::UrdfError;
 
 /// Why a cell was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CellError {
     /// No built-in cell has that name.
     #[error("there is no built-in cell \"{name}\". {hint}")]

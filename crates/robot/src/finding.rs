@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 /// What is wrong at a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
+#[non_exhaustive]
 pub enum Trouble {
     /// No joint angles put the torch there.
     OutOfReach {

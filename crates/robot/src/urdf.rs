@@ -22,6 +22,7 @@ const MAKERS_FLANGE: &str = "tool0";
 
 /// Why a URDF file was refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum UrdfError {
     /// Not XML, or not a URDF file.
     #[error("it is not a URDF file: {0}.")]

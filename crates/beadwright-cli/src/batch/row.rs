@@ -5,6 +5,7 @@ use crate::plan::{deposit_settings, refused};
 use crate::profile;
 use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Figures, Judge};
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Header, Sink, Summary};
@@ -19,7 +20,7 @@ pub(crate) struct Run {
     pub(super) file: PathBuf,
     pub(super) profile: String,
     /// The profile's if none is asked for.
-    pub(super) strategy: Option<String>,
+    pub(super) strategy: Option<StrategyName>,
     /// Keys with their values.
     pub(super) swept: Vec<(String, String)>,
 }
@@ -42,7 +43,7 @@ pub(super) struct Row {
 
 /// What is kept of a plan.
 pub(super) struct Planned {
-    pub(super) strategy: String,
+    pub(super) strategy: StrategyName,
     pub(super) summary: Summary,
     pub(super) figures: Option<Figures>,
     /// The layer in the middle, as SVG.
@@ -72,7 +73,7 @@ pub(super) fn plan(run: &Run, asked: &Asked<'_>, task: &Task) -> anyhow::Result<
     let mut summary = summary.map_err(|error| refused(error, &run.file))?;
     summary.notes.splice(0..0, part.notes().iter().cloned().chain(note));
     let figures = kept.judge.as_ref().map(|judge| *judge.total());
-    Ok(Planned { strategy: profile.fill.strategy.clone(), summary, figures, picture: kept.picture })
+    Ok(Planned { strategy: profile.fill.strategy, summary, figures, picture: kept.picture })
 }
 
 /// Judges layers as they come, and draws the one in the middle.

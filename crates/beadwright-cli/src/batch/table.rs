@@ -2,6 +2,7 @@
 
 use super::row::{Planned, Row};
 use crate::profile;
+use beadwright::fill::StrategyName;
 use beadwright::report::sheet::Sheet;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -68,10 +69,10 @@ impl Planned {
 }
 
 impl Row {
-    fn strategy(&self) -> &str {
+    fn strategy(&self) -> &'static str {
         match &self.planned {
-            Ok(planned) => &planned.strategy,
-            Err(_) => self.run.strategy.as_deref().unwrap_or_default(),
+            Ok(planned) => planned.strategy.name(),
+            Err(_) => self.run.strategy.map_or("", StrategyName::name),
         }
     }
 

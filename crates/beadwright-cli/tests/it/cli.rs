@@ -132,9 +132,10 @@ fn wrong_usage_and_wrong_values_are_told_apart() {
     refused(folder.path(), &["plan"], 2);
     refused(folder.path(), &["weld", "cross.stl"], 2);
     refused(folder.path(), &["plan", "cross.stl", "--units", "ell"], 2);
+    let said = refused(folder.path(), &["plan", "cross.stl", "--strategy", "zigzg"], 2);
+    assert!(said.contains("Did you mean \"zigzag\"? The strategies are loop, raster, zigzag, contour"), "{said}");
     for (arguments, part) in [
         (&["-p", "cmt-al2319-kuke"][..], "Did you mean \"cmt-al2319-kuka\"?"),
-        (&["--strategy", "serpentine"], "raster, zigzag, contour, compound"),
         (&["--post", "kawasaki"], "The posts are krl, gcode, marlin, rapid, fanuc, inform, urscript."),
         (&["--post", "fanuc"], "cmt-steel-robots"),
         (&["--post", "rapid"], "cmt-steel-abb"),

@@ -6,7 +6,7 @@ use crate::actions::Action;
 use crate::planner::Failure;
 use crate::studio::Studio;
 use crate::view3d::Style;
-use beadwright::fill;
+use beadwright::fill::StrategyName;
 use eframe::egui::{ComboBox, Grid, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -32,7 +32,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             if let Some(Failure::Sentence(text)) = &other.plan.failure {
                 right.colored_label(right.visuals().error_fg_color, text);
             }
-            right.strong(&other.strategy);
+            right.strong(other.strategy.name());
         }
         if solid { in_solid(studio, left, right) } else { in_layers(studio, left, right) }
     });
@@ -79,18 +79,19 @@ fn in_solid(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
 }
 
 fn choose(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.plans.other.as_ref().map_or_else(|| "–".to_owned(), |other| other.strategy.clone());
+    let now = studio.plans.other.as_ref().map(|other| other.strategy);
     let mut chosen = None;
     let label = ui.label(studio.t("other-strategy"));
-    let combo = ComboBox::from_id_salt("other-strategy").selected_text(&now).show_ui(ui, |ui| {
-        for strategy in fill::STRATEGIES {
-            if ui.selectable_label(now == strategy.name(), strategy.name()).clicked() {
-                chosen = Some(strategy.name());
+    let combo =
+        ComboBox::from_id_salt("other-strategy").selected_text(now.map_or("–", StrategyName::name)).show_ui(ui, |ui| {
+            for &strategy in StrategyName::ALL {
+                if ui.selectable_label(now == Some(strategy), strategy.name()).clicked() {
+                    chosen = Some(strategy);
+                }
             }
-        }
-    });
+        });
     combo.response.labelled_by(label.id);
-    if let Some(strategy) = chosen.filter(|strategy| *strategy != now) {
+    if let Some(strategy) = chosen.filter(|_| chosen != now) {
         studio.request(Action::CompareWith(strategy));
     }
 }
@@ -99,7 +100,7 @@ fn choose(studio: &mut Studio, ui: &mut Ui) {
 pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
     let Some(other) = &studio.plans.other else { return };
     let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
-    let names = [studio.plans.own.header.as_ref().map_or("", |header| &header.strategy), &other.strategy];
+    let names = [studio.plans.own.header.as_ref().map_or("", |header| header.strategy.as_str()), other.strategy.name()];
     // As many tables side by side as fit leave more room for the views.
     const WIDTH: f32 = 400.0;
     let tables = ((ui.available_width() / WIDTH) as usize).clamp(1, own.len().max(1));

@@ -6,8 +6,9 @@ use crate::studio::Studio;
 use crate::text::Language;
 use crate::theme;
 use crate::view::{Mode, Side};
+use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::task::Stage;
-use beadwright::{example, fill};
 use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, Ui};
 
 pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
@@ -109,16 +110,17 @@ fn languages(studio: &mut Studio, ui: &mut Ui) {
 }
 
 fn bar(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.parsed().map(|parsed| parsed.profile.fill.strategy.clone()).unwrap_or_default();
+    let now = studio.parsed().map(|parsed| parsed.profile.fill.strategy);
     let label = ui.label(studio.t("strategy"));
-    let mut chosen = now.clone();
-    let combo = ComboBox::from_id_salt("strategy").selected_text(&now).show_ui(ui, |ui| {
-        for strategy in fill::STRATEGIES {
-            ui.selectable_value(&mut chosen, strategy.name().to_owned(), strategy.name());
-        }
-    });
+    let mut chosen = now;
+    let combo =
+        ComboBox::from_id_salt("strategy").selected_text(now.map_or("", StrategyName::name)).show_ui(ui, |ui| {
+            for &strategy in StrategyName::ALL {
+                ui.selectable_value(&mut chosen, Some(strategy), strategy.name());
+            }
+        });
     combo.response.labelled_by(label.id);
-    if chosen != now {
+    if let Some(chosen) = chosen.filter(|_| chosen != now) {
         studio.request(Action::SetValue("fill.strategy".to_owned(), format!("\"{chosen}\"")));
     }
     ui.separator();

@@ -9,6 +9,7 @@ use crate::view3d::LayerBeads;
 use beadwright::Finding;
 use beadwright::check::CHECKS;
 use beadwright::deposit::{Figures, Judgement, figures};
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::wall_curves::WallCurves;
 use beadwright::model::{Import, Mesh, Object, Part, RepairReport, Units};
@@ -24,7 +25,7 @@ use std::sync::Arc;
 enum Sent {
     Progress(Stage, f64),
     /// The part, where it differs from the one sent before, and the strategy it is planned with.
-    Part(Option<Body>, String),
+    Part(Option<Body>, StrategyName),
     Preview(Arc<Layer>),
     Begin(Header),
     Layer(Arc<Layer>),
@@ -116,7 +117,7 @@ impl Packer {
                 let known = self.part.as_ref().is_some_and(|known| Arc::ptr_eq(known, &part));
                 let body = (!known).then(|| Body::of(&part));
                 self.part = Some(part);
-                Sent::Part(body, profile.fill.strategy.clone())
+                Sent::Part(body, profile.fill.strategy)
             }
             Event::Preview(layer, _) => Sent::Preview(layer),
             Event::Begin(header) => Sent::Begin(header),
@@ -179,7 +180,7 @@ impl Unpacker {
         })
     }
 
-    fn part(&mut self, body: Option<Body>, strategy: String) -> Result<Event, String> {
+    fn part(&mut self, body: Option<Body>, strategy: StrategyName) -> Result<Event, String> {
         if let Some(body) = body {
             let part = Arc::new(body.part());
             let mesh = part.mesh().map(|mesh| Arc::new(mesh.clone()));

@@ -19,7 +19,7 @@ fn layers(name: &str, profile: &Profile) -> Vec<Arc<Layer>> {
 fn they_are_those_that_the_model_finds_layer_by_layer() {
     for (name, strategy) in [("cross", "contour"), ("star", "zigzag")] {
         let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-        strategy.clone_into(&mut profile.fill.strategy);
+        profile.fill.strategy = strategy.parse().unwrap();
         let layers = layers(name, &profile);
         let found = temperatures(&layers, &profile).unwrap();
         let owned: Vec<Layer> = layers.iter().map(|layer| (**layer).clone()).collect();

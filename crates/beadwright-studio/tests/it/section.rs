@@ -1,5 +1,6 @@
 //! The section through the 3-D view: what is seen and what is picked is what lies on the plane.
 
+use beadwright::fill::StrategyName;
 use beadwright::pass::PassKind;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
@@ -16,7 +17,7 @@ const SIZE: DVec2 = DVec2::new(800.0, 400.0);
 
 fn planned(name: &str) -> Scene {
     let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    "hybrid".clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::Hybrid;
     let import = model::import(&example::find(name).unwrap().stl(), &Task::default()).unwrap();
     let mut mesh = import.mesh;
     mesh.place(1.0, DVec3::ZERO);

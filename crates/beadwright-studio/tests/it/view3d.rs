@@ -1,6 +1,7 @@
 //! The 3-D view: its clock, what is picked, where the camera looks, and what colour the pixels have.
 
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::metrics::Metrics;
 use beadwright::model;
 use beadwright::plan::{Plan, plan};
@@ -277,7 +278,7 @@ fn hue([r, g, b]: [u8; 3]) -> (f64, f64) {
 fn beads_have_the_hue_of_their_kind_where_they_lie() {
     let Some(state) = renderer() else { return };
     let mut profile = profile();
-    "hybrid".clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::Hybrid;
     let (plan, scene) = planned("star", &profile);
     let top = plan.layers.len() - 1;
     let beads = scene.layer(top).unwrap();
@@ -385,7 +386,7 @@ fn pictures() {
     }
     for (part, strategy) in [("gear", "hybrid"), ("pot", "wall"), ("vase", "contour")] {
         let mut profile = profile.clone();
-        strategy.clone_into(&mut profile.fill.strategy);
+        profile.fill.strategy = strategy.parse().unwrap();
         let (_, scene) = planned(part, &profile);
         shoot(&mut view, &scene, &format!("m-{part}.png"), Iso, 1.0, plain.clone());
     }

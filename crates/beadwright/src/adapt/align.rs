@@ -38,6 +38,7 @@ pub struct Aligned {
 
 /// Why a scan cannot be aligned with the part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AlignError {
     /// The scan shows no plate.
     #[error(

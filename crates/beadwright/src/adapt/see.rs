@@ -50,6 +50,7 @@ pub struct Seen {
 
 /// Why a scan cannot be of a build.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SeeError {
     /// No such layer.
     #[error("the plan has the layers 1 to {layers}; layer {number} is not one of them.")]

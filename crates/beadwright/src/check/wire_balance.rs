@@ -18,12 +18,16 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let profile = subject.profile;
     let (process, balance) = (&profile.process, profile.mass_balance());
+    let (settings, dot) = (profile.pace_settings(), profile.dot());
     let nominal = balance.warning().map(|text| CHECK.of_plan(text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
-        let pace = profile.pace_in(layer.index, layer.height, pass.kind);
+        let paces = settings.in_layer(layer.index, layer.height);
         // A wall takes the wire that fills its width over the rise of the layer.
-        let rise = profile.wall_rise(layer.index, layer.height).filter(|_| pass.kind == PassKind::Wall);
-        let fitting = |width: f64| rise.map_or_else(|| pace(width), |rise| balance.wire / (width * rise));
+        let rise = paces.wall_rise().filter(|_| pass.kind == PassKind::Wall);
+        let fitting = |width: f64| match rise {
+            Some(rise) => balance.wire / (width * rise),
+            None => pass.kind.pace(&paces, dot, width),
+        };
         // Where a helix begins and ends, it fills less than a layer.
         let most = if layer.lit.is_turn() { 1.0 / Lit::LEAST } else { 1.0 };
         let off = |s: &Segment| {

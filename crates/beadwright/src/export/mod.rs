@@ -56,6 +56,7 @@ pub struct Format {
 
 /// Why a plan cannot be exported.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ExportError {
     /// Nothing to write.
     #[error("the plan has no passes, so there is nothing to export")]
@@ -97,10 +98,10 @@ pub const FORMATS: &[Format] = &[
 ///
 /// ```
 /// use beadwright::export::{Beads, format};
-/// use beadwright::{Profile, Task, example, plan};
+/// use beadwright::{Profile, StrategyName, Task, example, plan};
 ///
 /// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
-/// profile.fill.strategy = "raster".to_owned();
+/// profile.fill.strategy = StrategyName::Raster;
 /// let star = example::find("star").ok_or("no such example")?.mesh();
 /// let plan = plan("star", &star, &profile, &Task::new())?;
 /// let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: None };

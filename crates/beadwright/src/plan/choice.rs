@@ -1,7 +1,7 @@
 //! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
 
 use crate::fill::wall::Wall;
-use crate::fill::{Path, Strategy, sound};
+use crate::fill::{Path, Strategy, StrategyName, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
 use crate::profile::{Predict, Profile};
 use crate::slice::{Slab, Slice, Slicer, Surface};
@@ -36,11 +36,11 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     let mut profile = profile.clone();
     let mut note = None;
     match part {
-        Part::Curves { .. } => "wall".clone_into(&mut profile.fill.strategy),
-        Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => "wall".clone_into(&mut profile.fill.strategy),
-        Part::Mesh(import) if !kept && profile.fill.strategy == "loop" => {
+        Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
+        Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
+        Part::Mesh(import) if !kept && profile.fill.strategy == StrategyName::Loop => {
             if let Some(walls) = walls(&import.mesh, &profile, task)? {
-                "wall".clone_into(&mut profile.fill.strategy);
+                profile.fill.strategy = StrategyName::Wall;
                 if walls == Walls::Thick && profile.layers.predict == Predict::Auto {
                     profile.layers.predict = Predict::Never;
                 }

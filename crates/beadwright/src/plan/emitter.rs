@@ -171,12 +171,13 @@ pub(super) fn passes(
 
 /// Paths at the height of their layer; its top and its thickness, mm.
 pub(super) fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
+    let (paces, dot) = (profile.pace_settings().in_layer(layer, thickness), profile.dot());
     let lift = |path: Path| Pass {
         kind: path.kind,
         closed: path.closed,
         points: path.points.into_iter().map(|p| p.extend(top)).collect(),
         // The wire feed stays the same: a wider bead is laid more slowly.
-        pace: path.width.map(profile.pace_in(layer, thickness, path.kind)),
+        pace: path.width.map(|width| path.kind.pace(&paces, dot, width)),
         width: path.width,
         wait: 0.0,
     };

@@ -55,7 +55,7 @@ pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
 
 use crate::deposit::Stack;
-use crate::fill::{self, Strategy};
+use crate::fill::Strategy;
 use crate::layer::Extent;
 use crate::metrics::Metrics;
 use crate::model::holes::{self, Opening};
@@ -85,10 +85,10 @@ pub const MAX_LAYERS: usize = 100_000;
 /// for files and headings.
 ///
 /// ```
-/// use beadwright::{Profile, Task, example, plan};
+/// use beadwright::{Profile, StrategyName, Task, example, plan};
 ///
 /// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
-/// profile.fill.strategy = "zigzag".to_owned();
+/// profile.fill.strategy = StrategyName::Zigzag;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let plan = plan("cross", &cross, &profile, &Task::new())?;
 /// let passes: usize = plan.layers.iter().map(|layer| layer.passes.len()).sum();
@@ -137,7 +137,7 @@ fn plan_at<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part {
-        PartRef::Mesh(mesh) => plan_mesh(warmth, name, mesh, strategy_of(profile)?, profile, task, sink),
+        PartRef::Mesh(mesh) => plan_mesh(warmth, name, mesh, profile.fill.strategy.strategy(), profile, task, sink),
         PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
     }
 }
@@ -217,12 +217,6 @@ fn middle(mesh: &Mesh) -> DVec2 {
     low.midpoint(high).truncate()
 }
 
-/// The strategy of a profile.
-fn strategy_of<E>(profile: &Profile) -> Result<&'static dyn Strategy, PlanError<E>> {
-    let name = &profile.fill.strategy;
-    fill::strategy(name).ok_or_else(|| PlanError::UnknownStrategy(name.clone()))
-}
-
 /// Where the layers of a part would lie, without planning them.
 ///
 /// # Errors
@@ -248,7 +242,7 @@ fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> 
     check_layer_count(mesh, profile)?;
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
-        None if profile.is_level() => level_layers::slabs(mesh, strategy_of(profile)?, profile, task)?,
+        None if profile.is_level() => level_layers::slabs(mesh, profile.fill.strategy.strategy(), profile, task)?,
         None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }
@@ -278,7 +272,7 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let mut summary = run([name, &profile.fill.strategy], extent, heat, profile, task, sink, fill_batch)?;
+    let mut summary = run([name, profile.fill.strategy.name()], extent, heat, profile, task, sink, fill_batch)?;
     summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(

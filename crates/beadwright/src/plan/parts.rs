@@ -2,7 +2,7 @@
 
 use super::clearance::{Clearance, Close, Watch};
 use super::warm::Warmth;
-use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, strategy_of, warm};
+use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, warm};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::{Mesh, PartRef};
@@ -40,7 +40,7 @@ pub fn parts_into<S: Sink + Send>(
     let bounds = parts.iter().map(|(_, mesh)| mesh.bounds());
     let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
     let extent = Extent { layers: counts.iter().sum(), low, high };
-    let strategy = strategy_of(profile)?.name().to_owned();
+    let strategy = profile.fill.strategy.to_string();
     let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent };
     sink.begin(&header).map_err(PlanError::Sink)?;
     let (mut clearance, width) = (Clearance::default(), profile.bead.width);

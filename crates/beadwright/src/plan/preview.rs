@@ -5,7 +5,7 @@ use super::emitter::Emitter;
 use super::filled::{Filled, fill_planned};
 use super::support::Support;
 use super::warm::{Heat, Warmth};
-use super::{PlanError, Sink, levels, scan_lines, slabs_at, strategy_of};
+use super::{PlanError, Sink, levels, scan_lines, slabs_at};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
@@ -63,7 +63,7 @@ pub fn preview(
 }
 
 fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<Option<Filled>, PlanError<Infallible>> {
-    let (strategy, slabs) = (strategy_of(profile)?, slabs_at(&Warmth::default(), mesh, profile, task)?);
+    let (strategy, slabs) = (profile.fill.strategy.strategy(), slabs_at(&Warmth::default(), mesh, profile, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
     let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;

@@ -3,7 +3,6 @@
 use super::MAX_LAYERS;
 use crate::bead::wall::WallError;
 use crate::deposit::Figures;
-use crate::fill;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::Sides;
@@ -66,13 +65,11 @@ impl Summary {
 
 /// Why a plan could not be made. `E` is the error of the sink.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError<E> {
     /// Stopped by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The profile names a strategy that does not exist.
-    #[error("there is no strategy \"{0}\". The strategies are {known}.", known = fill::STRATEGIES.map(|s| s.name()).join(", "))]
-    UnknownStrategy(String),
     /// The plan would be too large.
     #[error(
         "the part is {height:.0} mm high and would take {layers} layers of {layer_height} mm; at most {MAX_LAYERS} are planned. \

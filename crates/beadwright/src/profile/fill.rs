@@ -1,7 +1,7 @@
 //! The section `[fill]`.
 
 use crate::bead::Overlap;
-use crate::fill::{ContourOrder, RasterSpacing};
+use crate::fill::{ContourOrder, RasterSpacing, StrategyName};
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub enum RasterTurn {
 pub struct FillSection {
     /// Strategy: `loop`, `raster`, `zigzag`, `contour`, `compound`, `hybrid`, `spiral`, `fermat`, `hilbert`, `partition`,
     /// `mat` or `wall`.
-    pub strategy: String,
+    pub strategy: StrategyName,
     /// Model for the overlap of neighbouring beads, which determines the stepover.
     pub overlap: Overlap,
     /// Distance between neighbouring centre-lines (stepover), mm; only with `overlap = "free"`.

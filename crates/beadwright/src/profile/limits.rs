@@ -2,7 +2,6 @@
 
 use super::Profile;
 use crate::dialect::{self, PLACEHOLDERS, own};
-use crate::fill;
 use crate::limit::{Broken, Limit};
 use crate::process::Follow;
 use crate::template;
@@ -53,10 +52,6 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
 
 fn contradiction(p: &Profile) -> Option<Broken> {
     let fill = &p.fill;
-    if fill::strategy(&fill.strategy).is_none() {
-        let names = fill::STRATEGIES.map(|s| s.name()).join(", ");
-        return Some(Broken::text("fill.strategy", &fill.strategy, format!("the strategies are {names}.")));
-    }
     match (fill.overlap.ratio(), fill.stepover) {
         (Some(_), Some(stepover)) => {
             let reason = "it may be given only with overlap = \"free\".".to_owned();

@@ -30,18 +30,18 @@ pub use read::ProfileError;
 pub use slice::SliceSection;
 pub use wall::WallSection;
 
+use crate::bead::pace::PaceSettings;
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
 use crate::dialect::inform::InformSpeed;
 use crate::dialect::reading::Options;
 use crate::dialect::{Job, Sections};
-use crate::fill::FillSettings;
+use crate::fill::{FillSettings, StrategyName};
 use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 use crate::layer::Layer;
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
-use crate::pass::PassKind;
 use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::robot::Track;
@@ -268,7 +268,7 @@ impl Profile {
     /// [`WallError`] for a bead from which no wall can be predicted.
     pub fn wall_bead(&self) -> Result<Option<WallBead>, WallError> {
         let predicted = match self.layers.predict {
-            Predict::Auto => self.fill.strategy == "wall",
+            Predict::Auto => self.fill.strategy == StrategyName::Wall,
             Predict::Always => true,
             Predict::Never => false,
         };
@@ -279,7 +279,7 @@ impl Profile {
     /// leaves room on purpose, or where a paper is followed to the letter.
     pub fn is_level(&self) -> bool {
         let walls = self.wall_bead().is_ok_and(|wall| wall.is_some());
-        let literal = self.hybrid.literal && self.fill.strategy == "hybrid";
+        let literal = self.hybrid.literal && self.fill.strategy == StrategyName::Hybrid;
         self.layers.level && self.fill.infill_density >= 1.0 && !walls && !literal
     }
 
@@ -291,30 +291,16 @@ impl Profile {
         WallBead::for_wall(self.bead.width, self.bead().area())
     }
 
-    /// What layer `index` (from 0) of that thickness (mm) adds to a wall, mm; `None` where walls are not predicted. The
-    /// first is thicker than what it adds: the bead on the substrate is a cap, higher than the others but with the same metal.
-    pub fn wall_rise(&self, index: usize, height: f64) -> Option<f64> {
-        let wall = self.wall_bead().ok().flatten()?;
-        Some(if index == 0 { wall.rise() } else { height })
-    }
-
-    /// Pace, mm/s, of a bead by its width, mm, in layer `index` (from 0) of that thickness (mm). In a wall the bead fills
-    /// its width over what the layer adds. Elsewhere the law of the bead holds, and layers fitted evenly to a part, or to
-    /// its walls, get the metal that fills them.
-    pub fn pace_in(&self, index: usize, height: f64, kind: PassKind) -> impl Fn(f64) -> f64 + '_ {
-        let (bead, nominal, rise) = (self.bead(), self.process.deposition_speed, self.wall_rise(index, height));
-        let fitted = self.layers.fit == LayerFit::Even && height > 0.0 && !self.is_level();
-        let thinner = match rise {
-            Some(rise) => bead.rise(self.stepover()) / rise,
-            None if fitted => self.layers.height / height,
-            None => 1.0,
-        };
-        let wall = rise.filter(|_| kind == PassKind::Wall);
-        let dot = self.dot().filter(|_| kind == PassKind::Spot);
-        move |width| match (wall, dot) {
-            (_, Some(dot)) => dot.pace(width),
-            (Some(rise), None) => nominal * bead.area() / (width * rise),
-            (None, None) => nominal * thinner * self.bead.law.pace(&bead, width),
+    /// What determines the pace of beads. Layers fitted evenly to a part, or to its walls, get the metal that fills them.
+    pub fn pace_settings(&self) -> PaceSettings<'_> {
+        let fitted = self.layers.fit == LayerFit::Even && !self.is_level();
+        PaceSettings {
+            bead: self.bead(),
+            law: &self.bead.law,
+            nominal: self.process.deposition_speed,
+            stepover: self.stepover(),
+            wall: self.wall_bead().ok().flatten(),
+            filled: fitted.then_some(self.layers.height),
         }
     }
 
@@ -357,13 +343,12 @@ impl Profile {
     ///
     /// ```
     /// use beadwright::planar::{DVec2, Polygon, Ring};
-    /// use beadwright::{Profile, fill};
+    /// use beadwright::{Profile, StrategyName};
     ///
     /// // Half a bead of 7.54 mm stays free at each edge; the 42.46 mm in between take nine lines, at most 5.39 mm apart.
     /// let profile = Profile::built_in("cmt-al2319-kuka")?;
     /// let plate = Polygon::simple(Ring::new([(0.0, 0.0), (60.0, 0.0), (60.0, 50.0), (0.0, 50.0)].map(DVec2::from).to_vec()));
-    /// let raster = fill::strategy("raster").ok_or("no such strategy")?;
-    /// let laid = raster.fill(&plate, &profile.fill_settings(0));
+    /// let laid = StrategyName::Raster.strategy().fill(&plate, &profile.fill_settings(0));
     /// assert_eq!(laid.stages[0].len(), 9);
     /// assert!(laid.stages[0].iter().all(|line| (line.length() - (60.0 - 7.54)).abs() < 0.01));
     /// # Ok::<(), Box<dyn std::error::Error>>(())

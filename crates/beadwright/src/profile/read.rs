@@ -13,6 +13,7 @@ use toml::de::{DeTable, DeValue, Deserializer};
 
 /// Why a profile was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProfileError {
     /// No built-in profile has that name.
     #[error("there is no built-in profile \"{name}\". {hint}")]

@@ -2,7 +2,6 @@
 //! of 3.1).
 
 use super::plot::{Curve, Plot};
-use crate::fill;
 use crate::fill::angle::{self, Curves};
 use crate::layer::Layer;
 use crate::pass::PassKind;
@@ -28,7 +27,7 @@ pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
 
 /// The plots of one layer as a section of the report; nothing for strategies without scan lines.
 pub(super) fn section(layer: &Layer, profile: &Profile) -> String {
-    let Some(strategy) = fill::strategy(&profile.fill.strategy) else { return String::new() };
+    let strategy = profile.fill.strategy.strategy();
     let curves = angle::curves(strategy, &layer.islands, &profile.fill_settings(layer.index));
     if curves.turns.is_empty() {
         return String::new();

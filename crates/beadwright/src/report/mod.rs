@@ -50,10 +50,10 @@ use std::collections::BTreeSet;
 /// Collects the layers of a plan for `report.html`; it keeps them in compact form only.
 ///
 /// ```
-/// use beadwright::{Profile, Task, example, model::RepairReport, plan, report::Report};
+/// use beadwright::{Profile, StrategyName, Task, example, model::RepairReport, plan, report::Report};
 ///
 /// let mut profile = Profile::built_in("cmt-al2319-kuka")?;
-/// profile.fill.strategy = "zigzag".to_owned();
+/// profile.fill.strategy = StrategyName::Zigzag;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let plan = plan("cross", &cross, &profile, &Task::new())?;
 /// let mut report = Report::new(&plan.header, &profile);

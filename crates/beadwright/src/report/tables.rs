@@ -4,7 +4,7 @@ use super::escape;
 use super::words::hinted;
 use crate::bead::Overlap;
 use crate::deposit::Figures;
-use crate::fill::{ContourOrder, RasterSpacing};
+use crate::fill::{ContourOrder, RasterSpacing, StrategyName};
 use crate::finding::Finding;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -145,18 +145,21 @@ fn strategy(name: &str, profile: &Profile) -> String {
         ContourOrder::InsideOut => "inside out",
     };
     let perimeters = count(fill.perimeters as usize, "perimeter", "perimeters");
-    let laid = match name {
-        "raster" | "zigzag" => scan_lines(profile),
-        "contour" => order.to_owned(),
-        "compound" => format!("{perimeters} {order}, {}", scan_lines(profile)),
-        "hilbert" => format!("{perimeters} {order}, a Hilbert curve inside"),
-        "partition" => format!("{perimeters} {order}, cells with scan lines of their own direction inside"),
-        "loop" => "rings that fill the layer evenly, joined into one path".to_owned(),
-        "hybrid" => "contours, and the pockets between them filled along their middle".to_owned(),
-        "spiral" => "contours joined into one path".to_owned(),
-        "fermat" => "connected Fermat spirals".to_owned(),
-        "mat" => "rings from the middle outwards".to_owned(),
-        "wall" => "along the middle of thin walls".to_owned(),
+    let laid = match name.parse() {
+        Ok(StrategyName::Raster | StrategyName::Zigzag) => scan_lines(profile),
+        Ok(StrategyName::Contour) => order.to_owned(),
+        Ok(StrategyName::Compound) => format!("{perimeters} {order}, {}", scan_lines(profile)),
+        Ok(StrategyName::Hilbert) => format!("{perimeters} {order}, a Hilbert curve inside"),
+        Ok(StrategyName::Partition) => {
+            format!("{perimeters} {order}, cells with scan lines of their own direction inside")
+        }
+        Ok(StrategyName::Loop) => "rings that fill the layer evenly, joined into one path".to_owned(),
+        Ok(StrategyName::Hybrid) => "contours, and the pockets between them filled along their middle".to_owned(),
+        Ok(StrategyName::Spiral) => "contours joined into one path".to_owned(),
+        Ok(StrategyName::Fermat) => "connected Fermat spirals".to_owned(),
+        Ok(StrategyName::Mat) => "rings from the middle outwards".to_owned(),
+        Ok(StrategyName::Wall) => "along the middle of thin walls".to_owned(),
+        // A strategy of one's own.
         _ => return name.to_owned(),
     };
     format!("{name}: {laid}")

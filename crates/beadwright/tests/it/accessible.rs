@@ -6,6 +6,7 @@ use crate::common;
 use beadwright::compare;
 use beadwright::deposit::Judge;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::model::RepairReport;
 use beadwright::plan;
 use beadwright::profile::Profile;
@@ -112,8 +113,12 @@ fn the_comparison_can_be_read_without_sight() {
     for part in ["cross", "star"] {
         let mesh = example::find(part).unwrap().mesh();
         let entry = |name| compare::strategy(&mesh, &profile, name, settings, &None, &Task::new()).unwrap();
-        let mut page = compare::page(part, "One & other", &["loop", "hybrid", "raster"].map(entry));
-        for strategy in ["loop", "hybrid"] {
+        let mut page = compare::page(
+            part,
+            "One & other",
+            &[StrategyName::Loop, StrategyName::Hybrid, StrategyName::Raster].map(entry),
+        );
+        for strategy in [StrategyName::Loop, StrategyName::Hybrid] {
             compare::add_steps(&mut page, &mesh, &profile, strategy, 2, &Task::new()).unwrap();
         }
         assert_eq!(faults(&page.html()), [""; 0], "{part}");

@@ -3,6 +3,7 @@
 
 use crate::common;
 use crate::readers;
+use beadwright::fill::StrategyName;
 
 use beadwright::dialect;
 use beadwright::dialect::krl::{KrlArc, KrlMotion};
@@ -123,7 +124,7 @@ fn layers(part: &str) -> Arc<Vec<Layer>> {
     let plan = || {
         let mut profile = profile("cmt-steel-robots");
         profile.posts = Vec::new();
-        profile.fill.strategy = "contour".to_owned();
+        profile.fill.strategy = StrategyName::Contour;
         Arc::new(planned(part, &profile).layers.into_iter().take(2).collect())
     };
     Arc::clone(plans.entry(part.to_owned()).or_insert_with(plan))

@@ -4,7 +4,7 @@ use crate::common;
 use crate::families;
 
 use beadwright::example;
-use beadwright::fill::{self, Fill, Path, sound};
+use beadwright::fill::{Fill, Path, sound};
 use beadwright::glam::DVec3;
 use beadwright::plan;
 use beadwright::planar::{DVec2, Polygon, Ring};
@@ -18,7 +18,7 @@ const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
 
 fn filled(strategy: &str, island: &Polygon) -> Fill {
     let profile = profile_by("cmt-al2319-kuka", strategy);
-    fill::strategy(strategy).unwrap().fill(island, &profile.fill_settings(0))
+    profile.fill.strategy.strategy().fill(island, &profile.fill_settings(0))
 }
 
 fn paths(fill: &Fill) -> Vec<&Path> {

@@ -3,6 +3,7 @@
 
 use crate::common;
 use crate::readers;
+use beadwright::fill::StrategyName;
 
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
@@ -17,7 +18,7 @@ use std::collections::BTreeMap;
 /// Passes with crater fills, waits between layers, and arcs.
 fn welder(name: &str) -> Profile {
     let mut profile = profile(name);
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     (profile.program.chord_tolerance, profile.program.arcs) = (0.05, true);
     (profile.start_stop.crater_fill_time, profile.start_stop.interpass_time) = (0.8, 12.5);
     profile
@@ -77,7 +78,7 @@ fn controls_run_what_was_planned() {
 fn an_axis_of_the_wire_follows_the_wire_feed() {
     use beadwright::process::Follow;
     let mut profile = welder("plasma-304-twincat");
-    profile.fill.strategy = "loop".to_owned();
+    profile.fill.strategy = StrategyName::Loop;
     (profile.process.follow, profile.start_stop.crater_power) = (Follow::WireFeed, 0.5);
     let plan = planned("cross", &profile);
     let run = run(Control::TwinCat, &program(&plan, &profile), [62, 63]);
@@ -119,7 +120,7 @@ fn linuxcnc_runs_what_was_planned() {
     for (part, strategy) in [("cross", "contour"), ("blade", "wall"), ("propeller", "contour")] {
         for way in ["plain", "restart", "offsets", "weave"] {
             let mut profile = welder("plasma-304-cnc");
-            profile.fill.strategy = strategy.to_owned();
+            profile.fill.strategy = strategy.parse().unwrap();
             (profile.program.restart, profile.program.layer_offsets) = (way == "restart", way == "offsets");
             let plan = planned(part, &profile);
             let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.0, file: 1 };

@@ -261,7 +261,7 @@ fn cross_plan(strategy: &str, gap: f64) -> Plan {
 /// A plan of a part that is turned by some degrees; scan lines run along y.
 fn turned_plan(part: &str, turn: f64, strategy: &str, gap: f64) -> Plan {
     let mut profile = Profile::built_in("plasma-304-cnc").unwrap();
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     profile.fill.contour_gap = gap;
     profile.layers.level = false;
     let mut mesh = example::find(part).unwrap().mesh();

@@ -26,7 +26,7 @@ fn profile() -> Profile {
 
 fn plan(part: &str, turn: f64, strategy: &str) -> Plan {
     let mut profile = profile();
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     let mut mesh = example::find(part).unwrap().mesh();
     mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
     plan::plan(part, &mesh, &profile, &Task::new()).unwrap()

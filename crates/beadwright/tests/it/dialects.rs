@@ -1,6 +1,7 @@
 //! One small job in every dialect: golden files, and the same poses, arc starts and weld length read back from each.
 
 use crate::common;
+use beadwright::fill::StrategyName;
 
 use crate::readers;
 use common::{flat, with_all_dialects};
@@ -160,7 +161,7 @@ fn the_propeller_reads_back_alike_in_every_dialect() {
     let mesh = example::find("propeller").unwrap().mesh();
     for strategy in ["contour", "hybrid"] {
         let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-        profile.fill.strategy = strategy.to_owned();
+        profile.fill.strategy = strategy.parse().unwrap();
         let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
         let all = all_of(&plan.layers);
         let first = &all[0].2;
@@ -183,7 +184,7 @@ fn the_propeller_reads_back_alike_in_every_dialect() {
 #[test]
 fn a_helix_is_one_pass_in_every_dialect() {
     let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    profile.fill.strategy = "wall".to_owned();
+    profile.fill.strategy = StrategyName::Wall;
     profile.wall.helix = true;
     let mesh = common::tube(30.0, 7.54, 24.0, 0.0);
     let plan = plan::plan("demo", &mesh, &profile, &Task::new()).unwrap();
@@ -429,7 +430,7 @@ fn large_programs_come_in_volumes() {
 #[test]
 fn no_volume_is_larger_than_it_may_be() {
     let mut profile = flat(profile());
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     (profile.program.chord_tolerance, profile.program.arcs, profile.program.restart) = (0.0, false, true);
     profile.dialects.krl.as_mut().unwrap().max_points = 200;
     profile.dialects.urscript.as_mut().unwrap().max_megabytes = 0.25;
@@ -476,7 +477,7 @@ fn passes_too_long_for_a_program_are_lit_again() {
     for part in ["gear", "star"] {
         let mut profile = Profile::built_in("cmt-steel-robots").unwrap();
         profile.posts = Vec::new();
-        profile.fill.strategy = "loop".to_owned();
+        profile.fill.strategy = StrategyName::Loop;
         let mut mesh = example::find(part).unwrap().mesh();
         mesh.vertices.iter_mut().for_each(|v| v.z = v.z.min(2.0));
         let whole = plan::plan(part, &mesh, &profile, &Task::new()).unwrap();
@@ -512,7 +513,7 @@ fn passes_too_long_for_a_program_are_lit_again() {
 #[test]
 fn a_stopped_build_goes_on_at_its_pass() {
     let mut profile = profile();
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     let plan = plan::plan("demo", &example::find("gear").unwrap().mesh(), &profile, &Task::new()).unwrap();
     let (layer, pass) = (6, 2);
     assert!(plan.layers.len() > layer && plan.layers[layer].passes.len() > pass);

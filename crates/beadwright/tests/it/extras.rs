@@ -1,6 +1,7 @@
 //! What some controllers can do besides: weaving, spline motions, and heights added to layers. Each is told, or refused.
 
 use crate::common;
+use beadwright::fill::StrategyName;
 
 use beadwright::dialect::krl::{KrlArc, KrlMotion};
 use beadwright::dialect::rapid::RapidArc;
@@ -19,7 +20,7 @@ type Files = BTreeMap<String, String>;
 
 fn plan_of(name: &str) -> (Plan, Profile) {
     let mut profile = flat(profile(name));
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     profile.program.chord_tolerance = 0.05;
     profile.program.arcs = true;
     (planned("cross", &profile), profile)

@@ -1,6 +1,7 @@
 //! Closed walls as one helix: one arc start, every turn on the one below, the metal of the wall, a level top.
 
 use crate::common;
+use beadwright::fill::StrategyName;
 
 use beadwright::export::{self, Beads, toolpath};
 use beadwright::glam::{DQuat, DVec3};
@@ -157,7 +158,7 @@ fn a_helix_hotter_than_the_limit_is_said() {
 #[test]
 fn a_loop_of_two_beads_is_no_helix() {
     let mut profile = profile(true);
-    "loop".clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::Loop;
     let error = plan::plan("two", &tube(40.0, 13.0, 10.0, 0.0), &profile, &Task::new()).unwrap_err();
     assert!(
         matches!(error, PlanError::NoHelix { layer: 1, .. }) && error.to_string().contains("not a single bead"),

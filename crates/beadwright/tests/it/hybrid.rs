@@ -4,7 +4,7 @@ use beadwright::deposit::{Figures, Judge};
 use beadwright::example;
 use beadwright::fill::hybrid::pockets::{self, Level, PocketKind};
 use beadwright::fill::hybrid::{Steps, contours};
-use beadwright::fill::{self, FillSettings, Path};
+use beadwright::fill::{FillSettings, Path, StrategyName};
 use beadwright::layer::Layer;
 use beadwright::pass::{self, Along};
 use beadwright::plan;
@@ -158,7 +158,7 @@ fn lifted(passes: impl IntoIterator<Item = Path>, speed: f64, width: f64) -> Vec
 
 fn judged(islands: &[Polygon], strategy: &str, profile: &Profile) -> (Figures, Vec<pass::Pass>) {
     let settings = profile.fill_settings(0);
-    let strategy = fill::strategy(strategy).unwrap();
+    let strategy = strategy.parse::<StrategyName>().unwrap().strategy();
     let passes = islands.iter().flat_map(|i| strategy.fill(i, &settings).stages.into_iter().flatten());
     let long = passes.filter(|p| p.length() >= settings.min_pass_length);
     let passes = lifted(long, profile.process.deposition_speed, profile.bead.width);

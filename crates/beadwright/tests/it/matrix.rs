@@ -39,7 +39,7 @@ const WAYS: [&str; 5] = ["plain", "start_stop", "arcs", "dry run", "wire feed"];
 
 fn dressed(base: &str, dialect: &str, way: &str, strategy: &str) -> Option<Profile> {
     let mut profile = with_all_dialects(base);
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     let sections = &mut profile.dialects;
     let lines = |line: &str| vec![line.to_owned()];
     sections.krl.as_mut()?.wire_feed = lines("$ANOUT[1] = {{wire_feed_ratio}}");

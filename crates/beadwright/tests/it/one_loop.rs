@@ -4,7 +4,7 @@ use crate::common;
 
 use beadwright::bead::{Bead, Law, Section};
 use beadwright::deposit::{Figures, Judge};
-use beadwright::fill::{self, Fill, FillSettings, Path};
+use beadwright::fill::{Fill, FillSettings, Path, StrategyName};
 use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Join, Polygon, Region, Ring, polyline};
 use beadwright::profile::Profile;
@@ -15,7 +15,7 @@ use common::profile;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 fn lay(strategy: &str, island: &Polygon, settings: &FillSettings) -> Vec<Path> {
-    let Fill { stages, .. } = fill::strategy(strategy).unwrap().fill(island, settings);
+    let Fill { stages, .. } = strategy.parse::<StrategyName>().unwrap().strategy().fill(island, settings);
     stages.into_iter().flatten().collect()
 }
 
@@ -306,7 +306,7 @@ fn programs_have_one_arc_start_a_layer_and_what_does_not_outlast_it_is_left_out(
     assert_eq!(plan.summary.metrics.arc_starts, plan.layers.len());
     for strategy in ["contour", "hybrid", "raster", "zigzag", "compound"] {
         let mut profile = profile.clone();
-        strategy.clone_into(&mut profile.fill.strategy);
+        profile.fill.strategy = strategy.parse().unwrap();
         let star = example::find("star").unwrap().mesh();
         let plan = plan::plan("star", &star, &profile, &Task::new()).unwrap();
         // These programs stand still until the arc burns: any pass that is long enough is laid.

@@ -2,7 +2,7 @@
 
 use crate::solids;
 
-use beadwright::fill::{Fill, FillSettings, Path, STRATEGIES};
+use beadwright::fill::{Fill, FillSettings, Path, StrategyName};
 
 use beadwright::order::{Memory, OrderSettings, Seam, order};
 use beadwright::pass::Along;
@@ -97,15 +97,15 @@ fn square(x: f64, y: f64, side: f64) -> Polygon {
 
 #[test]
 fn every_pass_of_every_strategy_comes_out_once() {
-    for strategy in STRATEGIES {
+    for name in StrategyName::ALL {
         let islands: Vec<Fill> = [square(0.0, 0.0, 60.0), square(200.0, 10.0, 90.0), square(80.0, 0.0, 70.0)]
             .iter()
-            .map(|island| strategy.fill(island, &settings()))
+            .map(|island| name.strategy().fill(island, &settings()))
             .collect();
         let (laid, from) = check(&islands, None);
-        assert!(laid.len() >= 3, "{}", strategy.name());
+        assert!(laid.len() >= 3, "{name}");
         // From the origin the islands lie one behind the other.
-        assert!([0, 2, 1].iter().eq(from.chunk_by(|a, b| a.0 == b.0).map(|c| &c[0].0)), "{}", strategy.name());
+        assert!([0, 2, 1].iter().eq(from.chunk_by(|a, b| a.0 == b.0).map(|c| &c[0].0)), "{name}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! Parts that are welded one after another: their layers, the ways between them, and room for the torch.
 
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::model::together::{Arrangement, arrange};
 use beadwright::model::{Import, Placement, import};
 use beadwright::plan::{self, Collect, PlanError, Summary};
@@ -11,7 +12,7 @@ use glam::DVec3;
 
 fn profile() -> Profile {
     let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     profile
 }
 

@@ -3,10 +3,10 @@
 
 use crate::common::flat;
 use crate::readers;
+use beadwright::fill::StrategyName;
 
 use beadwright::dialect;
 use beadwright::dialect::rapid::RapidArc;
-use beadwright::fill::STRATEGIES;
 use beadwright::layer::Layer;
 use beadwright::model::Mesh;
 use beadwright::pass::{Pass, Segment};
@@ -26,7 +26,7 @@ const TOLERANCE: f64 = 0.02;
 
 fn profile(name: &str, strategy: &str, angle: f64) -> Profile {
     let mut profile = Profile::built_in(name).unwrap();
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     profile.fill.raster_angle = angle;
     flat(profile)
 }
@@ -44,7 +44,7 @@ static CASES: LazyLock<Vec<(String, Plan, Profile)>> = LazyLock::new(|| {
     let parts = example::ALL.par_iter().filter(|part| !["gourd", "pot"].contains(&part.name));
     let cases = parts.flat_map_iter(|part| {
         let thin = THIN_WALLED.contains(&part.name);
-        let strategies = STRATEGIES.iter().filter(move |strategy| (strategy.name() == "wall") == thin);
+        let strategies = StrategyName::ALL.iter().filter(move |strategy| (**strategy == StrategyName::Wall) == thin);
         let profiles = [("cmt-al2319-kuka", 0.0), ("plasma-304-cnc", 33.0)];
         strategies.flat_map(move |strategy| profiles.map(|profile| (part, thin, strategy.name(), profile)))
     });
@@ -71,9 +71,9 @@ fn to_boundary(layer: &Layer, p: DVec2) -> f64 {
 fn centre_lines_keep_half_a_bead_from_the_outline() {
     each_case(|case, plan, profile| {
         // Beads of a wall are as wide as it is, and cut corners where walls meet.
-        let wall = profile.fill.strategy == "wall";
+        let wall = profile.fill.strategy == StrategyName::Wall;
         // Widths change in steps: half a step on either side of a bead; twice where thin walls are tied to rings.
-        let steps = if profile.fill.strategy == "mat" { 2.0 } else { 1.0 };
+        let steps = if profile.fill.strategy == StrategyName::Mat { 2.0 } else { 1.0 };
         let slack = profile.fill.machining_allowance + TOLERANCE + 0.03 * steps * profile.bead.width;
         for layer in plan.layers.iter().step_by(4) {
             for pass in &layer.passes {

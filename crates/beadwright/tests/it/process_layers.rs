@@ -1,6 +1,7 @@
 //! Other speeds for some layers: the beads stay the same, and programs tell speed, wire feed and job where they change.
 
 use crate::common;
+use beadwright::fill::StrategyName;
 
 use beadwright::dialect;
 use beadwright::layer::Layer;
@@ -20,7 +21,7 @@ fn faster(mut profile: Profile) -> Profile {
 fn the_beads_stay_the_same_and_take_less_time() {
     for follow in [Follow::Speed, Follow::WireFeed] {
         let mut profile = profile("cmt-al2319-kuka");
-        (profile.process.follow, profile.fill.strategy) = (follow, "contour".to_owned());
+        (profile.process.follow, profile.fill.strategy) = (follow, StrategyName::Contour);
         let [plain, other] = [profile.clone(), faster(profile)].map(|profile| planned("cross", &profile));
         assert_eq!(plain.layers, other.layers);
         let [a, b] = [&plain.summary.metrics, &other.summary.metrics];
@@ -44,7 +45,7 @@ fn plain_speed(follow: Follow, pace: f64) -> f64 {
 #[test]
 fn programs_tell_speed_feed_and_job() {
     let mut profile = flat(profile("cmt-al2319-kuka"));
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     let nominal = profile.process.deposition_speed;
     let krl = profile.dialects.krl.as_mut().unwrap();
     krl.wire_feed = vec!["$ANOUT[1] = {{wire_feed_ratio}}".to_owned()];
@@ -87,7 +88,7 @@ fn rows_that_make_no_sense_are_refused() {
 #[test]
 fn a_program_read_back_has_the_same_beads() {
     let mut profile = profile("cmt-al2319-kuka");
-    profile.fill.strategy = "contour".to_owned();
+    profile.fill.strategy = StrategyName::Contour;
     let krl = profile.dialects.krl.as_mut().unwrap();
     krl.wire_feed = vec!["$ANOUT[1] = {{wire_feed_ratio}}".to_owned()];
     krl.layer_start = vec!["JOB( {{job}} )".to_owned()];

@@ -3,6 +3,7 @@
 use beadwright::bead::MassBalance;
 use beadwright::deposit::Judge;
 use beadwright::dialect;
+use beadwright::fill::StrategyName;
 use beadwright::plan::deposit_settings;
 use beadwright::process::StartStop;
 use beadwright::profile::{BUILT_IN, Profile};
@@ -140,7 +141,21 @@ fn unknown_words_get_the_nearest() {
     );
     check(KUKA, "\"outside-in\"", "\"outside_in\"", &["Did you mean \"outside-in\"?"]);
     check(KUKA, "\"alternate\"", "\"alternating\"", &["Did you mean \"alternate\"?"]);
+    check(
+        KUKA,
+        "\"loop\"",
+        "\"serpentine\"",
+        &["unknown value \"serpentine\"", "loop, raster, zigzag, contour, compound"],
+    );
+    check(KUKA, "\"loop\"", "\"lop\"", &["Did you mean \"loop\"?"]);
     check(KUKA, "\"fitted\"", "\"zzz\"", &["unknown value \"zzz\"", "even, exact"]);
+}
+
+#[test]
+fn a_strategy_has_the_same_name_in_profiles_and_commands() {
+    for &name in StrategyName::ALL {
+        assert_eq!((serde_json::json!(name), name.name().parse()), (serde_json::json!(name.name()), Ok(name)));
+    }
 }
 
 #[test]
@@ -403,8 +418,6 @@ fn impossible_counts_are_refused_with_line_and_key() {
 
 #[test]
 fn impossible_words_are_refused_with_line_and_key() {
-    impossible(KUKA, "fill.strategy", "serpentine");
-    check(KUKA, "\"loop\"", "\"serpentine\"", &["the strategies are loop, raster, zigzag, contour, compound"]);
     impossible(KUKA, "posts", ["krl", "abb"].into_iter().collect::<Value>());
     check(
         KUKA,

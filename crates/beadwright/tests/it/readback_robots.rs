@@ -1,6 +1,7 @@
 //! FANUC TP, INFORM and URScript read back: our own programs in every dialect, foreign words, errors, and any lines at all.
 
 use crate::common;
+use beadwright::fill::StrategyName;
 
 use beadwright::compare::{self, Totals};
 use beadwright::deposit::DepositSettings;
@@ -33,7 +34,7 @@ fn try_read(text: &str) -> Result<ReadProgram, ReadError> {
 /// All dialects on the aluminium process, whose beads the hybrid lets grow and shrink.
 fn profile() -> Profile {
     let mut profile = with_all_dialects("cmt-al2319-kuka");
-    profile.fill.strategy = "hybrid".to_owned();
+    profile.fill.strategy = StrategyName::Hybrid;
     profile.dialects.rapid.as_mut().unwrap().speed_step = 0.01;
     profile
 }

@@ -242,7 +242,7 @@ fn cell<'a>(html: &'a str, name: &str) -> &'a str {
 fn the_page_tells_of_what_is_laid_only() {
     for strategy in ["raster", "zigzag", "contour", "compound", "hybrid", "loop", "hilbert"] {
         let mut profile = profile("cmt-al2319-kuka");
-        profile.fill.strategy = strategy.to_owned();
+        profile.fill.strategy = strategy.parse().unwrap();
         for part in ["cross", "propeller"] {
             let plan = common::planned(part, &profile);
             let html = page(&plan, &profile);

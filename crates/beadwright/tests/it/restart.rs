@@ -3,6 +3,7 @@
 
 use crate::common;
 use crate::readers;
+use beadwright::fill::StrategyName;
 
 use beadwright::dialect::reading::ReadTotals;
 use beadwright::plan::{self, Plan};
@@ -35,7 +36,7 @@ fn planned(profile: &Profile) -> Arc<Plan> {
     let mut plans = PLANS.lock().unwrap();
     let plan = || {
         let mut profile = profile.clone();
-        profile.fill.strategy = "contour".to_owned();
+        profile.fill.strategy = StrategyName::Contour;
         let mut plan = plan::plan("demo", &example::find("gear").unwrap().mesh(), &profile, &Task::new()).unwrap();
         plan.layers.truncate(8);
         Arc::new(plan)

@@ -5,7 +5,7 @@ use crate::families;
 
 use beadwright::fill::coverage::Coverage;
 use beadwright::fill::sound::{self, Fault};
-use beadwright::fill::{self, Path};
+use beadwright::fill::{Path, StrategyName};
 use beadwright::planar::{DVec2, Polygon, Region, Ring};
 use common::profile;
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ fn laid(name: &str, degrees: f64) -> Laid {
     let settings = profile.fill_settings(0);
     let (mut laid, mut area, mut bare) = (Laid { starts: 0, bare: 0.0, faults: Vec::new() }, 0.0, 0.0);
     for island in islands(name, degrees) {
-        let fill = fill::strategy("loop").unwrap().fill(&island, &settings);
+        let fill = StrategyName::Loop.strategy().fill(&island, &settings);
         let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
         let whole = Region::from(island.clone());
         laid.starts += paths.len();
@@ -137,7 +137,7 @@ fn a_toothed_ring_one_bead_thick_is_welded_all_around() {
     {
         for degrees in [0.0, 17.0, 45.0, 90.0] {
             let island = toothed_ring(thick, tooth, cut, degrees);
-            let fill = fill::strategy("loop").unwrap().fill(&island, &settings);
+            let fill = StrategyName::Loop.strategy().fill(&island, &settings);
             let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
             let case = format!("{thick} {tooth} {cut} at {degrees}°");
             let [path] = &paths[..] else { panic!("{case}: {} passes", paths.len()) };

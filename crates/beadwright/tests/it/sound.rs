@@ -4,7 +4,7 @@
 use crate::common;
 use crate::families;
 
-use beadwright::fill::{STRATEGIES, sound};
+use beadwright::fill::{StrategyName, sound};
 use beadwright::glam::DVec3;
 use beadwright::model::import;
 use beadwright::plan::{self, Plan};
@@ -274,7 +274,7 @@ fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {
                 let why = wrong(&islands, &flat(level.clone())).or_else(|| wrong(&islands, &level))?;
                 Some(format!("{} {seed} by {strategy}, {why}", FAMILIES[family]))
             };
-            STRATEGIES.iter().filter_map(|strategy| wrong(strategy.name())).collect::<Vec<_>>()
+            StrategyName::ALL.iter().filter_map(|strategy| wrong(strategy.name())).collect::<Vec<_>>()
         })
         .collect();
     assert!(faults.is_empty(), "{} of {parts}: {faults:#?}", faults.len());

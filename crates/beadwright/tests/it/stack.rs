@@ -3,6 +3,7 @@
 use crate::solids::{cuboid, imported, mapped};
 use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{DepositSettings, Nominal, Stack, stack::Growth};
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan, choice};
@@ -235,7 +236,7 @@ fn small_and_thin_parts_end_where_the_plan_does_too() {
 #[test]
 fn a_paper_followed_to_the_letter_has_layers_of_one_height() {
     let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
-    profile.fill.strategy = "hybrid".to_owned();
+    profile.fill.strategy = StrategyName::Hybrid;
     assert!(profile.is_level());
     profile.hybrid.literal = true;
     let mesh = example::find("propeller").unwrap().mesh();

@@ -27,7 +27,7 @@ fn blocks(blocks: &[[(f64, f64); 3]], degrees: f64) -> Mesh {
 
 fn planned(mesh: &Mesh, strategy: &str) -> Plan {
     let mut profile = flat(profile("cmt-al2319-kuka"));
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     plan::plan("part", mesh, &profile, &Task::new()).unwrap()
 }
 

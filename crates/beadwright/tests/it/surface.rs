@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::solids;
+use beadwright::fill::StrategyName;
 
 use beadwright::glam::{DMat3, DVec3};
 use beadwright::model::{Part, holes};
@@ -105,7 +106,7 @@ fn a_tall_wall_is_no_tower() {
     let tall: Vec<Facet> = tube(0.0, TAU).iter().map(|facet| facet.map(|p| p * DVec3::new(1.0, 1.0, 5.0))).collect();
     let plan = planned(&turned(&tall, 0.3), Surface::Wall);
     let mut profile = profile(Some(Surface::Wall));
-    "wall".clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::Wall;
     let found = check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
     assert!(plan.layers.len() > 100 && found.iter().all(|finding| finding.kind != "towers"), "{found:?}");
 }

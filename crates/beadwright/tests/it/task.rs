@@ -1,6 +1,7 @@
 //! Progress and cancelling of the long calls.
 
 use crate::solids;
+use beadwright::fill::StrategyName;
 
 use beadwright::example;
 use beadwright::model::{ImportError, Mesh, import};
@@ -90,7 +91,7 @@ fn planning_can_be_watched_and_stopped() {
     profile.layers.height = 0.5;
     profile.layers.level = false;
     // Loops take more time for so many layers than is waited for here.
-    "compound".clone_into(&mut profile.fill.strategy);
+    profile.fill.strategy = StrategyName::Compound;
     check("plan", Stage::Plan, |task| match plan::plan("ball", &mesh, &profile, task) {
         Ok(plan) => {
             assert_eq!(plan.layers.len(), 160);

@@ -3,6 +3,7 @@
 use beadwright::bead::Overlap;
 use beadwright::curve::Nurbs;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::PartRef;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
@@ -17,7 +18,7 @@ use std::f64::consts::FRAC_PI_2;
 
 fn profile(width: f64, height: f64) -> Profile {
     let mut profile = Profile::built_in("cmt-steel-abb").unwrap();
-    profile.fill.strategy = "wall".to_owned();
+    profile.fill.strategy = StrategyName::Wall;
     (profile.bead.width, profile.bead.height) = (width, height);
     (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(width));
     profile

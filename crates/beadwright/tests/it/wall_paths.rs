@@ -6,7 +6,7 @@ use beadwright::bead::Overlap;
 use beadwright::deposit::{self, Nominal, Stroke};
 use beadwright::example::{self, blade};
 use beadwright::fill::wall::graph::{Graph, Line};
-use beadwright::fill::{self, FillSettings, Path};
+use beadwright::fill::{FillSettings, Path, StrategyName};
 use beadwright::pass;
 use beadwright::pass::PassKind;
 use beadwright::plan::{self, Plan};
@@ -23,7 +23,7 @@ fn profile(width: f64, height: f64, layer: f64) -> Profile {
     let mut profile = Profile::built_in("plasma-304-cnc").unwrap();
     (profile.bead.width, profile.bead.height) = (width, height);
     profile.layers.height = layer;
-    profile.fill.strategy = "wall".to_owned();
+    profile.fill.strategy = StrategyName::Wall;
     profile
 }
 
@@ -37,7 +37,7 @@ fn outline(points: &[(f64, f64)]) -> Polygon {
 }
 
 fn filled(island: &Polygon, settings: &FillSettings) -> Vec<Path> {
-    fill::strategy("wall").unwrap().fill(island, settings).stages.concat()
+    StrategyName::Wall.strategy().fill(island, settings).stages.concat()
 }
 
 fn length(passes: &[Path]) -> f64 {

@@ -2,6 +2,7 @@
 
 use beadwright::check;
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::model::{Model, Part, PartRef, Placement};
 use beadwright::pass::Pass;
 use beadwright::plan::{self, Plan, choice};
@@ -143,7 +144,7 @@ fn the_built_in_profile_covers_each_part_with_a_strategy_of_its_choice() {
             let plan = plan::plan("part", PartRef::Mesh(&import.mesh), &chosen, &task).unwrap();
             let (covered, metal) = (plan.summary.metrics.coverage(), brought(&plan, &chosen) / import.mesh.volume());
             println!("{} layers, covered {covered:.4}, metal {metal:.4}", plan.layers.len());
-            assert_eq!(chosen.fill.strategy, "wall");
+            assert_eq!(chosen.fill.strategy, StrategyName::Wall);
             assert!(covered >= 0.99, "{covered}");
             assert!((0.98..1.02).contains(&metal), "{metal}");
             assert_eq!(unbalanced(&plan, &chosen), Vec::<String>::new());

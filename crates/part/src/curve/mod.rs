@@ -33,6 +33,7 @@ pub use nurbs::{MAX_DEGREE, Nurbs};
 
 /// Why a curve cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// The degree is zero or beyond [`MAX_DEGREE`].
     #[error("the curve has degree {degree}; degrees from 1 to {MAX_DEGREE} are supported. Export it with degree 3.")]

@@ -102,6 +102,7 @@ pub struct Object {
 
 /// Why a model was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImportError {
     /// The file is empty.
     #[error("the file is empty (0 bytes). Export the model again.")]

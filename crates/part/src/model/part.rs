@@ -103,6 +103,7 @@ impl<'a> From<&'a Mesh> for PartRef<'a> {
 
 /// Why a model gives no part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PartError {
     /// The file holds no solid.
     #[error(transparent)]

@@ -18,6 +18,7 @@ pub enum Arrangement {
 
 /// Why parts cannot be built together.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TogetherError {
     /// Two parts occupy the same place.
     #[error("the extents of {0} and {1} overlap, seen from above. Let Beadwright place them, or move one of them.")]

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 
 /// Why bytes are not text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TextError {
     /// An encoding that is not read.
     #[error("this text is in {0}, which is not read. Save it as UTF-8.")]

@@ -3,6 +3,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`law`] | how the height of a bead follows its width at a constant wire feed |
+//! | [`pace`] | the speed at which the wire lays the metal of a bead |
 //! | [`section`] | the shape of its cross-section |
 //! | [`wall`] | how high walls with one bead per layer grow |
 //! | [`by_heat`] | how it changes with the heat of the metal below |
@@ -11,6 +12,7 @@
 pub mod by_heat;
 pub mod law;
 pub mod library;
+pub mod pace;
 pub mod section;
 pub mod wall;
 

@@ -23,6 +23,7 @@ pub struct WallBead {
 
 /// Why the height of a wall cannot be predicted.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WallError {
     /// Width or height is zero, negative or not a number.
     #[error("a bead of width {width} mm and height {height} mm is impossible: both must be above 0 mm.")]
@@ -208,6 +209,12 @@ impl WallBead {
     /// h_n, mm: what every layer after the first adds to a vertical wall (eq 5).
     pub fn rise(&self) -> f64 {
         self.rise
+    }
+
+    /// What layer `index` (from 0) of that thickness (mm) adds to the wall, mm. The first is thicker than what it adds: the bead
+    /// on the substrate is a cap, higher than the others but with the same metal.
+    pub fn rise_of_layer(&self, index: usize, thickness: f64) -> f64 {
+        if index == 0 { self.rise } else { thickness }
     }
 
     /// What a layer adds in height, mm, where the wall leans by `lean` (radians) from the build direction: h_n cos φ.

@@ -15,6 +15,7 @@ use std::ops::Range;
 /// Why metal piles up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Cause {
     /// A pass begins here, on other metal.
     Start,

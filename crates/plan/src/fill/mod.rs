@@ -1,22 +1,7 @@
 //! Filling: one island becomes passes, the centre-lines along which metal is laid.
 //!
-//! A strategy is one file and one line in [`STRATEGIES`]. It returns *stages*: passes of one stage may be laid in
-//! any order, stages one after another.
-//!
-//! | strategy | what it lays |
-//! | --- | --- |
-//! | [`one_loop`] | rings that fill an island evenly, joined into one path |
-//! | [`raster`] | parallel scan lines, all in one direction |
-//! | [`zigzag`] | scan lines joined along the boundary |
-//! | [`contour`] | rings parallel to the boundary, until nothing is left |
-//! | [`compound`] | zigzag inside, then perimeters (Liu et al. 2022) |
-//! | [`hybrid`] | contours, and their pockets filled along their medial axis (Zhao et al. 2023) |
-//! | [`spiral`] | contours connected into one path (Park et al. 2003) |
-//! | [`fermat`] | connected Fermat spirals (Zhao et al. 2016) |
-//! | [`hilbert`] | a Hilbert curve |
-//! | [`partition`] | zigzags in nearly convex cells (Ding et al. 2014) |
-//! | [`mat`] | rings from the medial axis outwards (Ding et al. 2016) |
-//! | [`wall`] | thin walls along their middle, in the fewest paths that do not cross (Li et al.) |
+//! A strategy is one file and one line in [`StrategyName`](enum@StrategyName), which says what each of them lays. It returns
+//! *stages*: passes of one stage may be laid in any order, stages one after another.
 
 pub mod angle;
 pub mod compound;
@@ -28,6 +13,7 @@ pub mod hilbert;
 pub mod hybrid;
 pub mod line_index;
 pub mod mat;
+mod name;
 pub mod one_loop;
 pub mod partition;
 pub mod raster;
@@ -39,40 +25,14 @@ pub mod trails;
 pub mod wall;
 pub mod zigzag;
 
+pub use name::{StrategyName, UnknownStrategy};
+
 use crate::bead::{Bead, Law};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::scan::Spacing;
 use planar::{Join, Polygon, Region, Ring};
 use serde::{Deserialize, Serialize};
-
-/// The strategies by name.
-pub const STRATEGIES: [&dyn Strategy; 12] = [
-    &one_loop::OneLoop,
-    &raster::Raster,
-    &zigzag::Zigzag,
-    &contour::Contour,
-    &compound::Compound,
-    &hybrid::Hybrid,
-    &spiral::Spiral,
-    &fermat::Fermat,
-    &hilbert::Hilbert,
-    &partition::Partition,
-    &mat::Mat,
-    &wall::Wall,
-];
-
-/// The strategy with this name.
-///
-/// ```
-/// use bead_plan::fill;
-///
-/// assert_eq!(fill::strategy("zigzag").map(|strategy| strategy.name()), Some("zigzag"));
-/// assert!(fill::strategy("zigzg").is_none());
-/// ```
-pub fn strategy(name: &str) -> Option<&'static dyn Strategy> {
-    STRATEGIES.into_iter().find(|s| s.name() == name)
-}
 
 /// A way to fill an island.
 pub trait Strategy: Sync {

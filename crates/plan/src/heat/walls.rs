@@ -66,6 +66,7 @@ pub struct PredictedWall {
 
 /// Why no law can be fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WallFitError {
     /// Too few walls.
     #[error("a law that depends on heat needs two walls or more that were welded with different waits.")]

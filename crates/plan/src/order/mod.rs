@@ -34,6 +34,7 @@ use tour::{Ends, Stop, Visit};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum Method {
     /// Always the nearest pass next.
     Nearest,
@@ -65,6 +66,7 @@ impl Method {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum Seam {
     /// Wherever the travel to it is short, or where the strategy put it.
     #[default]

@@ -1,6 +1,7 @@
 //! Every control has a name and is reached by Tab.
 
 use crate::window::{Window, example, press, studio, wait};
+use beadwright::fill::StrategyName;
 use eframe::egui::{Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec2;
@@ -72,7 +73,7 @@ fn tab_reaches_every_control() {
         assert_eq!(shift(&harness), moved, "{handle}");
     }
     wait(&mut harness);
-    harness.state_mut().compare_with(Some("hybrid"));
+    harness.state_mut().compare_with(Some(StrategyName::Hybrid));
     wait(&mut harness);
     for (key, view) in [(Key::F3, "layer"), (Key::F4, "compare")] {
         press(&mut harness, Key::Escape);

@@ -1,6 +1,7 @@
 //! Languages and themes.
 
 use crate::window::{Window, click, example, has_adapter, press, sees, studio, wait};
+use beadwright::fill::StrategyName;
 use beadwright_studio::settings::Store;
 use beadwright_studio::text::table;
 use beadwright_studio::view::Side;
@@ -159,7 +160,7 @@ fn every_word_of_the_figures_is_explained_where_it_stands() {
         harness.run_steps(3);
         every_word_is_explained(&mut harness, least, &format!("{side:?}"));
     }
-    harness.state_mut().compare_with(Some("contour"));
+    harness.state_mut().compare_with(Some(StrategyName::Contour));
     wait(&mut harness);
     press(&mut harness, Key::F4);
     every_word_is_explained(&mut harness, 4, "compare");

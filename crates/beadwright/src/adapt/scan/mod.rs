@@ -30,6 +30,7 @@ pub struct Scan {
 
 /// Why a scan cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScanError {
     /// The text cannot be decoded.
     #[error(transparent)]

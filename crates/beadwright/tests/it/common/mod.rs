@@ -23,7 +23,7 @@ pub(crate) fn flat(mut profile: Profile) -> Profile {
 /// A built-in profile with a strategy.
 pub(crate) fn profile_by(name: &str, strategy: &str) -> Profile {
     let mut profile = profile(name);
-    profile.fill.strategy = strategy.to_owned();
+    profile.fill.strategy = strategy.parse().unwrap();
     profile
 }
 

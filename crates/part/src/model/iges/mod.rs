@@ -109,6 +109,7 @@ impl IgesFile {
 
 /// Why an IGES file was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IgesError {
     /// The file is empty.
     #[error("the file is empty (0 bytes). Export the drawing again.")]

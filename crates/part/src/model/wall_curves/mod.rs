@@ -50,6 +50,7 @@ pub struct Section {
 
 /// Why curves do not make a wall.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WallCurvesError {
     /// No curve is independent.
     #[error(

@@ -2,6 +2,7 @@
 
 /// Why measurements, a library or a wish were refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LibraryError {
     /// The CSV holds no header or no measurements.
     #[error("the measurements are empty: {reason}")]

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 /// How welding speeds are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum FanucSpeed {
     /// `8.0mm/sec`.
     #[serde(rename = "mm/sec")]

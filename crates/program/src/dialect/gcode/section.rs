@@ -71,6 +71,7 @@ pub struct Gcode {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum GcodeComments {
     /// `(LAYER 1)`
     #[default]

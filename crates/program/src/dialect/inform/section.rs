@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Unit of `V=`, as set in the controller's parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum InformSpeed {
     /// Millimetres per second.
     #[serde(rename = "mm/s")]

@@ -85,6 +85,7 @@ pub struct Krl {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum KrlMotion {
     /// `LIN … C_DIS`
     #[default]

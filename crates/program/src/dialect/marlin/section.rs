@@ -52,6 +52,7 @@ pub struct Bed {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum BedOrigin {
     /// At the front left corner, as on most printers.
     Corner,

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum RapidArc {
     /// By `ArcLStart`, `ArcL` and `ArcLEnd` of RobotWare Arc.
     Instructions,
@@ -25,6 +26,7 @@ pub enum RapidArc {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum RapidModules {
     /// Loads each module from `folder`, runs it and unloads it: one layer in memory at a time.
     Load,
@@ -35,6 +37,7 @@ pub enum RapidModules {
 /// Unit of the wire feed in welddata, as configured in the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum WireFeedUnit {
     /// Metres per minute.
     #[serde(rename = "m/min")]

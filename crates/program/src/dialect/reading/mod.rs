@@ -155,6 +155,7 @@ impl fmt::Display for Place {
 
 /// Why a program cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// No dialect fits.
     #[error(

@@ -5,6 +5,7 @@ use crate::dialect::Section;
 
 /// Something that only some dialects can write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extra {
     /// Programs that begin at any pass (`program.restart`).
     Restart,

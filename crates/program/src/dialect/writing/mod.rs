@@ -125,6 +125,7 @@ impl Job<'_> {
 
 /// Why a program cannot be written in a dialect.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DialectError {
     /// No such dialect.
     #[error("there is no post \"{0}\". The posts are {known}. A folder with a dialect of your own is given with its path, such as ./{0}.", known = names().join(", "))]
