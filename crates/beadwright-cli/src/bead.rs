@@ -3,7 +3,10 @@
 use crate::profile;
 use anyhow::Context;
 use beadwright::bead::library::demonstration_csv;
-use beadwright::bead::library::{BeadLibrary, Columns, Layering, Limit, Measured, Prediction, Response, Wish};
+use beadwright::bead::library::printed_rows;
+use beadwright::bead::library::{
+    BeadLibrary, Columns, Layering, Limit, Measured, Prediction, PrintedRow, Response, Wish,
+};
 use beadwright::bead::{BeadByHeat, Overlap, wire_area};
 use beadwright::files::write_file;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallLaw};
@@ -22,6 +25,8 @@ pub(crate) enum Command {
     Solve(Solve),
     /// Fit how thickness and width of walls depend on heat, from walls welded with different waits, and predict others.
     Walls(Walls),
+    /// Check whether a printed table of process values agrees with itself: metal per ampere and second, row by row.
+    CheckTable(CheckTable),
     /// Write invented measurements as CSV, to try out the other commands.
     Example {
         /// File to write.
@@ -67,6 +72,15 @@ pub(crate) struct Walls {
     /// Fit only the walls with these waits, s, and predict the others.
     #[arg(long, value_delimiter = ',', value_name = "S,S,…")]
     fit: Option<Vec<f64>>,
+    /// Print machine-readable JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct CheckTable {
+    /// CSV with the columns current_a, speed_mm_s, width_mm, height_mm and, for walls of one bead a layer, layers.
+    data: PathBuf,
     /// Print machine-readable JSON.
     #[arg(long)]
     json: bool,
@@ -140,6 +154,7 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     match command {
         Command::Fit(arguments) => fit(arguments),
         Command::Walls(arguments) => walls(arguments),
+        Command::CheckTable(arguments) => check_table(arguments),
         Command::Predict(arguments) => predict(arguments),
         Command::Solve(arguments) => solve(arguments),
         Command::Example { output } => {
@@ -281,6 +296,37 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
     library.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
     let plot = arguments.plot.as_ref().map_or(String::new(), |p| format!(", plot in {}", p.display()));
     writeln!(out, "\nlibrary in {}{plot}", arguments.output.display())?;
+    Ok(())
+}
+
+fn check_table(arguments: &CheckTable) -> anyhow::Result<()> {
+    let rows = printed_rows(&read(&arguments.data)?).with_context(|| arguments.data.display().to_string())?;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let row = |row: &PrintedRow| json!({ "area_mm2": row.area, "metal_mm3_per_a_s": row.metal, "others_mm3_per_a_s": row.others, "contradicts": row.contradicts() });
+        let value = json!({ "rows": rows.iter().map(row).collect::<Vec<_>>() });
+        return Ok(writeln!(out, "{value:#}")?);
+    }
+    writeln!(out, "  row  current A  speed mm/s  bead mm²  mm³/(A·s)  others")?;
+    for (k, row) in rows.iter().enumerate() {
+        let PrintedRow { area, current, speed, metal, others, .. } = row;
+        writeln!(out, "  {:3} {current:10.0} {speed:11.1} {area:9.2} {metal:10.3} {others:7.3}", k + 1)?;
+    }
+    let mut agrees = true;
+    for (k, row) in rows.iter().enumerate().filter(|(_, row)| row.contradicts()) {
+        let (speed, width, current) = row.agreeing();
+        agrees = false;
+        writeln!(
+            out,
+            "\nrow {} contradicts the others by {:+.0} %: {speed:.1} mm/s, a width of {width:.2} mm or {current:.0} A would agree. One \
+             of its values is a misprint, or it was welded with another wire or gas.",
+            k + 1,
+            100.0 * (row.metal / row.others - 1.0)
+        )?;
+    }
+    if agrees {
+        writeln!(out, "\nall rows agree: metal per ampere and second is nearly the same")?;
+    }
     Ok(())
 }
 

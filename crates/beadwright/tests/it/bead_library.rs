@@ -1,5 +1,6 @@
 //! The bead library against known surfaces, the normal equations and refitting; and what it refuses.
 
+use beadwright::bead::library::printed_rows;
 use beadwright::bead::library::{
     BeadLibrary, Columns, Layering, LibraryError, Limit, Measured, Wish, demonstration_csv,
 };
@@ -410,4 +411,29 @@ fn a_library_that_does_not_fit_its_profile_is_refused() {
     };
     let text = "inherits = \"cmt-steel-abb\"\n[bead]\nlibrary = \"ours.toml\"\n";
     assert!(said(Profile::parse_with(text, &mut garbled).unwrap_err()).contains("bead.library"));
+}
+
+/// Whatever the order of the rows, their unit of area and their number of columns, the row with the misprint is found.
+#[test]
+fn a_misprint_in_a_table_of_process_values_is_found() {
+    let table = |lines: &[&str]| format!("name,current_a,speed_mm_s,width_mm,height_mm\n{}", lines.join("\n"));
+    // 0.4 mm³/(A·s), rounded as papers do.
+    let mut lines = ["a,100,8,4,1.25", "b,120,6,5.2,1.54", "c,150,10,4.8,1.25", "d,110,7,5,1.26", "e,130,9,4,1.44"];
+    let contradicting = |lines: &[&str]| -> Vec<usize> {
+        let rows = printed_rows(&table(lines)).unwrap();
+        (0..rows.len()).filter(|&k| rows[k].contradicts()).collect()
+    };
+    assert_eq!(contradicting(&lines), [0; 0]);
+    for (k, misprint) in [(1, "b,150,6,5.2,1.54"), (3, "d,110,9,5,1.26"), (4, "e,130,9,4,1.14")] {
+        let right = std::mem::replace(&mut lines[k], misprint);
+        assert_eq!(contradicting(&lines), [k]);
+        lines.reverse();
+        assert_eq!(contradicting(&lines), [lines.len() - 1 - k]);
+        lines.reverse();
+        lines[k] = right;
+    }
+    let error = |text: &str| printed_rows(text).unwrap_err().to_string();
+    assert!(error(&table(&lines[..2])).contains("at least three"));
+    assert!(error("current_a,speed_m_min,width_mm,height_mm\n100,1,4,1\n").contains("mm/s is expected"));
+    assert!(error("current_a,speed_mm_s,width_mm,height_mm\n100,x,4,1\n").contains("line 2"));
 }

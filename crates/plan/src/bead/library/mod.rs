@@ -18,12 +18,14 @@ mod error;
 mod fit;
 mod least_squares;
 mod measured;
+mod printed;
 mod solve;
 mod student;
 
 pub use demonstration::demonstration_csv;
 pub use error::LibraryError;
 pub use measured::{Columns, Measured};
+pub use printed::{PrintedRow, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 
 use super::Bead;
