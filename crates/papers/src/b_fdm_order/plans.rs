@@ -26,6 +26,17 @@ pub enum Raster {
     Best,
 }
 
+/// How scan lines become paths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Lines {
+    /// One after another across the whole section, over all holes in their way: the paper's "traditional parallel scanning".
+    Whole,
+    /// Each sub-region by itself, in scan order (3.2, its first step).
+    SubRegions,
+    /// Sub-regions merged (3.2).
+    Merged,
+}
+
 /// How two layers are planned.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
@@ -35,15 +46,23 @@ pub struct Plan {
     pub loops: Loops,
     /// The angle of the scan lines.
     pub raster: Raster,
-    /// Whether sub-regions are merged.
-    pub merge: bool,
-    /// How merged sub-regions are ordered; `None` for scan order.
+    /// How scan lines become paths.
+    pub lines: Lines,
+    /// How the paths are ordered; `None` for scan order.
     pub fill: Option<Method>,
 }
 
-/// The paper's plain plan.
-pub const PLAIN: Plan =
-    Plan { name: "plain: file order, 0°/90°", loops: Loops::File, raster: Raster::Zero, merge: false, fill: None };
+/// The paper's "traditional parallel scanning".
+pub const WHOLE: Plan = Plan {
+    name: "whole lines over holes, file order, 0°/90°",
+    loops: Loops::File,
+    raster: Raster::Zero,
+    lines: Lines::Whole,
+    fill: None,
+};
+
+/// Sub-regions by themselves: the first step of the paper's own method is done already.
+pub const PLAIN: Plan = Plan { name: "plain: file order, sub-regions, 0°/90°", lines: Lines::SubRegions, ..WHOLE };
 
 /// The plain plan with its loops in columns.
 pub const COLUMNS: Plan = Plan { name: "plain, loops in columns (boustrophedon)", loops: Loops::Columns, ..PLAIN };
@@ -52,8 +71,8 @@ pub const COLUMNS: Plan = Plan { name: "plain, loops in columns (boustrophedon)"
 pub(super) const STEPS: [Plan; 5] = [
     PLAIN,
     Plan { name: "+ contour order and start points", loops: Loops::By(Method::LocalSearch), ..PLAIN },
-    Plan { name: "+ raster angle", raster: Raster::Best, merge: false, fill: None, ..OURS },
-    Plan { name: "+ sub-regions merged", merge: true, fill: None, ..OURS },
+    Plan { name: "+ raster angle", raster: Raster::Best, lines: Lines::SubRegions, fill: None, ..OURS },
+    Plan { name: "+ sub-regions merged", lines: Lines::Merged, fill: None, ..OURS },
     OURS,
 ];
 
@@ -62,7 +81,7 @@ pub const OURS: Plan = Plan {
     name: "+ their order",
     loops: Loops::By(Method::LocalSearch),
     raster: Raster::Best,
-    merge: true,
+    lines: Lines::Merged,
     fill: Some(Method::LocalSearch),
 };
 
@@ -71,7 +90,7 @@ pub const LITERAL: Plan = Plan {
     name: "the paper's methods",
     loops: Loops::By(Method::AntColony),
     raster: Raster::FewestTurns,
-    merge: true,
+    lines: Lines::Merged,
     fill: Some(Method::Nearest),
 };
 
@@ -82,7 +101,7 @@ pub const FIXED: Plan = Plan { name: "all steps, fixed 0°/90°", raster: Raster
 pub const ALIKE: Plan = Plan { name: "all steps, 0° on both layers", raster: Raster::Alike, ..OURS };
 
 /// The plans other than the steps.
-pub(super) const OTHERS: [Plan; 4] = [COLUMNS, LITERAL, FIXED, ALIKE];
+pub(super) const OTHERS: [Plan; 5] = [COLUMNS, LITERAL, FIXED, ALIKE, WHOLE];
 
 /// The methods for start points and order of the contours.
 pub(super) const CONTOURS: [(&str, Loops); 6] = [

@@ -1,6 +1,6 @@
 //! A plate turned by an angle, planned in each of the ways.
 
-use super::plans::{Loops, Outcome, Plan, Raster};
+use super::plans::{Lines, Loops, Outcome, Plan, Raster};
 use super::plate::Plate;
 use crate::ReproduceError;
 use beadwright::fill::angle;
@@ -14,7 +14,7 @@ use beadwright::plan::{self, ToFill};
 use beadwright::profile::Profile;
 use beadwright::report::sketch::Sketch;
 use glam::DVec2;
-use planar::scan::{Scan, Spacing};
+use planar::scan::{End, Scan, Spacing};
 use planar::{Bounds, Polygon, Region, Ring};
 use std::f64::consts::FRAC_PI_2;
 
@@ -138,7 +138,11 @@ impl<'a> Turned<'a> {
     /// The fill as it is laid, from the end of the contours.
     fn fill(&self, plan: &Plan, scan: &Scan, from: DVec2) -> Vec<Vec<DVec2>> {
         let weave = Weave::new(scan, self.settings.stepover);
-        let paths = weave.paths(&if plan.merge { weave.merged() } else { weave.apart() });
+        let paths = match plan.lines {
+            Lines::Whole => whole_lines(scan),
+            Lines::SubRegions => weave.paths(&weave.apart()),
+            Lines::Merged => weave.paths(&weave.merged()),
+        };
         let Some(method) = plan.fill else { return paths };
         let line = |path: &Vec<DVec2>| {
             let gate = Gate { enter: path[0], leave: path[path.len() - 1] };
@@ -182,6 +186,33 @@ impl Laid {
     fn paths(&self) -> impl Iterator<Item = &Vec<DVec2>> {
         self.contours.iter().chain(&self.fill)
     }
+}
+
+/// Scan lines one after another, to and fro. A path ends where a hole lies in the way, and where the boundary does not lead to
+/// the next line.
+fn whole_lines(scan: &Scan) -> Vec<Vec<DVec2>> {
+    let (mut paths, mut path): (Vec<Vec<DVec2>>, Vec<DVec2>) = (Vec::new(), Vec::new());
+    let (mut first, mut from, mut last) = (0, End::Left, None);
+    for line in scan.spans().chunk_by(|a, b| a.line == b.line) {
+        let mut spans: Vec<usize> = (first..first + line.len()).collect();
+        first += line.len();
+        if from == End::Right {
+            spans.reverse();
+        }
+        for span in spans {
+            let up = last.and_then(|last| scan.chain_up(last, from)).filter(|chain| chain.to == span);
+            match up {
+                Some(chain) => path.extend(chain.via),
+                None => paths.push(std::mem::take(&mut path)),
+            }
+            path.extend([scan.end(span, from), scan.end(span, from.other())]);
+            last = Some(span);
+        }
+        from = from.other();
+    }
+    paths.push(path);
+    let turned = |path: Vec<DVec2>| path.into_iter().map(|p| scan.turn_back(p)).collect();
+    paths.into_iter().filter(|path| !path.is_empty()).map(turned).collect()
 }
 
 /// The ends of the travel from each path to the next.
