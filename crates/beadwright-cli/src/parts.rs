@@ -100,7 +100,8 @@ fn one<'a>(
     let summary = plan_into(name, model, profile, task, &mut watch);
     let mut summary = summary.map_err(|error| refused(error, Path::new(name)))?;
     let own = model.notes().iter().cloned();
-    summary.notes.splice(0..0, own.chain(note.clone()).chain(files.notes()));
+    summary.notes.splice(0..0, own.chain(note.clone()));
+    summary.notes.extend(files.notes());
     let figures = files.figures();
     Ok(Planned { name, profile, model, folder, files, summary, figures })
 }

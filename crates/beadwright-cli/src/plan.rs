@@ -240,7 +240,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     let own = model.notes().iter().cloned();
-    summary.notes.splice(0..0, own.chain(faults).chain(note).chain(files.notes()));
+    summary.notes.splice(0..0, own.chain(faults).chain(note));
+    summary.notes.extend(files.notes());
     let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?);
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;

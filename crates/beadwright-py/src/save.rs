@@ -55,8 +55,8 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
         folder.extend(files.layer(layer, judgement.as_ref()))?;
     }
     let mut summary = planned.summary.clone();
-    let notes: Vec<String> = planned.part.notes().iter().chain(&planned.note).cloned().chain(files.notes()).collect();
-    summary.notes.splice(0..0, notes);
+    summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());
+    summary.notes.extend(files.notes());
     folder.extend(files.end(&summary, &planned.part.repair(), judge.as_ref().map(Judge::total))?)?;
     Ok(folder.commit()?.files)
 }

@@ -97,6 +97,8 @@ fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {
     for (layer, judgement) in state.layers.iter().zip(&state.judgements) {
         chunks.extend(files.layer(layer, Some(judgement)));
     }
-    chunks.extend(files.end(summary, &part.repair(), Some(total)).map_err(|error| error.to_string())?);
+    let mut summary = summary.clone();
+    summary.notes.extend(files.notes());
+    chunks.extend(files.end(&summary, &part.repair(), Some(total)).map_err(|error| error.to_string())?);
     Ok(chunks)
 }

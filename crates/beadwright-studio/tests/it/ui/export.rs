@@ -17,7 +17,8 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn same(ours: &BTreeMap<String, Vec<u8>>, theirs: &BTreeMap<String, Vec<u8>>) {
     assert!(ours.keys().eq(theirs.keys()), "{:?} and {:?}", ours.keys(), theirs.keys());
     for (name, bytes) in ours {
-        assert!(*bytes == theirs[name], "{name} differs");
+        let differs = bytes.iter().zip(&theirs[name]).position(|(a, b)| a != b);
+        assert!(*bytes == theirs[name], "{name} differs at byte {differs:?}");
     }
 }
 
