@@ -45,7 +45,7 @@ impl PrintedRow {
 /// ```
 /// use bead_plan::bead::library::printed_rows;
 ///
-/// // Li et al., tables 2 to 4: the blade's wall of 3.5 mm lacks a fifth of its metal at 8 mm/s.
+/// // The four walls of Li et al.: the blade's wall of 3.5 mm lacks a fifth of its metal at 8 mm/s.
 /// let rows = printed_rows(
 ///     "part,current_a,speed_mm_s,width_mm,height_mm,layers\n\
 ///      frame,129,8,4.5,26,18\nblade,119,8,3.5,100,74\ngourd,119,10,4,200,168\npot,119,10,4,80,66",
