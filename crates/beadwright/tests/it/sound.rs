@@ -159,6 +159,39 @@ fn lines_that_begin_on_others_do_not_cross_them() {
     }
 }
 
+/// A bead that runs back along itself, hardly beside itself, crosses itself or does not, whichever way it is welded.
+#[test]
+fn a_line_crosses_itself_as_often_when_it_is_run_backwards() {
+    let fold: Vec<DVec2> = [
+        (21.183809051987964, -11.581956683568812),
+        (24.902262442272995, -13.766219288629742),
+        (24.035080847518525, -13.257438992616148),
+        (25.131544085302306, -13.894358948006454),
+        (24.572017873335728, -14.83810845256585),
+    ]
+    .map(DVec2::from)
+    .to_vec();
+    let back: Vec<DVec2> = fold.iter().rev().copied().collect();
+    assert_eq!(sound::crossings(&[fold]).count(), sound::crossings(&[back]).count());
+}
+
+/// No bead runs back along itself by more than 0.15 of its width where beads are moved to even out their heights.
+#[test]
+fn loops_take_no_step_back() {
+    for seed in (0..12).chain([7010]) {
+        let mesh = extruded(&islands(1, seed), 4.0).unwrap();
+        let plan = plan::plan("spiky", &mesh, &flat(profile_by("cmt-al2319-kuka", "loop")), &Task::new()).unwrap();
+        for pass in plan.layers.iter().flat_map(|layer| &layer.passes) {
+            for corner in line(pass).windows(3) {
+                let (before, after) = (corner[1] - corner[0], corner[2] - corner[1]);
+                let turn = before.angle_to(after).abs().to_degrees();
+                let is_step = before.length().min(after.length()) > 0.15 * pass.width.after(0);
+                assert!(!is_step || turn < 165.0, "{seed}: {turn:.1} degrees at {}", corner[1]);
+            }
+        }
+    }
+}
+
 /// Where the hybrid cannot, the best of the other strategies fills, with hardly more arc starts than islands.
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]

@@ -191,7 +191,11 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
         return None;
     }
     let place = p + u * t;
-    let through = || Bend::of(&lines[i], k, place)?.is_crossed_by(&Bend::of(&lines[j], l, place)?).then_some(());
+    let through = || {
+        let (one, other) = (Bend::of(&lines[i], k, place)?, Bend::of(&lines[j], l, place)?);
+        // Whichever is looked at first: which one is depends on the way that a line is run through.
+        (one.is_crossed_by(&other) && other.is_crossed_by(&one)).then_some(())
+    };
     // How far the ends of each piece lie from the line of the other: next to nothing where they run along each other.
     let sine = across.abs() / (u.length() * v.length());
     let inner = [(t, u), (w, v)].iter().all(|(x, way)| x.min(1.0 - x) * way.length() * sine > FINEST_MM);

@@ -1,4 +1,4 @@
-//! Lines that would cross when they move go back to where they were.
+//! Lines that would cross, or step back along themselves, when they move go back to where they were.
 
 use super::line::Line;
 use crate::fill::sound::crossing_pieces;
@@ -17,7 +17,27 @@ pub type Mend = fn(&mut [Line], &[Line]);
 /// takes time, and once more with the check where that tangles them.
 pub fn moved(lines: &[Line], rounds: impl Fn(Vec<Line>, Mend) -> Vec<Line>) -> Vec<Line> {
     let quick = rounds(lines.to_vec(), |_, _| {});
-    if tangled(&quick) && !tangled(lines) { rounds(lines.to_vec(), untangle) } else { quick }
+    let is_worse = (tangled(&quick) && !tangled(lines)) || new_folds(&quick, lines).next().is_some();
+    if is_worse { rounds(lines.to_vec(), untangle) } else { quick }
+}
+
+/// A line folds where its direction changes by an angle with less than this cosine, about 150°.
+const FOLD: f64 = -0.87;
+
+/// Where lines step back along themselves and did not `before`: numbers of the line and of the piece behind the fold.
+fn new_folds<'a>(lines: &'a [Line], before: &'a [Line]) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let folds = |line: &Line, i: usize| {
+        let (here, way) = (line.points[i], line.points[line.behind(i)] - line.points[i]);
+        let back = here - line.points[line.before(i)];
+        back.dot(way) < FOLD * back.length() * way.length()
+    };
+    let is_new = move |number: usize, i: usize| {
+        let line = &lines[number];
+        !line.is_end(i) && folds(line, i) && !folds(&before[number], i)
+    };
+    (0..lines.len()).flat_map(move |number| {
+        (0..lines[number].points.len()).filter(move |&i| is_new(number, i)).map(move |i| (number, i))
+    })
 }
 
 /// Whether lines cross each other or themselves.
@@ -25,16 +45,17 @@ pub fn tangled(lines: &[Line]) -> bool {
     !crossing_pieces(&paths(lines)).is_empty()
 }
 
-/// Moves points back to where they were `before`, with the neighbouring widths, until no line crosses another or itself; the
-/// lines have the same points in the same order, and did not cross before.
+/// Moves points back to where they were `before`, with the neighbouring widths, until no line crosses another or itself or
+/// steps back; the lines have the same points in the same order, and did not cross before.
 fn untangle(lines: &mut [Line], before: &[Line]) {
     for attempt in 0..ATTEMPTS {
-        let crossings = crossing_pieces(&paths(lines));
-        if crossings.is_empty() {
+        let crossings = crossing_pieces(&paths(lines)).into_iter().flat_map(|crossing| crossing.pieces);
+        let faults: Vec<(usize, usize)> = crossings.chain(new_folds(lines, before)).collect();
+        if faults.is_empty() {
             return;
         }
         let around = AROUND * MORE.pow(attempt);
-        for (line, piece) in crossings.into_iter().flat_map(|crossing| crossing.pieces) {
+        for (line, piece) in faults {
             lines[line].take_back(&before[line], piece, around);
         }
     }

@@ -9,6 +9,7 @@ use crate::fill::trails::{Dart, Network, Trail, other_end, trails};
 use crate::fill::{Path, sound};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
+use planar::medial::Node;
 use planar::polyline;
 
 /// The end of a wall looks for a pass within this many bead widths.
@@ -121,6 +122,13 @@ impl Line {
         self.points = polyline::without_end(std::mem::take(&mut self.points), by);
         self.widths.truncate(self.points.len().saturating_sub(1));
     }
+
+    /// Leaves its way `by` mm before its end for a place beside the end.
+    fn turn_off(&mut self, place: DVec2, by: f64) {
+        self.cut_end(by.min(MOST * self.length()));
+        self.points.push(place);
+        self.widths.extend(self.widths.last().copied());
+    }
 }
 
 #[derive(Debug, Default)]
@@ -155,14 +163,11 @@ impl Graph {
                     let path: Vec<DVec2> = std::iter::once(last.at).chain(tail.iter().map(|node| node.at)).collect();
                     match meeting(&path, lines, REACH * self.width) {
                         Some(met) => {
-                            nodes.extend(
-                                tail.iter()
-                                    .take(met.passed)
-                                    .map(|n| planar::medial::Node { radius: last.radius, ..*n }),
-                            );
+                            nodes.extend(tail.iter().take(met.passed).map(|n| Node { radius: last.radius, ..*n }));
                             let node = self.node_on(met, &mut places[met.line]);
                             let at = self.nodes[node];
-                            nodes.push(planar::medial::Node { at, radius: last.radius });
+                            without_step_back(&mut nodes, at);
+                            nodes.push(Node { at, radius: last.radius });
                             node
                         }
                         None => self.node(last.at),
@@ -315,22 +320,23 @@ impl Graph {
                 line.cut_end(gap.min(MOST * line.length()));
             }
         }
-        let (mut points, mut widths): (Vec<DVec2>, Vec<f64>) = (Vec::new(), Vec::new());
-        for (i, line) in lines.iter().enumerate() {
+        for i in usize::from(!trail.closed)..lines.len() {
             let node = self.node_of(trail.darts[i]);
-            let passes = i > 0 || trail.closed;
-            let mut own = line.points.iter().copied();
-            if passes && through[node] > 1 {
-                let before = &lines[(i + lines.len() - 1) % lines.len()];
-                let ways = before.clone().reversed().way(self.width) + line.way(self.width);
-                own.next();
-                points.push(self.nodes[node] + ways.clamp_length_max(1.0) * ASIDE * self.width);
-            } else if i > 0 {
-                own.next();
-                points.push(self.nodes[node]);
+            if through[node] > 1 {
+                let before = (i + lines.len() - 1) % lines.len();
+                let ways = lines[before].clone().reversed().way(self.width) + lines[i].way(self.width);
+                let aside = ASIDE * self.width;
+                let at = self.nodes[node] + ways.clamp_length_max(1.0) * aside;
+                lines[before].turn_off(at, aside);
+                let mut line = std::mem::take(&mut lines[i]).reversed();
+                line.turn_off(at, aside);
+                lines[i] = line.reversed();
             }
-            points.extend(own);
-            points.pop();
+        }
+        let (mut points, mut widths): (Vec<DVec2>, Vec<f64>) = (Vec::new(), Vec::new());
+        for line in &lines {
+            // The next line begins where this one ends.
+            points.extend(line.points.split_last().map_or(&[][..], |(_, others)| others));
             widths.extend(&line.widths);
         }
         if !trail.closed {
@@ -338,6 +344,15 @@ impl Graph {
             widths.extend(widths.last().copied());
         }
         Path { kind, closed: trail.closed, points, width: Along::Each(widths), reversible: true }
+    }
+}
+
+/// Drops the last nodes of a wall that has run beside the place where it is to end: going there would be a step back.
+fn without_step_back(wall: &mut Vec<Node>, end: DVec2) {
+    while let [.., before, last] = wall[..]
+        && (last.at - before.at).dot(end - last.at) < 0.0
+    {
+        wall.pop();
     }
 }
 
