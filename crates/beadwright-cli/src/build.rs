@@ -169,7 +169,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
         profile.bead.by_heat = None;
     }
     let model = model::Model::of(path);
-    let part = model.part_placed(profile.bead.width, None, task)?;
+    let part = model.part_placed(&profile, model::Use::AsDrawn, None, task)?;
     let mut profile = choice::choose(&part, &profile, false, task)?.profile;
     let plan = plan::plan(&model.part(), &part, &profile, task)?;
     profile.bead.by_heat = law;

@@ -46,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(arguments.profile.as_deref().unwrap_or(profile::USUAL), &arguments.set)?;
     let names = if arguments.strategy.is_empty() { StrategyName::ALL } else { &arguments.strategy };
     let (task, bar) = progress::task()?;
-    let import = arguments.model.placed(profile.bead.width, &task)?;
+    let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
     say_size(&import.mesh, &profile)?;
     let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();

@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
-    let part = arguments.model.placed(profile.bead.width, &task)?;
+    let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
     let context = || format!("{}", arguments.scan.display());
     let mut scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
     let millimetres = arguments.scan_units.in_mm();

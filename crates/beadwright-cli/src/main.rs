@@ -20,6 +20,7 @@ mod memory;
 mod model;
 mod parts;
 mod plan;
+mod preform;
 mod profile;
 mod program;
 mod progress;
@@ -56,6 +57,8 @@ struct Arguments {
 enum Command {
     /// Plan a model: write the program, plan.json, metrics.json and report.html.
     Plan(plan::Arguments),
+    /// Make the preform of a model: the part with what is milled off again, with its weights, hours and prices.
+    Preform(preform::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
     /// Plan many models, with many profiles, strategies and values: one table.
@@ -102,6 +105,7 @@ fn main() -> ExitCode {
     say::set(arguments.quiet, arguments.verbose);
     let result = match arguments.command {
         Command::Plan(arguments) => parts::run(&arguments),
+        Command::Preform(arguments) => preform::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -4,6 +4,8 @@ use crate::{convert, file};
 use anyhow::Context;
 use beadwright::model::iges::{self, IgesFile};
 use beadwright::model::{self, Import, Mesh, Part, Placement, Units};
+use beadwright::preform::orient;
+use beadwright::profile::Profile;
 use beadwright::task::Task;
 use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};
@@ -34,7 +36,8 @@ pub(crate) struct Placing {
     /// Turn the part so that it stands on its largest suitable flat face.
     #[arg(long)]
     lay_flat: bool,
-    /// Turn the part onto the flat face that leaves the least overhang; among equals, the one that leaves the part lowest.
+    /// Turn the part onto the flat face that leaves the least overhang, among equals the one that leaves the part lowest; a
+    /// preform so that welding and milling it costs least.
     #[arg(long, conflicts_with = "lay_flat")]
     orient: bool,
     /// Move the middle of the part to x = y = 0.
@@ -46,6 +49,15 @@ pub(crate) struct Placing {
     /// Use the triangles that are there in an STL file that ends too early or holds more than it says.
     #[arg(long)]
     accept_damaged: bool,
+}
+
+/// What is made of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// The part as it is drawn.
+    AsDrawn,
+    /// Its preform.
+    Preform,
 }
 
 pub(crate) fn parse_units(text: &str) -> Result<Units, String> {
@@ -104,7 +116,14 @@ impl Model {
     }
 
     /// The solid or the curves, placed. Curves that all lie at one height need a height to end at, mm.
-    pub(crate) fn part_placed(&self, bead_width: f64, height: Option<f64>, task: &Task) -> anyhow::Result<Part> {
+    pub(crate) fn part_placed(
+        &self,
+        profile: &Profile,
+        use_as: Use,
+        height: Option<f64>,
+        task: &Task,
+    ) -> anyhow::Result<Part> {
+        let bead_width = profile.bead.width;
         let context = || format!("{}", self.model.display());
         let read = if self.placing.accept_damaged { model::Model::read_damaged } else { model::Model::read };
         let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
@@ -114,7 +133,7 @@ impl Model {
         match part.mesh().filter(|_| self.placing.turns()) {
             None => Ok(part),
             Some(mesh) => {
-                let turn = self.placing.turn_for(&placement, mesh);
+                let turn = self.placing.turn_for(&placement, mesh, (profile, use_as), task)?;
                 let flat = read(&bytes, task)
                     .and_then(|model| model.place(&Placement { turn, ..placement }, height, bead_width));
                 flat.with_context(context)
@@ -128,7 +147,8 @@ impl Model {
     }
 
     /// The model, scaled to mm, turned, and placed on z = 0.
-    pub(crate) fn placed(&self, bead_width: f64, task: &Task) -> anyhow::Result<Import> {
+    pub(crate) fn placed(&self, profile: &Profile, use_as: Use, task: &Task) -> anyhow::Result<Import> {
+        let bead_width = profile.bead.width;
         let context = || format!("{}", self.model.display());
         let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
         let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
@@ -136,7 +156,7 @@ impl Model {
         let placement = self.placing.placement();
         let part = if self.placing.turns() {
             let placed = placement.solid(import.clone(), bead_width).with_context(context)?.mesh;
-            let turn = self.placing.turn_for(&placement, &placed);
+            let turn = self.placing.turn_for(&placement, &placed, (profile, use_as), task)?;
             Placement { turn, ..placement }.solid(import, bead_width)
         } else {
             placement.solid(import, bead_width)
@@ -152,8 +172,20 @@ impl Placing {
     }
 
     /// How a part that is placed so is to be turned.
-    fn turn_for(&self, placement: &Placement, mesh: &Mesh) -> DVec3 {
-        if self.orient { placement.least_overhang(mesh) } else { placement.laid_flat(mesh) }
+    fn turn_for(
+        &self,
+        placement: &Placement,
+        mesh: &Mesh,
+        (profile, use_as): (&Profile, Use),
+        task: &Task,
+    ) -> anyhow::Result<DVec3> {
+        match (self.orient, use_as) {
+            (false, _) => return Ok(placement.laid_flat(mesh)),
+            (true, Use::AsDrawn) => return Ok(placement.least_overhang(mesh)),
+            (true, Use::Preform) => {}
+        }
+        let found = orient::best(mesh, &profile.preform_settings(), &profile.preform_rates(), task)?;
+        Ok(found.first().map_or(placement.turn, |best| placement.turned_onto(best.down)))
     }
 
     fn placement(&self) -> Placement {

@@ -45,7 +45,7 @@ struct Own {
 /// Plans the parts one after another, each with its own programs. All are written, or none.
 fn each(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
-    let build = arguments.build(arguments.profile(&arguments.profile)?.bead.width, &task)?;
+    let build = arguments.build(&arguments.profile(&arguments.profile)?, &task)?;
     let own = |(name, import): (String, Import)| own(arguments, name, import, &task);
     let owned: Vec<Own> = build.lowest_first.into_iter().map(own).collect::<anyhow::Result<_>>()?;
     let mut clearance = Clearance::default();

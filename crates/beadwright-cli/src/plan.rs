@@ -1,7 +1,7 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::several::{Build, Order, Several};
-use crate::{model, profile, progress, remedy, say};
+use crate::{model, preform, profile, progress, remedy, say};
 use anyhow::Context;
 use beadwright::Finding;
 use beadwright::check;
@@ -55,6 +55,9 @@ pub(crate) struct Arguments {
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Plan the preform of the part: the part with what is milled off again (section [preform] of the profile).
+    #[arg(long)]
+    pub(crate) preform: bool,
     /// Plan only what lies above this height of the placed part, mm: the cut then lies on the table.
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     pub(crate) from_z: Option<f64>,
@@ -147,13 +150,15 @@ impl Arguments {
     }
 
     /// What is built.
-    pub(crate) fn build(&self, bead_width: f64, task: &Task) -> anyhow::Result<Build> {
+    pub(crate) fn build(&self, profile: &Profile, task: &Task) -> anyhow::Result<Build> {
         self.several.stand(&self.model, |model| {
-            let part = model.part_placed(bead_width, self.height, task)?;
-            match self.from_z {
-                Some(z) => part.above(z).with_context(|| format!("--from-z {z}")),
-                None => Ok(part),
-            }
+            let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
+            let part = model.part_placed(profile, use_as, self.height, task)?;
+            let part = match self.from_z {
+                Some(z) => part.above(z).with_context(|| format!("--from-z {z}"))?,
+                None => part,
+            };
+            if self.preform { preform::of_part(part, profile, task) } else { Ok(part) }
         })
     }
 
@@ -205,7 +210,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
 
     let (task, bar) = progress::task()?;
-    let Build { whole: model, places, lowest_first } = arguments.build(profile.bead.width, &task)?;
+    let Build { whole: model, places, lowest_first } = arguments.build(&profile, &task)?;
     if let Part::Mesh(import) = &model {
         say_size(&import.mesh, &profile)?;
     }
@@ -234,7 +239,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
-        return Err(Refused { reasons: remedy::reasons(&summary), report }.into());
+        let mut reasons = remedy::reasons(&summary);
+        if let (Part::Mesh(import), false) = (&model, arguments.preform) {
+            reasons.extend(preform::remedy(&import.mesh, &profile, &task)?);
+        }
+        return Err(Refused { reasons, report }.into());
     }
     let faults = check::rehearse(&profile).into_iter();
     let faults =

@@ -170,7 +170,7 @@ pub(crate) fn part(
     let place = |path: &Path| {
         let mut model = model::Model::of(path);
         model.placing.units = units;
-        model.placed(profile.bead.width, task)
+        model.placed(profile, model::Use::AsDrawn, task)
     };
     path.map(place).transpose()
 }

@@ -43,7 +43,7 @@ pub mod simulate;
 pub use bead_part::{curve, deviation, finding, task, text, warning};
 pub use bead_part::{example, model, slice};
 use bead_plan::random;
-pub use bead_plan::{bead, deposit, fill, heat};
+pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]
 pub use bead_plan::{layer, limit, motion, order, pass, process, weld};
 pub use bead_program::{dialect, program};

@@ -13,6 +13,7 @@
 //! | [`weld`] | passes with start and stop, and the moves between them |
 //! | [`heat`] | temperatures before and along passes, and waits within a limit |
 //! | [`limit`] | the range of every number of a profile, with its reason |
+//! | [`preform`] | a part with what is milled off again, and the way up in which that costs least |
 //! | [`random`] | seeded random numbers |
 
 pub mod bead;
@@ -24,6 +25,7 @@ pub mod limit;
 pub mod motion;
 pub mod order;
 pub mod pass;
+pub mod preform;
 pub mod process;
 pub mod random;
 pub mod weld;

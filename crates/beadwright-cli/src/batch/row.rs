@@ -1,6 +1,6 @@
 //! One plan of a batch, and what is kept of it.
 
-use crate::model::{Model, Placing};
+use crate::model::{Model, Placing, Use};
 use crate::plan::{deposit_settings, refused};
 use crate::profile;
 use beadwright::compare::MAP_PIXELS;
@@ -63,7 +63,7 @@ impl Run {
 pub(super) fn plan(run: &Run, asked: &Asked<'_>, task: &Task) -> anyhow::Result<Planned> {
     let profile = profile::load(&run.profile, &run.settings(asked.set))?;
     let model = Model::placed_so(&run.file, asked.placing);
-    let part = model.part_placed(profile.bead.width, asked.height, task)?;
+    let part = model.part_placed(&profile, Use::AsDrawn, asked.height, task)?;
     let Choice { profile, note } = choice::choose(&part, &profile, run.strategy.is_some(), task)?;
     let settings = deposit_settings(asked.grid, &profile, part.bounds())?;
     // Pictures make the judge look closer at a few squares, so it draws them as for `plan`: the figures are the same.

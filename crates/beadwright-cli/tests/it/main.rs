@@ -14,6 +14,7 @@ mod heat;
 mod height;
 mod opened_elsewhere;
 mod own_dialect;
+mod preform;
 mod serve;
 mod streams;
 mod together;

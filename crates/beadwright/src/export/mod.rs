@@ -16,6 +16,7 @@ mod glb;
 mod parquet;
 #[cfg(feature = "png")]
 mod png;
+pub mod solids;
 mod stl;
 mod svg;
 mod swept;

@@ -40,6 +40,7 @@ pub(super) fn limits(p: &Profile) -> Vec<Limit> {
         p.one_loop.limits(),
         p.start_stop.limits(),
         p.spot.iter().flat_map(|spot| spot.limits()).collect(),
+        p.preform.limits(),
         p.cost.limits(),
         p.motion.iter().flat_map(|motion| motion.limits()).collect(),
         p.heat.iter().flat_map(|heat| heat.limits()).collect(),

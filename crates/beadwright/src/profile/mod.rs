@@ -42,6 +42,9 @@ use crate::layer::Layer;
 use crate::limit::Limit;
 use crate::motion::Motion;
 use crate::order::OrderSettings;
+use crate::preform::PreformSettings;
+use crate::preform::figures::Rates;
+use crate::preform::section::PreformSection;
 use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
 use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::robot::Track;
@@ -143,6 +146,9 @@ pub struct Profile {
     pub spot: Option<Spot>,
     /// Acceleration, for machines on which it affects the time; optional.
     pub motion: Option<Motion>,
+    /// How a part becomes its preform; optional.
+    #[serde(default)]
+    pub preform: PreformSection,
     /// Prices; optional.
     #[serde(default)]
     pub cost: Cost,
@@ -254,6 +260,18 @@ impl Profile {
     /// The limits of this profile's numbers, for forms.
     pub fn limits(&self) -> Vec<Limit> {
         limits::limits(self)
+    }
+
+    /// How a part becomes its preform.
+    pub fn preform_settings(&self) -> PreformSettings {
+        let fill = self.fill_settings(0);
+        self.preform.settings([self.bead.width, fill.double()], self.layers.height, fill.min_pass_length)
+    }
+
+    /// What a preform weighs, takes and costs.
+    pub fn preform_rates(&self) -> Rates {
+        let deposition = self.bead().area() * self.process.deposition_speed;
+        Rates { density: self.wire.density, deposition, cost: self.cost.clone(), preform: self.preform.clone() }
     }
 
     /// The single bead.

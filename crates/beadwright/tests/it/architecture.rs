@@ -27,6 +27,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["layer"],
             &["deposit"],
             &["fill"],
+            &["preform"],
             &["order"],
             &["weld"],
             &["heat"],

@@ -57,6 +57,7 @@ mod page_colours;
 mod part;
 mod parts;
 mod plan;
+mod preform;
 mod process_layers;
 mod profile;
 mod rapid;

@@ -305,6 +305,15 @@ impl Mesh {
         repair::mend(vertices, triangles)
     }
 
+    /// Adds the triangles of another mesh; each stays closed by itself.
+    pub fn add(&mut self, other: Self) {
+        let (vertices, triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
+        self.vertices.extend(other.vertices);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + vertices)));
+        let shifted = |across: u32| if across == NO_NEIGHBOUR { across } else { across + triangles };
+        self.neighbours.extend(other.neighbours.iter().map(|across| across.map(shifted)));
+    }
+
     /// Lowest and highest coordinates, mm.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         self.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))

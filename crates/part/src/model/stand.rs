@@ -18,7 +18,7 @@ const STANDING: f64 = 1e-3;
 const CANDIDATES: usize = 64;
 
 /// Outward normals of the flat faces with the whole part on one side, largest first.
-pub(super) fn faces(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
+pub fn faces(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
     let extent = mesh.size().max_element();
     let mut faces: HashMap<[i64; 4], (f64, DVec3, f64)> = HashMap::new();
     for corners in &mesh.triangles {

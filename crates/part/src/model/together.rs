@@ -1,6 +1,6 @@
 //! Several parts for one build: side by side on the plate, or where their files place them.
 
-use super::{Import, Mesh, NO_NEIGHBOUR, Object, RepairReport};
+use super::{Import, Mesh, Object, RepairReport};
 use glam::{DVec2, DVec3};
 use planar::Bounds;
 
@@ -102,11 +102,7 @@ fn crowded(places: &[Place]) -> Option<(String, String)> {
 
 /// Two solids as one; each stays closed by itself.
 fn joined(mut first: Import, second: Import) -> Import {
-    let (vertices, triangles) = (first.mesh.vertices.len() as u32, first.mesh.triangles.len() as u32);
-    first.mesh.vertices.extend(second.mesh.vertices);
-    first.mesh.triangles.extend(second.mesh.triangles.iter().map(|corners| corners.map(|corner| corner + vertices)));
-    let shifted = |across: u32| if across == NO_NEIGHBOUR { across } else { across + triangles };
-    first.mesh.neighbours.extend(second.mesh.neighbours.iter().map(|across| across.map(shifted)));
+    first.mesh.add(second.mesh);
     first.repair = added(first.repair, second.repair);
     first.objects.extend(second.objects);
     first.notes.extend(second.notes);

@@ -1,0 +1,83 @@
+//! `preform` as people run it, and plans of preforms.
+
+use beadwright::model::import;
+use beadwright::task::Task;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A table on one leg, 80 × 80 mm, as ASCII STL.
+fn table(folder: &Path) {
+    let mut text = "solid table\n".to_owned();
+    for ([x0, y0, z0], [x1, y1, z1]) in [([30, 30, 0], [50, 50, 30]), ([0, 0, 30], [80, 80, 40])] {
+        let c = |i: usize| [[x0, x1][i & 1], [y0, y1][i >> 1 & 1], [z0, z1][i >> 2]];
+        for [a, b, d, e] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]] {
+            for corners in [[a, b, d], [a, d, e]] {
+                text += "facet normal 0 0 0\nouter loop\n";
+                corners.map(c).iter().for_each(|[x, y, z]| text += &format!("vertex {x} {y} {z}\n"));
+                text += "endloop\nendfacet\n";
+            }
+        }
+    }
+    fs::write(folder.join("table.stl"), text + "endsolid table\n").unwrap();
+}
+
+#[test]
+fn a_part_that_hangs_over_is_planned_as_its_preform() {
+    let folder = TempDir::new().unwrap();
+    table(folder.path());
+    let refused = run(folder.path(), &["plan", "table.stl", "-o", "out"]);
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(3), "{why}");
+    assert!(why.contains("--preform plans the part with") && why.contains("kg more to weld"), "{why}");
+    assert!(folder.path().join("out/refused.html").exists());
+    let planned = said(folder.path(), &["plan", "table.stl", "--preform", "-o", "out"]);
+    assert!(planned.contains("kg are milled off"), "{planned}");
+    assert!(folder.path().join("out/TABLE.src").exists() && !folder.path().join("out/refused.html").exists());
+}
+
+#[test]
+fn a_preform_is_written_with_the_part_in_it() {
+    let folder = TempDir::new().unwrap();
+    table(folder.path());
+    let text = said(folder.path(), &["preform", "table.stl", "-o", "stock.3mf", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let stock = import(&fs::read(folder.path().join("stock.3mf")).unwrap(), &Task::new()).unwrap();
+    let names: Vec<&str> = stock.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["preform", "part"]);
+    assert_eq!(stock.mesh.bounds().0.z, 0.0);
+    // Both together, as the file has both.
+    let kg = told["figures"]["part_kg"].as_f64().unwrap() + told["figures"]["preform_kg"].as_f64().unwrap();
+    let density = 2.82e-6;
+    assert!((stock.mesh.volume() * density / kg - 1.0).abs() < 1e-3, "{told} {}", stock.mesh.volume());
+
+    let text = said(folder.path(), &["preform", "table.stl"]);
+    for row in ["table_preform.stl", "preform", "block", "milled off", "sawn off 4.0 mm above it"] {
+        assert!(text.contains(row), "{text}");
+    }
+    // On an edge, less hangs over.
+    assert!(text.contains("--orient turns the part."), "{text}");
+    let turned = said(folder.path(), &["preform", "table.stl", "--orient", "--json"]);
+    let turned: serde_json::Value = serde_json::from_str(&turned).unwrap();
+    assert!(turned["figures"]["preform_kg"].as_f64() < told["figures"]["preform_kg"].as_f64());
+}
+
+#[test]
+fn curves_and_open_surfaces_have_no_preform() {
+    let folder = TempDir::new().unwrap();
+    assert!(run(folder.path(), &["example", "gourd", "-o", "gourd.igs"]).status.success());
+    let refused = run(folder.path(), &["plan", "gourd.igs", "--height", "20", "--preform"]);
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(1) && why.contains("only solids have a preform"), "{why}");
+}

@@ -1,0 +1,216 @@
+//! From a part to its preform: the part and what is milled off again.
+//!
+//! | rule | file |
+//! | --- | --- |
+//! | stock on all faces, holes that are welded shut, each layer on the metal of the one below | this one |
+//! | at least one bead everywhere, as far as the part's own corners, and as long as a pass | [`wide`] |
+//! | what is milled off, weights, hours and prices | [`figures`] |
+//! | the way up in which all of this costs least | [`orient`] |
+//! | a closed surface of the result | [`solid`] |
+//! | the keys of a profile | [`section`] |
+//!
+//! A preform is made of steps, thinner than a layer. From the top down, a step P(k) is the part within it with its stock, G(k),
+//! and what the step above needs to lie on: that step shrunk by how far it may hang. What is too narrow for a bead is
+//! then widened to one, and what is narrower than `fill_holes` closed. The part is taken where it is widest in a step, so that
+//! no slice of it reaches beyond the preform.
+
+pub mod figures;
+pub mod orient;
+pub mod section;
+pub mod solid;
+pub mod wide;
+
+use bead_part::model::Mesh;
+use bead_part::slice::{Slab, SliceOptions, Slicer};
+use bead_part::task::{Cancelled, Task};
+use planar::{Join, Region};
+use rayon::prelude::*;
+
+/// How a part becomes its preform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PreformSettings {
+    /// Stock on faces that look sideways, mm.
+    pub side: f64,
+    /// Stock on faces that look up, mm.
+    pub top: f64,
+    /// Stock on faces that look down, mm.
+    pub bottom: f64,
+    /// What is narrower than this is closed, mm.
+    pub fill_holes: f64,
+    /// How far a step may hang beyond the one below, rad from the vertical.
+    pub reach: f64,
+    /// The plate.
+    pub plate: Plate,
+    /// Width of a bead, mm.
+    pub bead_width: f64,
+    /// Width with room for two beads side by side, mm.
+    pub room: f64,
+    /// Thickness of a step, mm.
+    pub step: f64,
+    /// Length of the shortest pass, mm.
+    pub shortest: f64,
+}
+
+/// What becomes of the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Plate {
+    /// It is sawn off.
+    Sawn {
+        /// Height above the plate in which the saw cuts, mm.
+        cut: f64,
+    },
+    /// It becomes the lowest part of the part.
+    Kept {
+        /// mm
+        thickness: f64,
+    },
+}
+
+impl PreformSettings {
+    /// How high the part's lowest point lies above the plate, mm; negative where it lies in a plate that is kept.
+    pub fn lift(&self) -> f64 {
+        match self.plate {
+            Plate::Sawn { cut } => cut + self.bottom,
+            Plate::Kept { thickness } => self.bottom - thickness,
+        }
+    }
+
+    /// How far a step may hang beyond the one below, mm.
+    fn overhang(&self) -> f64 {
+        self.step * self.reach.tan()
+    }
+}
+
+/// A part with what is milled off again, in steps of one height.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preform {
+    /// The steps, the lowest first; it stands on the plate.
+    pub steps: Vec<Region>,
+    /// Thickness of a step, mm.
+    pub step: f64,
+    /// How high the part's lowest point lies above the plate, mm.
+    pub lift: f64,
+}
+
+impl Preform {
+    /// The preform of a mesh that stands on z = 0.
+    ///
+    /// ```
+    /// use bead_plan::preform::{Preform, section::PreformSection};
+    /// use bead_part::{example, task::Task};
+    ///
+    /// // A plate of 120 × 60 × 12 mm or so, and 1.5 mm around it.
+    /// let plate = example::find("plate").ok_or("no such example")?.mesh();
+    /// // Beads 6 mm wide, two in 9 mm, in layers of 2 mm; passes of at least 10 mm.
+    /// let settings = PreformSection::default().settings([6.0, 9.0], 2.0, 10.0);
+    /// let preform = Preform::of(&plate, &settings, &Task::new())?;
+    /// assert!(preform.volume() > plate.volume());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Self, Cancelled> {
+        let own = Sections::of(mesh, settings, task)?;
+        let mut steps: Vec<Region> = Vec::with_capacity(own.grown.len());
+        let mut above = (Region::default(), Region::default());
+        for k in (0..own.grown.len()).rev() {
+            task.check()?;
+            let (grown, bare) = (&own.grown[k], &own.bare[k]);
+            // Where nothing changes, the step is that above.
+            let same = own.grown.get(k + 1).is_some_and(|upper| upper == grown) && own.bare.get(k + 1) == Some(bare);
+            let step = if same && above.0 == above.1 {
+                above.0.clone()
+            } else {
+                let held = above.0.offset(-settings.overhang(), Join::ROUND);
+                let held = grown.union(&held);
+                let wide = if settings.bead_width > 0.0 { wide::widened(&held, bare, settings) } else { held };
+                closed(&wide, settings.fill_holes)
+            };
+            above = (step.clone(), std::mem::replace(&mut above.0, step.clone()));
+            steps.push(step);
+        }
+        steps.reverse();
+        // The tip of a spike is no part of any slice.
+        while steps.pop_if(|top| top.is_empty()).is_some() {}
+        Ok(Self { steps, step: settings.step, lift: settings.lift() })
+    }
+
+    /// mm³
+    pub fn volume(&self) -> f64 {
+        self.step * self.steps.iter().map(Region::area).sum::<f64>()
+    }
+
+    /// The step at a height above the plate, mm.
+    pub fn at(&self, z: f64) -> Option<&Region> {
+        let number = (z / self.step).floor();
+        (number >= 0.0).then(|| self.steps.get(number as usize)).flatten()
+    }
+}
+
+/// A region without what is narrower than `width` (mm) around it: holes, slots and grooves.
+fn closed(region: &Region, width: f64) -> Region {
+    let by = width / 2.0;
+    region.offset(by, Join::ROUND).offset(-by, Join::ROUND).union(region)
+}
+
+/// What a part needs in each step.
+struct Sections {
+    /// The part itself, where it is widest in the step.
+    bare: Vec<Region>,
+    /// The part with its stock.
+    grown: Vec<Region>,
+}
+
+/// Parts of a step in which the part is cut at both ends.
+const CELLS: usize = 2;
+/// A cell is cut this far from its ends, in cells: a face there belongs to one side.
+const INSIDE: f64 = 1e-3;
+
+impl Sections {
+    fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Self, Cancelled> {
+        let (height, lift, cell) = (mesh.size().z, settings.lift(), settings.step / CELLS as f64);
+        let count = ((lift + height + settings.top) / settings.step - 1e-6).ceil().max(0.0) as usize;
+        let cells = Self::cells(mesh, count * CELLS, cell, lift, task)?;
+        // Stock lies above faces that look up and below those that look down.
+        let (up, down) =
+            ((settings.top / cell - 1e-6).ceil() as usize, (settings.bottom / cell - 1e-6).ceil() as usize);
+        // The saw cuts through what the part stands on.
+        let foot = cells.iter().position(|region| !region.is_empty()).unwrap_or(0);
+        let of = |k: usize| -> Result<(Region, Region), Cancelled> {
+            task.check()?;
+            let united = |from: usize, to: usize| {
+                let mut parts: Vec<&Region> = cells[from.min(cells.len())..to.min(cells.len())].iter().collect();
+                parts.dedup();
+                parts.into_iter().fold(Region::default(), |all, part| all.union(part))
+            };
+            let bare = united(k * CELLS, (k + 1) * CELLS);
+            let stock = united((k * CELLS).saturating_sub(up), ((k + 1) * CELLS + down).max(foot + 1));
+            Ok((bare, stock.offset(settings.side, Join::ROUND)))
+        };
+        let steps = (0..count).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+        let (bare, grown) = steps.into_iter().unzip();
+        Ok(Self { bare, grown })
+    }
+
+    /// The part within each of a number of cells above the plate.
+    fn cells(mesh: &Mesh, count: usize, cell: f64, lift: f64, task: &Task) -> Result<Vec<Region>, Cancelled> {
+        let height = mesh.size().z;
+        let ends = |k: usize| [k as f64 + INSIDE, (k + 1) as f64 - INSIDE].map(|z| (k, z * cell - lift));
+        let cuts: Vec<(usize, f64)> = (0..count).flat_map(ends).filter(|(_, z)| (0.0..height).contains(z)).collect();
+        let thin = INSIDE * cell;
+        let slabs = cuts.iter().map(|(_, z)| Slab { z: z + thin / 2.0, height: thin }).collect();
+        let options = SliceOptions { layer_height: thin, close_gap: CLOSE_GAP_MM, simplify: SIMPLIFY_MM };
+        let slices = Slicer::of_slabs(mesh, slabs, options, task)?.all(task)?;
+        let mut cells = vec![Region::default(); count];
+        for ((cell, _), slice) in cuts.into_iter().zip(slices) {
+            let own = Region::from_normalised(slice.islands);
+            cells[cell] = if cells[cell].is_empty() || cells[cell] == own { own } else { cells[cell].union(&own) };
+        }
+        Ok(cells)
+    }
+}
+
+/// As a profile has them by default.
+const CLOSE_GAP_MM: f64 = 0.1;
+const SIMPLIFY_MM: f64 = 0.01;

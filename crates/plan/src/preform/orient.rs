@@ -1,0 +1,275 @@
+//! The way up in which a preform costs least.
+//!
+//! 1. The part becomes a grid of cells, looked at from directions all over the sphere, from all flat faces and axes. For each
+//!    direction, layers of bits are laid from the top down as the preform's steps are: the part, and the layer above shrunk by
+//!    what may hang.
+//! 2. The best of them, no two alike, are scored by their steps themselves ([`Figures::score`]).
+//! 3. The best of these are turned by smaller and smaller angles as long as that helps.
+
+use super::figures::{Figures, Rates};
+use super::{Preform, PreformSettings};
+use bead_part::model::{Mesh, stand};
+use bead_part::slice::{Slab, SliceOptions, Slicer};
+use bead_part::task::{Cancelled, Task};
+use glam::{DMat3, DQuat, DVec3, UVec3};
+use planar::Region;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Directions all over the sphere.
+const DIRECTIONS: usize = 1200;
+/// Cells along the longest side of the part.
+const CELLS: f64 = 56.0;
+/// Directions scored by their steps, and those of them that are turned further.
+const SCORED: usize = 24;
+const REFINED: usize = 6;
+/// Directions nearer to each other than this are alike: 8°.
+const ALIKE: f64 = 0.9903;
+/// Angles of further turns, degrees.
+const TURNS: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
+/// Steps in the height of a part that is scored.
+const STEPS: f64 = 40.0;
+
+/// A direction of the part that points down, with its figures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oriented {
+    /// Unit vector.
+    pub down: DVec3,
+    /// Of a preform in coarse steps, without the beads of thin places.
+    pub figures: Figures,
+}
+
+/// The best ways up, no two alike, the best one first.
+///
+/// # Errors
+/// [`Cancelled`] when the task was.
+pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Vec<Oriented>, Cancelled> {
+    let Some(cells) = Cells::of(mesh, settings, task)? else { return Ok(Vec::new()) };
+    let directions: Vec<DVec3> = directions(mesh);
+    let rough = |down: &DVec3| -> Result<(f64, DVec3), Cancelled> {
+        task.check()?;
+        Ok((cells.score(*down, settings, rates), *down))
+    };
+    let mut scored = directions.par_iter().map(rough).collect::<Result<Vec<_>, _>>()?;
+    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut few: Vec<DVec3> = Vec::new();
+    for (_, down) in scored {
+        if few.len() < SCORED && few.iter().all(|other| other.dot(down) < ALIKE) {
+            few.push(down);
+        }
+    }
+    let exact = |down: DVec3| Oriented::of(mesh, down, settings, rates, task);
+    let mut found = few.into_par_iter().map(exact).collect::<Result<Vec<_>, _>>()?;
+    found.sort_by(|a, b| a.figures.score().total_cmp(&b.figures.score()));
+    found.truncate(REFINED);
+    let mut refined =
+        found.into_par_iter().map(|one| one.refined(mesh, settings, rates, task)).collect::<Result<Vec<_>, _>>()?;
+    refined.sort_by(|a, b| a.figures.score().total_cmp(&b.figures.score()));
+    Ok(refined)
+}
+
+impl Oriented {
+    /// A direction with the figures of the preform that stands so.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when the task was.
+    pub fn of(
+        mesh: &Mesh,
+        down: DVec3,
+        settings: &PreformSettings,
+        rates: &Rates,
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
+        let turned = standing(mesh, down);
+        let step = settings.step.max(turned.size().z / STEPS);
+        let coarse = PreformSettings { bead_width: 0.0, step, ..*settings };
+        let preform = Preform::of(&turned, &coarse, task)?;
+        Ok(Self { down, figures: Figures::of(&turned, &preform, &coarse, rates) })
+    }
+
+    fn refined(self, mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Self, Cancelled> {
+        let mut best = self;
+        for degrees in TURNS {
+            let across = best.down.any_orthonormal_vector();
+            let ways = [across, -across, best.down.cross(across), across.cross(best.down)];
+            for axis in ways {
+                let down = DQuat::from_axis_angle(axis, degrees.to_radians()) * best.down;
+                let tried = Self::of(mesh, down, settings, rates, task)?;
+                if tried.figures.score() < best.figures.score() {
+                    best = tried;
+                }
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// A mesh turned so that a direction points down, set onto z = 0.
+pub fn standing(mesh: &Mesh, down: DVec3) -> Mesh {
+    let turn = DQuat::from_rotation_arc(down.normalize_or(DVec3::NEG_Z), DVec3::NEG_Z);
+    let mut turned = mesh.clone();
+    turned.vertices.iter_mut().for_each(|vertex| *vertex = turn * *vertex);
+    let floor = turned.bounds().0.z;
+    turned.vertices.iter_mut().for_each(|vertex| vertex.z -= floor);
+    turned
+}
+
+/// Directions spread evenly over the sphere (a spiral by the golden angle), those of the axes, and of the part's flat faces.
+fn directions(mesh: &Mesh) -> Vec<DVec3> {
+    let golden = PI * (3.0 - 5_f64.sqrt());
+    let spiral = |k: usize| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
+        let (sin, cos) = (golden * k as f64).sin_cos();
+        let radius = (1.0 - z * z).sqrt();
+        DVec3::new(radius * cos, radius * sin, z)
+    };
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    // As the part lies comes first among equals.
+    let mut all = vec![DVec3::NEG_Z];
+    all.extend(stand::faces(mesh).chain(axes).chain((0..DIRECTIONS).map(spiral)));
+    all
+}
+
+/// A part in cells.
+struct Cells {
+    /// Lowest corner, mm.
+    low: DVec3,
+    /// Side of a cell, mm.
+    side: f64,
+    count: UVec3,
+    /// For each row along x, whether its cells lie in the part.
+    rows: Vec<u128>,
+    /// Number of cells in the part.
+    inside: u64,
+    /// Thickness of the stock, mm.
+    stock: f64,
+    /// Points of the part that are farthest out in some direction.
+    extremes: Vec<DVec3>,
+    /// Volume of the part, mm³.
+    volume: f64,
+}
+
+impl Cells {
+    /// `None` for a part without cells. Stock of half a cell or more is a layer of cells around the part.
+    fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Option<Self>, Cancelled> {
+        let (low, high) = mesh.bounds();
+        let size = high - low;
+        let side = size.max_element() / CELLS;
+        if !(side > 0.0 && side.is_finite()) {
+            return Ok(None);
+        }
+        let count = (size / side).ceil().max(DVec3::ONE).as_uvec3();
+        let mut standing = mesh.clone();
+        standing.vertices.iter_mut().for_each(|vertex| vertex.z -= low.z);
+        let slabs = (0..count.z).map(|k| Slab { z: f64::from(k + 1) * side, height: side }).collect();
+        let options = SliceOptions { layer_height: side, close_gap: 0.1 * side, simplify: 0.01 * side };
+        let mut rows = Vec::with_capacity((count.y * count.z) as usize);
+        for slice in Slicer::of_slabs(&standing, slabs, options, task)?.all(task)? {
+            let region = Region::from_normalised(slice.islands);
+            let lines = region.rows(low.y + 0.5 * side, side, count.y as usize);
+            rows.extend(lines.iter().map(|ends| row(ends, low.x, side)));
+        }
+        let inside = rows.iter().map(|row| u64::from(row.count_ones())).sum();
+        let farthest = |way: DVec3| {
+            mesh.vertices.iter().copied().max_by(|a, b| a.dot(way).total_cmp(&b.dot(way))).unwrap_or_default()
+        };
+        let extremes = directions(&Mesh::default()).into_par_iter().step_by(EXTREMES).map(farthest).collect();
+        let stock = (settings.side + settings.top + settings.bottom) / 3.0;
+        let bare = Self { low, side, count, rows, inside, stock: 0.0, extremes, volume: mesh.volume() };
+        Ok((inside > 0).then(|| if stock >= side / 2.0 { bare.grown() } else { bare }))
+    }
+
+    /// With a layer of cells around it.
+    fn grown(self) -> Self {
+        let count = self.count + 2;
+        let at = |y: u32, z: u32| match (y.checked_sub(1), z.checked_sub(1)) {
+            (Some(y), Some(z)) if y < self.count.y && z < self.count.z => {
+                self.rows.get((z * self.count.y + y) as usize).map_or(0, |row| row << 1)
+            }
+            _ => 0,
+        };
+        let row = |y: u32, z: u32| {
+            let own = at(y, z);
+            let beside = at(y.wrapping_sub(1), z) | at(y + 1, z) | at(y, z.wrapping_sub(1)) | at(y, z + 1);
+            own | (own << 1) | (own >> 1) | beside
+        };
+        let rows = (0..count.z).flat_map(|z| (0..count.y).map(move |y| (y, z))).map(|(y, z)| row(y, z)).collect();
+        Self { low: self.low - self.side, count, rows, stock: self.side, ..self }
+    }
+
+    fn is_inside(&self, p: DVec3) -> bool {
+        let at = (p - self.low) / self.side;
+        if at.min_element() < 0.0 {
+            return false;
+        }
+        let UVec3 { x, y, z } = at.as_uvec3();
+        x < self.count.x && y < self.count.y && z < self.count.z && {
+            let row = self.rows.get((z * self.count.y + y) as usize);
+            row.is_some_and(|row| (row >> x) & 1 == 1)
+        }
+    }
+
+    /// The score of a preform for which a direction points down, by the number of its cells.
+    fn score(&self, down: DVec3, settings: &PreformSettings, rates: &Rates) -> f64 {
+        let turn = DMat3::from_quat(DQuat::from_rotation_arc(down, DVec3::NEG_Z));
+        let points = || self.extremes.iter().map(|p| turn * *p);
+        let low = points().fold(DVec3::INFINITY, DVec3::min) - self.stock;
+        let high = points().fold(DVec3::NEG_INFINITY, DVec3::max) + self.stock;
+        let count = ((high - low) / self.side).ceil().max(DVec3::ONE).as_uvec3().min(UVec3::splat(u128::BITS));
+        let back = turn.transpose();
+        let mut laid = 0_u64;
+        let mut above = vec![0_u128; count.y as usize];
+        let (mut owed, mut square) = (0.0, false);
+        for z in (0..count.z).rev() {
+            owed += settings.reach.tan();
+            while owed >= 1.0 {
+                above = shrunk(&above, square);
+                (owed, square) = (owed - 1.0, !square);
+            }
+            for (y, row) in above.iter_mut().enumerate() {
+                let start = low + (DVec3::new(0.0, y as f64, f64::from(z)) + 0.5) * self.side;
+                let (first, next) = (back * start, back.x_axis * self.side);
+                for x in 0..count.x {
+                    *row |= u128::from(self.is_inside(first + next * f64::from(x))) << x;
+                }
+            }
+            laid += above.iter().map(|row| u64::from(row.count_ones())).sum::<u64>();
+        }
+        let cell = self.volume / self.inside as f64;
+        let foot: u64 = above.iter().map(|row| u64::from(row.count_ones())).sum();
+        let raised = foot as f64 * self.side * self.side * settings.lift();
+        let volume = (laid as f64 * cell + raised).max(0.0);
+        let columns = above.iter().fold(0, |all, row| all | row);
+        let wide = f64::from(u128::BITS - columns.leading_zeros() - columns.trailing_zeros().min(u128::BITS));
+        let filled = |row: &u128| *row != 0;
+        let deep = match (above.iter().position(filled), above.iter().rposition(filled)) {
+            (Some(first), Some(last)) => (last - first + 1) as f64,
+            _ => 0.0,
+        };
+        let margin = 2.0 * (settings.side + rates.preform.plate_margin);
+        let plate = (wide * self.side + margin) * (deep * self.side + margin);
+        Figures::from_volumes(self.volume, volume, plate, 0.0, rates).score()
+    }
+}
+
+/// Every so many directions, the farthest point is kept.
+const EXTREMES: usize = 4;
+
+/// The cells of a row whose middles lie between pairs of ends.
+fn row(ends: &[f64], low: f64, side: f64) -> u128 {
+    let cell = |x: f64| ((x - low) / side - 0.5).ceil().clamp(0.0, 127.0) as u32;
+    let bits = |ends: &[f64]| (cell(ends[0])..cell(ends[1])).fold(0, |row, x| row | (1_u128 << x));
+    ends.chunks_exact(2).map(bits).fold(0, |row, more| row | more)
+}
+
+/// Rows without the cells at their edge: those with a free neighbour at a side, or also at a corner.
+fn shrunk(rows: &[u128], square: bool) -> Vec<u128> {
+    let narrow = |row: u128| row & (row << 1) & (row >> 1);
+    let at = |k: Option<usize>| k.and_then(|k| rows.get(k)).copied().unwrap_or(0);
+    let one = |k: usize| {
+        let (below, above) = (at(k.checked_sub(1)), at(Some(k + 1)));
+        let (below, above) = if square { (narrow(below), narrow(above)) } else { (below, above) };
+        narrow(rows[k]) & below & above
+    };
+    (0..rows.len()).map(one).collect()
+}
