@@ -139,10 +139,11 @@ pub(crate) fn of_part(part: Part, profile: &Profile, task: &Task) -> anyhow::Res
     let settings = profile.preform_settings();
     let preform = Preform::of(&import.mesh, &settings, task)?;
     let figures = Figures::of(&import.mesh, &preform, &settings, &profile.preform_rates());
-    let note = format!(
-        "The preform weighs {:.3} kg, the part {:.3} kg; {:.3} kg are milled off.",
-        figures.preform_kg, figures.part_kg, figures.milled_kg
-    );
-    let notes = import.notes.iter().cloned().chain([note]).collect();
-    Ok(Part::Mesh(Import { mesh: preform.mesh(), notes, ..import }))
+    let Figures { part_kg, preform_kg, milled_kg, .. } = figures;
+    let out = &mut say::done(true);
+    writeln!(
+        out,
+        "the preform weighs {preform_kg:.3} kg, the part {part_kg:.3} kg; {milled_kg:.3} kg are milled off."
+    )?;
+    Ok(Part::Mesh(Import { mesh: preform.mesh(), ..import }))
 }

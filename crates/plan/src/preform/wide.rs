@@ -10,6 +10,8 @@ use planar::{Join, Polygon, Region, min_area_rect};
 const WORTH: f64 = 1e-3;
 /// The same for other pieces with too little room for two beads: smaller ones are corners, which every outline has.
 const FEATURE: f64 = 0.12;
+/// Rounds in which room is made for two beads.
+const ROUNDS: usize = 6;
 /// The accuracy of beads' outlines, mm.
 const TOLERANCE_MM: f64 = 0.01;
 /// A bead is this fraction narrower where it is laid along an edge: rounding does not count.
@@ -24,9 +26,16 @@ pub fn widened(region: &Region, bare: &Region, settings: &PreformSettings) -> Re
     let (w, room) = (settings.bead_width, settings.room);
     let walls: Vec<Vec<DVec2>> = region.polygons().iter().flat_map(|island| thin_walls(island, w, room)).collect();
     let along = beads(&walls, w);
-    let wide = with(region.clone(), &along);
-    let roomy = with(opened(&wide, room), &along);
-    let wide = with(wide.clone(), &beads_into(&wide.difference(&roomy), &wide, room, FEATURE * w * w));
+    let mut wide = with(region.clone(), &along);
+    // A neck is reached from its ends, one after the other.
+    for _ in 0..ROUNDS {
+        let roomy = with(opened(&wide, room), &along);
+        let more = beads_into(&wide.difference(&roomy), &wide, room, FEATURE * w * w);
+        if more.is_empty() {
+            break;
+        }
+        wide = wide.union(&more);
+    }
     let sharp = bare.difference(&opened(&wide, w));
     let wide = with(wide.clone(), &beads_into(&sharp, &wide, w, WORTH * w * w));
     let short = wide.polygons().iter().filter_map(|island| longer(island, (1.0 + LONGER) * settings.shortest, w));
