@@ -199,6 +199,10 @@ fn no_slice_of_a_part_reaches_beyond_its_preform() {
             let mut heights: Vec<f64> = (0..40).map(|_| random.next() * part.size().z).collect();
             heights.sort_by(f64::total_cmp);
             for (z, slice) in heights.iter().zip(cuts(&part, &heights)) {
+                // A slice of the tip of a spike may be too small to be one.
+                if slice.area() < 0.1 {
+                    continue;
+                }
                 let step = preform.at(z + preform.lift).unwrap();
                 let outside = slice.difference(&step.offset(0.02, Join::ROUND)).area();
                 // Without stock, a face that slopes gently moves within half a step.
