@@ -21,6 +21,7 @@ use beadwright::profile::Profile;
 use beadwright::read_back;
 use beadwright::report::{self, rows};
 use beadwright::task::Task;
+use beadwright::warning::{WarningKind, WarningSummary};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -240,8 +241,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
         let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
         let mut reasons = remedy::reasons(&summary);
-        if let (Part::Mesh(import), false) = (&model, arguments.preform) {
-            reasons.extend(preform::remedy(&import.mesh, &profile, &task)?);
+        let hangs = |w: &WarningSummary| w.kind == WarningKind::InTheAir;
+        let hangs = summary.warnings.summaries().any(hangs) && !arguments.preform;
+        if let Some(mesh) = model.mesh().filter(|_| hangs) {
+            reasons.extend(preform::remedy(mesh, &profile, &task)?);
         }
         return Err(Refused { reasons, report }.into());
     }

@@ -1,14 +1,16 @@
 //! `beadwright preform`: the part with what is milled off again.
 
 use crate::{file, model, profile, progress, remedy, say};
+use anyhow::Context;
 use beadwright::Profile;
 use beadwright::export::solids;
 use beadwright::glam::DVec3;
 use beadwright::model::holes::{self, Opening};
 use beadwright::model::{Import, Mesh, Part, stl};
 use beadwright::plan::PlanError;
+use beadwright::preform::Preform;
 use beadwright::preform::figures::Figures;
-use beadwright::preform::{Preform, orient};
+use beadwright::preform::orient::{self, Oriented};
 use beadwright::slice::Surface;
 use beadwright::task::Task;
 use std::convert::Infallible;
@@ -34,11 +36,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
     let Import { mesh: mut part, .. } = arguments.model.placed(&profile, model::Use::Preform, &task)?;
-    is_solid(&part, &profile)?;
+    is_solid(&part, &profile).with_context(|| format!("{}", arguments.model.model.display()))?;
     let settings = profile.preform_settings();
     let preform = Preform::of(&part, &settings, &task)?;
     let ways = orient::best(&part, &settings, &profile.preform_rates(), &task)?;
-    let now = orient::Oriented::of(&part, DVec3::NEG_Z, &settings, &profile.preform_rates(), &task)?;
+    let now = Oriented::of(&part, DVec3::NEG_Z, &settings, &profile.preform_rates(), &task)?;
     bar.finish_and_clear();
     let figures = Figures::of(&part, &preform, &settings, &profile.preform_rates());
     let mesh = preform.mesh();
@@ -54,11 +56,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     file::write(&path, &bytes)?;
 
-    let mut out = say::done(file::is_standard(&path));
     if arguments.json {
-        let json = serde_json::json!({ "figures": figures, "lift": preform.lift, "as_it_lies": now.figures, "ways_up": ways.iter().map(|way| serde_json::json!({ "down": way.down, "figures": way.figures })).collect::<Vec<_>>() });
-        return Ok(writeln!(out, "{json:#}")?);
+        let way_up = |way: &Oriented| serde_json::json!({ "down": way.down, "figures": way.figures });
+        let json = serde_json::json!({
+            "figures": figures,
+            "lift": preform.lift,
+            "as_it_lies": now.figures,
+            "ways_up": ways.iter().map(way_up).collect::<Vec<_>>(),
+        });
+        return Ok(writeln!(std::io::stdout(), "{json:#}")?);
     }
+    let mut out = say::done(file::is_standard(&path));
     writeln!(out, "{}: preform of {}", path.display(), arguments.model.model.display())?;
     for (name, value) in rows(&figures, &profile) {
         writeln!(out, "  {name:<22} {value}")?;

@@ -6,9 +6,11 @@
 //! | `vtp` | ParaView, VTK, pyvista |
 //! | [`toolpath`] | other planners and machines: the 3MF Toolpath extension, written and read |
 //! | `stl`, `glb` | viewers: the shape as built, which `swept` makes |
+//! | [`solids`] | CAD and CAM: several solids in one 3MF; `archive` is what all 3MF files share |
 //! | `dxf`, `svg`, `png` (feature `png`) | CAD and drawing programs, documents, layer by layer |
 //! | `walk` | what all of them write: the passes as they are welded, with times and waits |
 
+mod archive;
 mod csv;
 mod dxf;
 mod glb;

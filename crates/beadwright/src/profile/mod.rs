@@ -265,7 +265,7 @@ impl Profile {
     /// How a part becomes its preform.
     pub fn preform_settings(&self) -> PreformSettings {
         let fill = self.fill_settings(0);
-        self.preform.settings([self.bead.width, fill.double()], self.layers.height, fill.min_pass_length)
+        self.preform.settings([self.bead.width, fill.double()], fill.min_pass_length, self.slice_options())
     }
 
     /// What a preform weighs, takes and costs.

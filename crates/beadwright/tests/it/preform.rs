@@ -32,6 +32,8 @@ fn plain(step: f64, reach: f64) -> PreformSettings {
         room: 1.4 * BEAD,
         step,
         shortest: 10.0,
+        close_gap: 0.1,
+        simplify: 0.01,
     }
 }
 

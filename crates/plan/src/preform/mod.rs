@@ -41,7 +41,7 @@ pub struct PreformSettings {
     pub reach: f64,
     /// The plate.
     pub plate: Plate,
-    /// Width of a bead, mm.
+    /// Width of a bead, mm; with 0, nothing is widened, as where ways up are compared.
     pub bead_width: f64,
     /// Width with room for two beads side by side, mm.
     pub room: f64,
@@ -49,6 +49,10 @@ pub struct PreformSettings {
     pub step: f64,
     /// Length of the shortest pass, mm.
     pub shortest: f64,
+    /// Widest gap in the part's outline that is bridged, mm.
+    pub close_gap: f64,
+    /// Points of the part's outline this close to the line that remains are dropped, mm.
+    pub simplify: f64,
 }
 
 /// What becomes of the plate.
@@ -97,12 +101,13 @@ impl Preform {
     ///
     /// ```
     /// use bead_plan::preform::{Preform, section::PreformSection};
-    /// use bead_part::{example, task::Task};
+    /// use bead_part::{example, slice::SliceOptions, task::Task};
     ///
     /// // A plate of 120 × 60 × 12 mm or so, and 1.5 mm around it.
     /// let plate = example::find("plate").ok_or("no such example")?.mesh();
     /// // Beads 6 mm wide, two in 9 mm, in layers of 2 mm; passes of at least 10 mm.
-    /// let settings = PreformSection::default().settings([6.0, 9.0], 2.0, 10.0);
+    /// let slicing = SliceOptions { layer_height: 2.0, close_gap: 0.1, simplify: 0.01 };
+    /// let settings = PreformSection::default().settings([6.0, 9.0], 10.0, slicing);
     /// let preform = Preform::of(&plate, &settings, &Task::new())?;
     /// assert!(preform.volume() > plate.volume());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -171,7 +176,7 @@ impl Sections {
     fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Self, Cancelled> {
         let (height, lift, cell) = (mesh.size().z, settings.lift(), settings.step / CELLS as f64);
         let count = ((lift + height + settings.top) / settings.step - 1e-6).ceil().max(0.0) as usize;
-        let cells = Self::cells(mesh, count * CELLS, cell, lift, task)?;
+        let cells = Self::cells(mesh, count * CELLS, settings, task)?;
         // Stock lies above faces that look up and below those that look down.
         let (up, down) =
             ((settings.top / cell - 1e-6).ceil() as usize, (settings.bottom / cell - 1e-6).ceil() as usize);
@@ -194,13 +199,14 @@ impl Sections {
     }
 
     /// The part within each of a number of cells above the plate.
-    fn cells(mesh: &Mesh, count: usize, cell: f64, lift: f64, task: &Task) -> Result<Vec<Region>, Cancelled> {
-        let height = mesh.size().z;
+    fn cells(mesh: &Mesh, count: usize, settings: &PreformSettings, task: &Task) -> Result<Vec<Region>, Cancelled> {
+        let (height, lift, cell) = (mesh.size().z, settings.lift(), settings.step / CELLS as f64);
         let ends = |k: usize| [k as f64 + INSIDE, (k + 1) as f64 - INSIDE].map(|z| (k, z * cell - lift));
         let cuts: Vec<(usize, f64)> = (0..count).flat_map(ends).filter(|(_, z)| (0.0..height).contains(z)).collect();
         let thin = INSIDE * cell;
         let slabs = cuts.iter().map(|(_, z)| Slab { z: z + thin / 2.0, height: thin }).collect();
-        let options = SliceOptions { layer_height: thin, close_gap: CLOSE_GAP_MM, simplify: SIMPLIFY_MM };
+        let PreformSettings { close_gap, simplify, .. } = *settings;
+        let options = SliceOptions { layer_height: thin, close_gap, simplify };
         let slices = Slicer::of_slabs(mesh, slabs, options, task)?.all(task)?;
         let mut cells = vec![Region::default(); count];
         for ((cell, _), slice) in cuts.into_iter().zip(slices) {
@@ -210,7 +216,3 @@ impl Sections {
         Ok(cells)
     }
 }
-
-/// As a profile has them by default.
-const CLOSE_GAP_MM: f64 = 0.1;
-const SIMPLIFY_MM: f64 = 0.01;

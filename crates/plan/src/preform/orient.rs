@@ -240,7 +240,8 @@ impl Cells {
         let raised = foot as f64 * self.side * self.side * settings.lift();
         let volume = (laid as f64 * cell + raised).max(0.0);
         let columns = above.iter().fold(0, |all, row| all | row);
-        let wide = f64::from(u128::BITS - columns.leading_zeros() - columns.trailing_zeros().min(u128::BITS));
+        // Nothing may reach the lowest layer.
+        let wide = f64::from((u128::BITS - columns.leading_zeros()).saturating_sub(columns.trailing_zeros()));
         let filled = |row: &u128| *row != 0;
         let deep = match (above.iter().position(filled), above.iter().rposition(filled)) {
             (Some(first), Some(last)) => (last - first + 1) as f64,
@@ -252,7 +253,7 @@ impl Cells {
     }
 }
 
-/// Every so many directions, the farthest point is kept.
+/// The farthest point is kept for one direction in this many.
 const EXTREMES: usize = 4;
 
 /// The cells of a row whose middles lie between pairs of ends.

@@ -2,6 +2,7 @@
 
 use super::{Plate, PreformSettings};
 use crate::limit::{TINY, section};
+use bead_part::slice::SliceOptions;
 use serde::{Deserialize, Serialize};
 
 /// What becomes of the plate on which a preform is welded.
@@ -44,9 +45,10 @@ section! {
 }
 
 impl PreformSection {
-    /// In mm and rad, for beads `bead_width` wide, two of which lie side by side in `room`, in layers of `layer_height`, that are
-    /// at least `shortest` long, mm.
-    pub fn settings(&self, [bead_width, room]: [f64; 2], layer_height: f64, shortest: f64) -> PreformSettings {
+    /// In mm and rad, for beads `bead_width` wide, two of which lie side by side in `room`, that are at least `shortest` long,
+    /// mm, in layers that are cut as `slicing` says.
+    pub fn settings(&self, [bead_width, room]: [f64; 2], shortest: f64, slicing: SliceOptions) -> PreformSettings {
+        let SliceOptions { layer_height, close_gap, simplify } = slicing;
         let plate = match self.plate {
             PlateIs::Sawn => Plate::Sawn { cut: self.cut_height },
             PlateIs::Kept => Plate::Kept { thickness: self.plate_thickness },
@@ -62,6 +64,8 @@ impl PreformSection {
             room,
             step: STEPS.recip() * layer_height,
             shortest,
+            close_gap,
+            simplify,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::style::{Styles, Values};
 use super::{OWN, UNIT_MM, layer};
+use crate::export::archive::{Archive, MODEL, relationships};
 use crate::export::walk::{self, Run};
 use crate::export::{Beads, ExportError};
 use crate::model::package::{PRODUCTION, TOOLPATH};
@@ -9,18 +10,7 @@ use crate::number::fixed;
 use crate::plan_file;
 use crate::report::escape;
 use glam::DVec3;
-use std::io::{Cursor, Write};
 use uuid::Uuid;
-use zip::write::SimpleFileOptions;
-use zip::{DateTime, ZipWriter};
-
-const CONTENT_TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-    <Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n\
-    <Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n\
-    <Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n\
-    <Default Extension=\"xml\" ContentType=\"application/xml\"/>\n</Types>\n";
-const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-const MODEL: &str = "/3D/3dmodel.model";
 
 pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let runs = walk::runs(beads.layers, beads.profile);
@@ -30,9 +20,7 @@ pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let styles = Styles::new(&runs, &values, [nominal[0], nominal[1], nominal[1], 1.0], ids.file);
     let box_of_beads = extent(&runs).ok_or(ExportError::Empty)?;
 
-    let mut package = Parts::new();
-    package.add("[Content_Types].xml", CONTENT_TYPES)?;
-    package.add("_rels/.rels", &relationships([(MODEL_TYPE, MODEL.to_owned())].into_iter()))?;
+    let mut package = Archive::new()?;
     package.add(MODEL, &model(beads, &styles, &ids, box_of_beads))?;
     let kind = format!("{TOOLPATH}/layer");
     let targets = (0..beads.layers.len()).map(|index| (kind.as_str(), layer_path(index)));
@@ -135,37 +123,4 @@ fn mesh(text: &mut String, (low, high): (DVec3, DVec3)) {
         }
     }
     text.push_str("</triangles>\n</mesh>\n");
-}
-
-/// A file of relationships, each with its type and target.
-fn relationships<'t>(targets: impl Iterator<Item = (&'t str, String)>) -> String {
-    let mut text = String::from(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n",
-    );
-    for (number, (kind, target)) in (1..).zip(targets) {
-        text.push_str(&format!("<Relationship Id=\"rel{number}\" Type=\"{kind}\" Target=\"{target}\"/>\n"));
-    }
-    text.push_str("</Relationships>\n");
-    text
-}
-
-/// The archive as it grows.
-struct Parts(ZipWriter<Cursor<Vec<u8>>>);
-
-impl Parts {
-    fn new() -> Self {
-        Self(ZipWriter::new(Cursor::new(Vec::new())))
-    }
-
-    /// Adds a file; all have the same date, so that the same plan gives the same bytes.
-    fn add(&mut self, path: &str, text: &str) -> Result<(), ExportError> {
-        let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
-        self.0.start_file(path.trim_start_matches('/'), options)?;
-        Ok(self.0.write_all(text.as_bytes())?)
-    }
-
-    fn finish(self) -> Result<Vec<u8>, ExportError> {
-        Ok(self.0.finish()?.into_inner())
-    }
 }
