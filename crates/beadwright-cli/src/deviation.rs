@@ -1,6 +1,6 @@
 //! `beadwright deviation`: how far a scan of the built part lies from the part.
 
-use crate::{file, model, profile, progress};
+use crate::{file, model, preform, profile, progress};
 use anyhow::Context;
 use beadwright::adapt::scan;
 use beadwright::deviation::{Deviation, Doubt, Figures, deviation};
@@ -18,6 +18,9 @@ pub(crate) struct Arguments {
     /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
     scan_units: Units,
+    /// The scan is of the part's preform: what lies outside the part is to be milled off.
+    #[arg(long)]
+    preform: bool,
     #[command(flatten)]
     wanted: profile::Wanted,
     /// Print machine-readable JSON.
@@ -29,12 +32,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
-    let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
+    let use_as = if arguments.preform { model::Use::Preform } else { model::Use::AsDrawn };
+    let part = arguments.model.placed(&profile, use_as, &task)?;
+    let part = if arguments.preform { preform::milled(part, &profile, &task)? } else { part.mesh };
     let context = || format!("{}", arguments.scan.display());
     let mut scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
     let millimetres = arguments.scan_units.in_mm();
     scan.points.iter_mut().for_each(|point| *point *= millimetres);
-    let compared = deviation(&part.mesh, &scan.points, profile.fill.machining_allowance, &task);
+    let compared = deviation(&part, &scan.points, profile.fill.machining_allowance, &task);
     bar.finish_and_clear();
     let Deviation { figures, plate, doubts, .. } = compared.with_context(context)?;
     let mut out = std::io::stdout().lock();

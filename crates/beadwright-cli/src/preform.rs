@@ -5,13 +5,13 @@ use anyhow::Context;
 use beadwright::Profile;
 use beadwright::export::solids;
 use beadwright::glam::DVec3;
-use beadwright::model::holes::{self, Opening};
 use beadwright::model::{Import, Mesh, Part, stl};
 use beadwright::plan::PlanError;
+use beadwright::plan::stock::{Stocked, is_closed};
 use beadwright::preform::Preform;
+use beadwright::preform::faces::{self, Face};
 use beadwright::preform::figures::Figures;
 use beadwright::preform::orient::{self, Oriented};
-use beadwright::slice::Surface;
 use beadwright::task::Task;
 use std::convert::Infallible;
 use std::io::Write;
@@ -26,6 +26,10 @@ pub(crate) struct Arguments {
     /// File to write: the preform as STL, or with the part in it as 3MF; NAME_preform.stl if left out.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Also write a table (CSV) of the part's faces, each with its area, place, normal, and the least, mean and most metal over
+    /// it.
+    #[arg(long, value_name = "FILE")]
+    faces: Option<PathBuf>,
     /// Print the figures as JSON instead of the summary.
     #[arg(long)]
     json: bool,
@@ -36,13 +40,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
     let Import { mesh: mut part, .. } = arguments.model.placed(&profile, model::Use::Preform, &task)?;
-    is_solid(&part, &profile).with_context(|| format!("{}", arguments.model.model.display()))?;
+    is_closed(&part, &profile).map_err(refused).with_context(|| format!("{}", arguments.model.model.display()))?;
     let settings = profile.preform_settings();
-    let preform = Preform::of(&part, &settings, &task)?;
-    let ways = orient::best(&part, &settings, &profile.preform_rates(), &task)?;
-    let now = Oriented::of(&part, DVec3::NEG_Z, &settings, &profile.preform_rates(), &task)?;
+    let rates = profile.preform_rates();
+    // The one goes from step to step, the other looks at many ways up at once.
+    let (preform, ways) =
+        rayon::join(|| Preform::of(&part, &settings, &task), || orient::best(&part, &settings, &rates, &task));
+    let (preform, ways) = (preform?, ways?);
+    let now = Oriented::of(&part, DVec3::NEG_Z, &settings, &rates, &task)?;
     bar.finish_and_clear();
-    let figures = Figures::of(&part, &preform, &settings, &profile.preform_rates());
+    let figures = Figures::of(&part, &preform, &settings, &rates);
     let mesh = preform.mesh();
     part.vertices.iter_mut().for_each(|vertex| vertex.z += preform.lift);
 
@@ -55,6 +62,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     };
     file::write(&path, &bytes)?;
+    if let Some(path) = &arguments.faces {
+        let stock = faces::stock(&part, &preform, settings.plate);
+        file::write(path, table(&faces::faces(&part, &stock)).as_bytes())?;
+    }
 
     if arguments.json {
         let way_up = |way: &Oriented| serde_json::json!({ "down": way.down, "figures": way.figures });
@@ -80,6 +91,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     Ok(())
+}
+
+/// The faces as CSV.
+fn table(faces: &[Face]) -> String {
+    let mut text = "face,area_mm2,x_mm,y_mm,z_mm,nx,ny,nz,least_stock_mm,mean_stock_mm,most_stock_mm\n".to_owned();
+    for (number, Face { area, place, normal, stock }) in faces.iter().enumerate() {
+        let values = [*area].into_iter().chain(place.to_array()).chain(normal.to_array()).chain(*stock);
+        let values: String = values.map(|value| format!(",{value:.3}")).collect();
+        text.push_str(&format!("{}{values}\n", number + 1));
+    }
+    text
 }
 
 /// A part is turned for this part of its cost.
@@ -111,22 +133,9 @@ fn rows(figures: &Figures, profile: &Profile) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// Refuses a surface that is not closed, unless the profile says that it is the skin of a solid.
-fn is_solid(mesh: &Mesh, profile: &Profile) -> anyhow::Result<()> {
-    let opening = holes::openings(mesh).into_iter().next();
-    match opening.filter(|opening| opening.width > profile.bead.width) {
-        Some(Opening { width, place, .. }) if profile.slice.surface != Some(Surface::Solid) => {
-            let error: PlanError<Infallible> = PlanError::Open { width, place };
-            let remedy = remedy::of_plan(&error).unwrap_or_default();
-            anyhow::bail!("only solids have a preform: {error} {remedy}")
-        }
-        _ => Ok(()),
-    }
-}
-
 /// What a preform would add to a part that was refused; `None` for a surface that is not closed.
 pub(crate) fn remedy(part: &Mesh, profile: &Profile, task: &Task) -> anyhow::Result<Option<String>> {
-    if is_solid(part, profile).is_err() {
+    if is_closed(part, profile).is_err() {
         return Ok(None);
     }
     let settings = profile.preform_settings();
@@ -140,18 +149,20 @@ pub(crate) fn remedy(part: &Mesh, profile: &Profile, task: &Task) -> anyhow::Res
 
 /// The preform of a solid, to be planned in its place.
 pub(crate) fn of_part(part: Part, profile: &Profile, task: &Task) -> anyhow::Result<Part> {
-    let Part::Mesh(import) = part else {
-        anyhow::bail!("only solids have a preform, and this part is given by curves")
-    };
-    is_solid(&import.mesh, profile)?;
-    let settings = profile.preform_settings();
-    let preform = Preform::of(&import.mesh, &settings, task)?;
-    let figures = Figures::of(&import.mesh, &preform, &settings, &profile.preform_rates());
-    let Figures { part_kg, preform_kg, milled_kg, .. } = figures;
+    let Stocked { part, figures, .. } = Stocked::of(part, profile, task).map_err(refused)?;
     let out = &mut say::done(true);
-    writeln!(
-        out,
-        "the preform weighs {preform_kg:.3} kg, the part {part_kg:.3} kg; {milled_kg:.3} kg are milled off."
-    )?;
-    Ok(Part::Mesh(Import { mesh: preform.mesh(), ..import }))
+    figures.sentences(&profile.cost.currency).iter().try_for_each(|sentence| writeln!(out, "{sentence}"))?;
+    Ok(part)
+}
+
+/// A solid as it lies in its preform.
+pub(crate) fn milled(import: Import, profile: &Profile, task: &Task) -> anyhow::Result<Mesh> {
+    let stocked = Stocked::of(Part::Mesh(import), profile, task).map_err(refused)?;
+    Ok(stocked.part.milled().map(|milled| milled.mesh.clone()).unwrap_or_default())
+}
+
+/// Why there is no preform, and what to do.
+fn refused(error: PlanError<Infallible>) -> anyhow::Error {
+    let remedy = remedy::of_plan(&error).unwrap_or_default();
+    anyhow::anyhow!("only solids have a preform: {error} {remedy}")
 }

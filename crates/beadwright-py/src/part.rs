@@ -2,8 +2,11 @@
 
 use crate::array::{Array, Item, Numbers};
 use crate::error::{Refuse, raise};
+use crate::profile::Profile;
 use crate::running::Running;
 use beadwright::model::{self, Import, Model, Placement, Units, units};
+use beadwright::plan::stock::Stocked;
+use beadwright::preform::{faces, figures::Figures};
 use beadwright::{Mesh, example, model::PartError};
 use glam::DVec3;
 use pyo3::buffer::PyBuffer;
@@ -36,6 +39,8 @@ pub(crate) struct Part {
     pub(crate) part: Arc<model::Part>,
     /// Size in the file's units, where these are a guess.
     guessed: Option<DVec3>,
+    /// Of a preform, what it weighs, takes and costs.
+    figures: Option<Figures>,
 }
 
 impl Part {
@@ -62,7 +67,7 @@ impl Part {
                 place(model, &Placement { turn, ..placement })?
             }
         };
-        Ok(Self { name, part: Arc::new(part), guessed })
+        Ok(Self { name, part: Arc::new(part), guessed, figures: None })
     }
 }
 
@@ -157,7 +162,29 @@ impl Part {
     /// What lies above a height (mm), set onto z = 0.
     fn above(&self, z: f64) -> PyResult<Self> {
         let part = model::Part::clone(&self.part).above(z).refuse(Some(&self.name))?;
-        Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: self.guessed })
+        Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: self.guessed, figures: self.figures })
+    }
+
+    /// The preform of a solid.
+    fn preform(&self, py: Python<'_>, profile: &Profile) -> PyResult<Self> {
+        self.fits(profile.profile.bead.width).refuse(Some(&self.name))?;
+        let part = model::Part::clone(&self.part);
+        let made = |task: &_| Stocked::of(part, &profile.profile, task);
+        let Stocked { part, figures, .. } = Running::new(None, None).run(py, Some(&self.name), made)?;
+        Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: None, figures: Some(figures) })
+    }
+
+    /// What a preform weighs, takes and costs; none of a part as it is drawn.
+    #[getter]
+    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Ok(self.figures.as_ref().map(|figures| pythonize::pythonize(py, figures)).transpose()?)
+    }
+
+    /// The faces of the part that is milled from a preform, with the metal over them; none of a part as it is drawn.
+    #[getter]
+    fn milled_faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let faces = self.part.milled().map(|milled| faces::faces(&milled.mesh, &milled.stock)).unwrap_or_default();
+        Ok(pythonize::pythonize(py, &faces)?)
     }
 }
 
@@ -180,7 +207,7 @@ fn solid(corners: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Import, String
     if !mesh.triangles.iter().any(|triangle| area(triangle) > 0.0) {
         return Err(format!("there is no triangle with an area ({read} given), so there is nothing to build."));
     }
-    Ok(Import { mesh, repair, format: "triangles", units: None, objects: Vec::new(), notes: Vec::new() })
+    Ok(Import { mesh, repair, format: "triangles", units: None, objects: Vec::new(), notes: Vec::new(), milled: None })
 }
 
 struct Vertices(Arc<model::Part>);

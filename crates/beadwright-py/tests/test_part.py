@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import box, polygon, prism, stl
 
-from beadwright import BeadwrightError, Part, examples
+from beadwright import BeadwrightError, Part, Profile, examples, plan
 
 
 @pytest.mark.parametrize(("x", "y", "z"), [(30, 20, 10), (100, 7.5, 2), (12.5, 12.5, 250)])
@@ -77,6 +77,22 @@ def test_what_lies_above_a_plane() -> None:
         box(30, 20, 10).above(11)
 
 
+def test_a_preform_holds_its_part_with_stock() -> None:
+    profile = Profile().set({"preform.side": 3, "preform.top": 2, "preform.bottom": 1, "preform.cut_height": 4})
+    part = box(60, 40, 20)
+    preform = part.preform(profile)
+    (a, b, c), (d, e, f) = preform.bounds
+    assert (d - a, e - b, f - c) == pytest.approx((66, 46, 27), abs=1.1), "steps of half a layer"
+    assert part.figures is None and part.milled_faces == []
+    assert preform.figures["preform_kg"] > preform.figures["part_kg"]  # type: ignore[index]
+    faces = preform.milled_faces
+    assert [round(face["area"]) for face in faces] == [2400, 2400, 1200, 1200, 800, 800]
+    assert all(face["stock"][0] > 0.9 for face in faces)
+    sides = [face["stock"][1] for face in faces if abs(face["normal"][2]) < 0.1]
+    assert sides == pytest.approx([3] * 4, abs=0.01)
+    assert plan(preform, profile).metrics["milled_part_volume_mm3"] == pytest.approx(60 * 40 * 20)
+
+
 def test_a_file_and_its_triangles_are_the_same_part(tmp_path: Path) -> None:
     corners, faces = prism(polygon(6, 32), 16)
     corners = corners.astype(np.float32).astype(np.float64)
@@ -100,7 +116,7 @@ def test_triangles_are_the_librarys_own_memory() -> None:
 
 
 def test_a_part_travels_to_another_process() -> None:
-    for part in [box(30, 20, 10), Part.example("gear"), box(30, 20, 10).above(3)]:
+    for part in [box(30, 20, 10), Part.example("gear"), box(30, 20, 10).above(3), box(30, 20, 10).preform()]:
         again = pickle.loads(pickle.dumps(part))
         assert again.key == part.key
         assert np.array_equal(again.vertices, part.vertices)

@@ -99,6 +99,7 @@ impl Studio {
                 self.set_profile("profile", Ok(text.to_owned()));
                 self.follow_profile();
             }
+            Action::Preform(preform) => self.change("preform", |project| project.preform = preform),
             Action::Place(placement) => self.change("placement", |project| project.placement = placement),
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),
             Action::CompareWith(strategy) => self.compare_with(Some(strategy)),

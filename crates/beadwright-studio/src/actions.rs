@@ -81,6 +81,8 @@ pub enum Action {
     SetProfile(&'static str),
     /// Places the part.
     Place(Placement),
+    /// Plans the preform of the part, or the part itself.
+    Preform(bool),
     /// Sets the height of a wall made from curves, mm.
     Height(f64),
     /// Plans with a second strategy too.

@@ -42,6 +42,8 @@ pub struct Project {
     pub source: Option<Source>,
     /// How the model is placed.
     pub placement: Placement,
+    /// Whether the preform of the model is planned: the part with what is milled off again.
+    pub preform: bool,
     /// Height of a wall given by curves at a single height, mm.
     pub height: Option<f64>,
     /// The profile, as the TOML text that people edit.
@@ -51,7 +53,7 @@ pub struct Project {
 impl Default for Project {
     fn default() -> Self {
         let profile = Profile::built_in_text(FIRST_PROFILE).unwrap_or_default().to_owned();
-        Self { source: None, placement: Placement::default(), height: None, profile }
+        Self { source: None, placement: Placement::default(), preform: false, height: None, profile }
     }
 }
 
@@ -85,6 +87,8 @@ struct File {
     example: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     height: Option<f64>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    preform: bool,
     profile: String,
     #[serde(default)]
     placement: Placement,
@@ -103,8 +107,8 @@ impl Project {
             Some(Source::Example(name)) => (None, Some(name.clone())),
             None => (None, None),
         };
-        let (height, profile, placement) = (self.height, self.profile.clone(), self.placement);
-        toml::to_string_pretty(&File { version: VERSION, model, example, height, profile, placement })
+        let (height, preform, profile, placement) = (self.height, self.preform, self.profile.clone(), self.placement);
+        toml::to_string_pretty(&File { version: VERSION, model, example, height, preform, profile, placement })
             .map_err(|error| format!("the project cannot be written: {error}"))
     }
 
@@ -128,7 +132,8 @@ impl Project {
             (None, Some(name)) => Some(Source::Example(name)),
             (None, None) => None,
         };
-        Ok(Self { source, placement: file.placement, height: file.height, profile: file.profile })
+        let File { placement, preform, height, profile, .. } = file;
+        Ok(Self { source, placement, preform, height, profile })
     }
 
     /// The name of the part.

@@ -20,7 +20,7 @@ impl Studio {
     /// Closes the scan.
     pub(crate) fn close_scan(&mut self) {
         (self.jobs.scan, self.jobs.scan_job, self.jobs.scan_wanted) = (None, None, None);
-        self.plans.own.scene.set_scan(None);
+        self.plans.own.show_stock();
     }
 
     /// The scan, as far as it was compared with the part in view.
@@ -28,6 +28,12 @@ impl Studio {
         let own = &self.plans.own;
         let (part, _) = (own.part.as_ref()?, own.scene.scan()?);
         self.jobs.scan.as_ref().filter(|scan| Arc::ptr_eq(&scan.with.0, part))
+    }
+
+    /// Whether the part in view is a preform, and no scan is open.
+    pub(crate) fn has_stock(&self) -> bool {
+        let is_preform = self.plans.own.part.as_deref().is_some_and(|part| part.milled().is_some());
+        is_preform && self.jobs.scan.is_none()
     }
 
     /// The part that a scan can be compared with, and what is left of it to be milled off, mm.

@@ -1,7 +1,7 @@
 //! What is known of a plan so far, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
-use crate::view3d::Scene;
+use crate::view3d::{Scanned, Scene};
 use beadwright::Finding;
 use beadwright::deposit::{Figures, Judgement};
 use beadwright::layer::Layer;
@@ -114,6 +114,15 @@ impl PlanState {
         }
         self.part = Some(part);
         self.profile = Some(profile);
+        if !same {
+            self.show_stock();
+        }
+    }
+
+    /// Shows the part within its preform, coloured by the metal over its faces, in place of any scan.
+    pub(crate) fn show_stock(&mut self) {
+        let milled = self.part.as_deref().and_then(Part::milled);
+        self.scene.set_scan(milled.and_then(Scanned::stock));
     }
 
     /// Clears what the failed request has not replaced, which would otherwise pass for its result.

@@ -277,7 +277,8 @@ impl Studio {
     /// What is shown now.
     pub(crate) fn style(&self) -> Style {
         let view = &self.view;
-        let scan = view.scan && view.mode == Mode::Solid && !view.laying && self.scan().is_some();
+        let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
+        let scan = inner && view.mode == Mode::Solid && !view.laying;
         let arm = self.arm();
         let at_arm = self.torch_place().filter(|_| arm.is_some()).map(|place| place.at);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());

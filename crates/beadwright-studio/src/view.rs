@@ -56,6 +56,8 @@ pub struct ViewState {
     pub mesh: bool,
     /// Whether the scan is shown instead of the beads, where there is one.
     pub scan: bool,
+    /// Whether the part within a preform is shown instead of the beads.
+    pub stock: bool,
     /// Whether travels, starts and ends are shown for all layers, not only for the highest.
     pub all_marks: bool,
     /// Whether the projection is parallel, not in perspective.
@@ -111,6 +113,7 @@ impl Default for ViewState {
             colour: Colour::Kind,
             mesh: true,
             scan: true,
+            stock: false,
             all_marks: false,
             parallel: false,
             plate: true,

@@ -52,6 +52,8 @@ pub struct Metrics {
     pub part_volume_mm3: f64,
     /// Volume of the part's mesh, mm³; none where it is not closed, and for curves.
     pub mesh_volume_mm3: Option<f64>,
+    /// Of a preform, volume of the part that is milled from it, mm³.
+    pub milled_part_volume_mm3: Option<f64>,
     /// Volume of the beads, mm³.
     pub deposited_volume_mm3: f64,
     #[serde(skip)]
@@ -108,6 +110,7 @@ impl Metrics {
             planned_area_mm2: 0.0,
             part_volume_mm3: 0.0,
             mesh_volume_mm3: None,
+            milled_part_volume_mm3: None,
             deposited_volume_mm3: 0.0,
             rates,
             torch: Torch::of(&profile.weld_settings()),

@@ -32,6 +32,8 @@ pub enum WarningKind {
     Refilled,
     /// Beads leave part of an island bare that one could reach; the size is that area, mm².
     Bare,
+    /// Beads leave bare what is a face of the part that is milled from the preform; the size is that area, mm².
+    Undersize,
     /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
     Unsound,
     /// The lowest layers have no room for a bead, so the first would be laid above the plate; the size is how high, mm.
@@ -211,6 +213,10 @@ impl WarningSummary {
             WarningKind::Bare => format!(
                 "{layers}: beads leave part of {} bare, {total:.1} mm² in all, the most {size:.1} mm² {place}.",
                 times("island", "islands")
+            ),
+            WarningKind::Undersize => format!(
+                "{layers}: metal is missing at faces of the part that is milled from this preform, {total:.1} mm² in all, the \
+                 most {size:.1} mm² {place}."
             ),
             WarningKind::Unsound => format!(
                 "{layers}: {} in which passes leave the part or cross each other {place}.",

@@ -52,7 +52,15 @@ fn a_part_that_hangs_over_is_planned_as_its_preform() {
 fn a_preform_is_written_with_the_part_in_it() {
     let folder = TempDir::new().unwrap();
     table(folder.path());
-    let text = said(folder.path(), &["preform", "table.stl", "-o", "stock.3mf", "--json"]);
+    // Scanned as it should be, the preform has metal wherever the part is.
+    said(folder.path(), &["preform", "table.stl"]);
+    let scanned = said(folder.path(), &["deviation", "table.stl", "table_preform.stl", "--preform"]);
+    assert!(scanned.contains("inside, where metal is missing           0.0 %"), "{scanned}");
+    let text = said(folder.path(), &["preform", "table.stl", "-o", "stock.3mf", "--faces", "faces.csv", "--json"]);
+    let faces = fs::read_to_string(folder.path().join("faces.csv")).unwrap();
+    let faces: Vec<Vec<&str>> = faces.lines().map(|line| line.split(',').collect()).collect();
+    // Six of the leg and six of the top, each the largest first.
+    assert_eq!((faces.len(), faces[0].len(), faces[1][1]), (13, 11, "6400.000"));
     let told: serde_json::Value = serde_json::from_str(&text).unwrap();
     let stock = import(&fs::read(folder.path().join("stock.3mf")).unwrap(), &Task::new()).unwrap();
     let names: Vec<&str> = stock.objects.iter().map(|object| object.name.as_str()).collect();

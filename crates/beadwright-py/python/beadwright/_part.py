@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 from beadwright import _core
 from beadwright._array import floats, indices
 from beadwright._errors import BeadwrightError
+from beadwright._profile import Profile
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -133,6 +134,29 @@ class Part:
         part._maker = ("above", self._maker, z)
         return part
 
+    def preform(self, profile: Profile | StrPath = "cmt-al2319-kuka") -> Part:
+        """The solid with what is milled off again, by the section ``[preform]`` of a profile; it is planned like any part.
+
+        Raises :class:`BeadwrightError` for a wall given by curves, and for a surface that is not closed.
+        """
+        wanted = profile if isinstance(profile, Profile) else Profile(profile)
+        part = object.__new__(Part)
+        part._inner = self._inner.preform(wanted._inner)
+        part._maker = ("preform", self._maker, wanted.key)
+        return part
+
+    @property
+    def figures(self) -> dict[str, Any] | None:
+        """What a preform weighs, takes and costs (kg, hours, the currency of the profile); None for a part as it is drawn."""
+        return self._inner.figures
+
+    @property
+    def milled_faces(self) -> list[dict[str, Any]]:
+        """The faces of the part that is milled from a preform, the largest first: ``area`` (mm²), ``place`` (mm), ``normal``, and
+        ``stock``, the least, mean and most metal over it (mm). Empty for a part as it is drawn.
+        """
+        return self._inner.milled_faces
+
     @property
     def name(self) -> str:
         """The name for files and headings."""
@@ -233,4 +257,6 @@ def _triangles(name: str, corners: bytes, triangles: bytes, placing: tuple[Any, 
 def _remade(maker: tuple[Any, ...]) -> Part:
     if maker[0] == "above":
         return _remade(maker[1]).above(maker[2])
+    if maker[0] == "preform":
+        return _remade(maker[1]).preform(Profile(maker[2]))
     return Part._made(maker)

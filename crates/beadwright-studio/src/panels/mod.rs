@@ -20,6 +20,7 @@ mod scan;
 mod section;
 pub(crate) mod solid;
 mod start;
+mod stock;
 mod totals;
 mod words;
 

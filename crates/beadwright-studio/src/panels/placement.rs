@@ -24,6 +24,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             }
         });
         ui.checkbox(&mut placement.centre, studio.t("centre"));
+        let (mut preform, hint) = (studio.project().preform, studio.t("preform-hint"));
+        if ui.checkbox(&mut preform, studio.t("preform")).on_hover_text(hint).changed() {
+            studio.request(Action::Preform(preform));
+        }
         ui.horizontal(|ui| {
             if ui.button(studio.t("lay-flat")).clicked() {
                 placement.turn = laid_flat(studio, &placement);
@@ -46,7 +50,9 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 /// The turn that lays the part in view flat.
 fn laid_flat(studio: &Studio, placement: &Placement) -> glam::DVec3 {
     match studio.plans.own.part.as_deref() {
-        Some(Part::Mesh(import)) => placement.laid_flat(&import.mesh),
+        Some(Part::Mesh(import)) => {
+            placement.laid_flat(import.milled.as_ref().map_or(&import.mesh, |milled| &milled.mesh))
+        }
         _ => placement.turn,
     }
 }

@@ -1,6 +1,6 @@
 //! The 3-D view with its bar and its legend.
 
-use super::{bead, place, robot, scan, section};
+use super::{bead, place, robot, scan, section, stock};
 use crate::actions::Action;
 use crate::studio::Studio;
 use crate::view3d::{Colour, Pick, Style, face, palette};
@@ -32,6 +32,7 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
     bead::show(studio, ui);
     robot::joints(studio, ui);
     scan::show(studio, ui);
+    stock::show(studio, ui);
     let (style, label) = (studio.style(), studio.t("view-3d-label"));
     studio.solid.around = place::around(studio);
     let rect = view(studio, ui, &style, label);

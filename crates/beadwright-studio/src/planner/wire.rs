@@ -12,7 +12,7 @@ use beadwright::deposit::{Figures, Judgement, figures};
 use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::wall_curves::WallCurves;
-use beadwright::model::{Import, Mesh, Object, Part, RepairReport, Units};
+use beadwright::model::{Import, Mesh, Milled, Object, Part, RepairReport, Units};
 use beadwright::plan::{Header, Summary};
 use beadwright::profile::Profile;
 use beadwright::task::Stage;
@@ -44,6 +44,7 @@ enum Body {
         units: Option<Units>,
         objects: Vec<Object>,
         notes: Vec<String>,
+        milled: Option<Milled>,
     },
     Curves {
         curves: WallCurves,
@@ -202,8 +203,8 @@ impl Unpacker {
 impl Body {
     fn of(part: &Part) -> Self {
         match part.clone() {
-            Part::Mesh(Import { mesh, repair, format, units, objects, notes }) => {
-                Self::Solid { mesh, repair: Box::new(repair), format: format.to_owned(), units, objects, notes }
+            Part::Mesh(Import { mesh, repair, format, units, objects, notes, milled }) => {
+                Self::Solid { mesh, repair: Box::new(repair), format: format.to_owned(), units, objects, notes, milled }
             }
             Part::Curves { curves, height, warnings } => Self::Curves { curves, height, warnings },
         }
@@ -211,10 +212,10 @@ impl Body {
 
     fn part(self) -> Part {
         match self {
-            Self::Solid { mesh, repair, format, units, objects, notes } => {
+            Self::Solid { mesh, repair, format, units, objects, notes, milled } => {
                 // A few bytes for each part, kept for as long as the page is open.
                 let format = String::leak(format);
-                Part::Mesh(Import { mesh, repair: *repair, format, units, objects, notes })
+                Part::Mesh(Import { mesh, repair: *repair, format, units, objects, notes, milled })
             }
             Self::Curves { curves, height, warnings } => Part::Curves { curves, height, warnings },
         }

@@ -13,7 +13,9 @@ use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::{ImportError, Mesh, Model, Part, PartError, Placement};
 use beadwright::plan::choice::{self, Choice};
+use beadwright::plan::stock::Stocked;
 use beadwright::plan::{self, Header, PlanError, Sink};
+use beadwright::preform::PreformSettings;
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Task};
 use beadwright::weld::Torch;
@@ -34,6 +36,7 @@ struct PartKey {
     placement: Placement,
     height: Option<f64>,
     bead_width: f64,
+    preform: Option<PreformSettings>,
 }
 
 /// Carries out an order and sends what comes of it; a cancelled one ends in silence.
@@ -72,7 +75,7 @@ impl From<PlanError<Infallible>> for Stop {
 fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sync)) -> Result<(), Stop> {
     let sentence = |text: String| Stop::Failed(Failure::Sentence(text));
     let profile = Profile::parse(&order.project.profile).map_err(|error| sentence(error.to_string()))?;
-    let part = kept.part(&order.project, profile.bead.width, task)?;
+    let part = kept.part(&order.project, &profile, task)?;
     let Choice { profile, note } = choice::choose(&part, &profile, false, task)?;
     let profile = Arc::new(profile);
     let known = kept.mesh.as_ref().filter(|(of, _)| Arc::ptr_eq(of, &part)).map(|(_, mesh)| mesh.clone());
@@ -138,7 +141,7 @@ impl Sink for Layers<'_> {
 }
 
 impl Cache {
-    fn part(&mut self, project: &Project, bead_width: f64, task: &Task) -> Result<Arc<Part>, Stop> {
+    fn part(&mut self, project: &Project, profile: &Profile, task: &Task) -> Result<Arc<Part>, Stop> {
         let Some(source) = &project.source else {
             return Err(Stop::Failed(Failure::Sentence("no model is open.".to_owned())));
         };
@@ -151,13 +154,17 @@ impl Cache {
             self.part = None;
             self.model = Some((source.clone(), changed, read(source, task)?));
         }
-        let key = PartKey { placement: project.placement, height: project.height, bead_width };
+        let bead_width = profile.bead.width;
+        let preform = project.preform.then(|| profile.preform_settings());
+        let key = PartKey { placement: project.placement, height: project.height, bead_width, preform };
         if let Some((_, part)) = self.part.as_ref().filter(|(of, _)| *of == key) {
             return Ok(part.clone());
         }
         let Some((_, _, model)) = &self.model else { return Err(Stop::Cancelled) };
         let part = model.clone().place(&project.placement, project.height, bead_width);
-        let part = Arc::new(part.map_err(|error| refused(source, &error))?);
+        let part = part.map_err(|error| refused(source, &error))?;
+        let part = if project.preform { Stocked::of(part, profile, task)?.part } else { part };
+        let part = Arc::new(part);
         self.part = Some((key, part.clone()));
         Ok(part)
     }

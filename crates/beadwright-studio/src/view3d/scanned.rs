@@ -1,5 +1,6 @@
 //! A scan as it is drawn: its points, each with the colour of its deviation.
 
+use beadwright::model::Milled;
 use glam::DVec3;
 
 /// Part of the points whose deviation the colours show; those beyond have the colour of the end, so that a little spatter
@@ -32,6 +33,17 @@ impl Scanned {
         };
         let points = points.iter().zip(distances).map(coloured).collect();
         Some(Self { points, triangles: triangles.to_vec(), range })
+    }
+
+    /// The part within a preform, each triangle coloured by the metal over it.
+    pub fn stock(part: &Milled) -> Option<Self> {
+        let Milled { mesh, stock } = part;
+        let corner = |&corner: &u32| mesh.vertices[corner as usize];
+        let points: Vec<DVec3> = mesh.triangles.iter().flatten().map(corner).collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let over: Vec<f64> = stock.iter().flat_map(|stock| [*stock; 3]).collect();
+        Self::new(&points, &triangles, &over)
     }
 
     /// The deviation at the ends of the colours, mm.

@@ -46,13 +46,6 @@ impl Cover {
 
     /// What the passes of a layer cover of its islands, where it is known what beads reach of them.
     pub(super) fn of_layer(layer: &Layer, reaches: &[Option<Reach>], profile: &Profile) -> Self {
-        let path = |pass: &Pass| Path {
-            kind: pass.kind,
-            closed: pass.closed,
-            points: pass.points.iter().map(|p| p.truncate()).collect(),
-            width: pass.width.clone(),
-            reversible: true,
-        };
         let paths: Vec<Path> = layer.passes.iter().map(path).collect();
         let (paths, whole) = (paths.iter().collect::<Vec<_>>(), Region::from_normalised(layer.islands.clone()));
         let Some(coverage) = Coverage::of(&paths, &whole, profile.bead.width) else { return Self::default() };
@@ -90,6 +83,12 @@ impl Cover {
         }
         Self { area: (area - bare).max(0.0), doubts }
     }
+}
+
+/// A pass in its layer.
+pub(super) fn path(pass: &Pass) -> Path {
+    let points = pass.points.iter().map(|p| p.truncate()).collect();
+    Path { kind: pass.kind, closed: pass.closed, points, width: pass.width.clone(), reversible: true }
 }
 
 /// Strips along the outline count, too, if they are this part of an island or more.

@@ -4,6 +4,7 @@
 use super::cover::Cover;
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
+use super::milled::undersize;
 use super::support::Support;
 use super::warm::{self, Heat};
 use super::{Sink, level_layers, relight, welded};
@@ -48,7 +49,7 @@ impl<S: Sink> Emitter<'_, S> {
     /// # Errors
     /// Whatever the sink fails with.
     pub(super) fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
-        let Filled { slice, fills, planned_area, reaches, shared, .. } = filled;
+        let Filled { slice, fills, planned_area, reaches, milled, shared, .. } = filled;
         let Slice { index, z, height, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
@@ -70,6 +71,8 @@ impl<S: Sink> Emitter<'_, S> {
             let warning = |(kind, place, size)| Warning { kind, layer: index, place, size };
             layer.warnings.extend(cover.doubts.into_iter().map(warning));
         }
+        let undersize = milled.and_then(|part| undersize(&layer, &part, self.profile));
+        layer.warnings.extend(undersize);
         if let Some(helix) = &mut self.helix {
             let turn = helix.turn(&mut layer, self.profile.bead.width);
             self.no_turn = self.no_turn.take().or(turn.err());

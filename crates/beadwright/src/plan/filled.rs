@@ -12,7 +12,7 @@ use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
-use planar::{Bounds, Join, Polygon};
+use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
@@ -26,6 +26,8 @@ pub(super) struct Filled {
     pub(super) reaches: Vec<Option<Reach>>,
     /// Number of warnings that the slice came with.
     pub(super) known: usize,
+    /// What lies in this layer of the part that is milled from it.
+    pub(super) milled: Option<Region>,
     /// Whether other layers have the same passes.
     pub(super) shared: bool,
 }
@@ -165,7 +167,7 @@ fn fill_layer(
         }
         fills.push(own);
     }
-    Filled { slice, fills, planned_area, reaches, known: came_with, shared: false }
+    Filled { slice, fills, planned_area, reaches, known: came_with, milled: None, shared: false }
 }
 
 /// The fill of an island by its strategy, or, where that cannot be welded, a simpler one of its own, or, with a warning, the

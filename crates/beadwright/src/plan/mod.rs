@@ -19,10 +19,12 @@
 //! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
+//! | `milled` | whether metal lies wherever the part will be that is milled from a preform |
 //! | `result` | what a plan is, where its layers go, why there may be none |
 //! | `reasons` | why a plan's volume differs from the part's, or is nothing |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
+//! | [`stock`] | a part becomes its preform, which is planned in its place |
 //! | `support` | whether passes lie on the metal below |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
@@ -38,12 +40,14 @@ mod helix;
 mod judged;
 mod level_layers;
 mod levels;
+mod milled;
 mod parts;
 mod preview;
 mod reasons;
 mod relight;
 mod result;
 mod scan_lines;
+pub mod stock;
 mod support;
 pub mod warm;
 
@@ -71,6 +75,7 @@ use emitter::Emitter;
 use filled::Filled;
 use glam::DVec2;
 use helix::{Helix, NoTurn};
+use milled::Milled;
 use planar::Bounds;
 use rayon::prelude::*;
 use reasons::{left_over, other_volume, why_empty};
@@ -137,7 +142,9 @@ fn plan_at<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part {
-        PartRef::Mesh(mesh) => plan_mesh(warmth, name, mesh, profile.fill.strategy.strategy(), profile, task, sink),
+        PartRef::Mesh { mesh, milled } => {
+            plan_mesh(warmth, name, (mesh, milled), profile.fill.strategy.strategy(), profile, task, sink)
+        }
         PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
     }
 }
@@ -154,14 +161,14 @@ pub fn plan_with<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let warmth = warm::predicted(PartRef::Mesh(mesh), profile, task)?;
-    plan_mesh(&warmth, name, mesh, strategy, profile, task, sink)
+    let warmth = warm::predicted(mesh.into(), profile, task)?;
+    plan_mesh(&warmth, name, (mesh, None), strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
     warmth: &Warmth,
     name: &str,
-    mesh: &Mesh,
+    (mesh, milled): (&Mesh, Option<&Mesh>),
     strategy: &dyn Strategy,
     profile: &Profile,
     task: &Task,
@@ -178,6 +185,8 @@ fn plan_mesh<S: Sink + Send>(
     let left = left_over(mesh, &slabs, profile);
     let (low, high) = mesh.bounds();
     let heat = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
+    let milled_volume = milled.map(Mesh::volume);
+    let milled = milled.map(|part| Milled::new(part, &slabs, profile, task)).transpose()?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
@@ -185,7 +194,11 @@ fn plan_mesh<S: Sink + Send>(
             return Ok(slicer.lines(batch, task)?.into_par_iter().map(|lines| weld_lines(lines, profile)).collect());
         }
         let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
-        filled::fill_batch(planned, strategy, profile, datum, task)
+        let mut filled = filled::fill_batch(planned, strategy, profile, datum, task)?;
+        if let Some(milled) = &milled {
+            filled.iter_mut().zip(milled.batch(batch, task)?).for_each(|(filled, part)| filled.milled = Some(part));
+        }
+        Ok(filled)
     };
     let (low, high) = mesh.bounds();
     let extent = Extent { layers: slicer.layer_count(), low, high };
@@ -194,6 +207,7 @@ fn plan_mesh<S: Sink + Send>(
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
     summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| opening.is_none() && *volume > 0.0);
+    summary.metrics.milled_part_volume_mm3 = milled_volume;
     let volumes = if is_wall { None } else { other_volume(&summary, mesh.volume(), left.is_some()) };
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
     if unsaid {
@@ -229,7 +243,7 @@ pub fn slabs<'a>(
     let part = part.into();
     let warmth = warm::predicted(part, profile, task)?;
     match part {
-        PartRef::Mesh(mesh) => slabs_at(&warmth, mesh, profile, task),
+        PartRef::Mesh { mesh, .. } => slabs_at(&warmth, mesh, profile, task),
         PartRef::Curves(curves, height) => {
             let curves = centre_lines(curves, profile)?;
             Ok(levels::of_curves(&curves, height, &profile.single_wall()?, &warmth))

@@ -5,7 +5,7 @@ use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, warm};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
-use crate::model::{Mesh, PartRef};
+use crate::model::Mesh;
 use crate::process::TorchShape;
 use crate::profile::Profile;
 use crate::task::Task;
@@ -31,7 +31,7 @@ pub fn parts_into<S: Sink + Send>(
         ));
     }
     let predicted = |(_, mesh): &(String, &Mesh)| -> Result<(Warmth, usize), PlanError<S::Error>> {
-        let warmth = warm::predicted(PartRef::Mesh(mesh), profile, task)?;
+        let warmth = warm::predicted((*mesh).into(), profile, task)?;
         let count = slabs_at(&warmth, mesh, profile, task)?.len();
         Ok((warmth, count))
     };
@@ -50,7 +50,7 @@ pub fn parts_into<S: Sink + Send>(
     for (((part, mesh), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(part);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(warmth, part, PartRef::Mesh(mesh), profile, task, &mut watch)?;
+        let own = plan_at(warmth, part, (*mesh).into(), profile, task, &mut watch)?;
         told.add(part, &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;

@@ -64,7 +64,7 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
     let mut warmth = Warmth::default();
     let Some(law) = profile.bead.by_heat else { return Ok(warmth) };
     let wall = match part {
-        PartRef::Mesh(_) => profile.wall_bead()?,
+        PartRef::Mesh { .. } => profile.wall_bead()?,
         PartRef::Curves(..) => Some(profile.single_wall()?),
     };
     let Some(wall) = wall else { return Ok(warmth) };

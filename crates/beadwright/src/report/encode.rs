@@ -188,6 +188,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::IslandTooSmall => format!("island of {size:.1} mm² left out"),
         WarningKind::PassTooShort => format!("pass of {size:.1} mm left out"),
         WarningKind::Bare => format!("{size:.1} mm² of an island left bare"),
+        WarningKind::Undersize => format!("{size:.1} mm² without metal at the part's faces"),
         WarningKind::Unsound => "passes leave the part or cross".to_owned(),
         WarningKind::HighStart => format!("first bead {size:.2} mm above the plate"),
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),

@@ -18,6 +18,10 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         ("deposited / part", format!("{:.1} / {:.1} cm³", m.deposited_volume_mm3 / 1e3, part / 1e3)),
         ("covered / slice area", format!("{:.2} %", 100.0 * m.coverage())),
     ];
+    rows.extend(m.milled_part_volume_mm3.map(|part| {
+        let off = (m.deposited_volume_mm3 - part).max(0.0);
+        ("part / milled off", format!("{:.1} / {:.1} cm³", part / 1e3, off / 1e3))
+    }));
     if m.dwell_time_s > 0.0 {
         rows.insert(5, ("waits", hours(m.dwell_time_s)));
     }

@@ -85,6 +85,7 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
     ];
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("Heat input", format!("{heat:.0} J/mm"))));
     rows.push(("Part volume", volume(m.part_volume_mm3)));
+    rows.extend(m.milled_part_volume_mm3.map(|part| ("Milled from it", volume(part))));
     rows.push(("Deposited volume", volume(m.deposited_volume_mm3)));
     rows.push(("Covered / slice area", format!("{:.2} %", 100.0 * m.coverage())));
     if let Some(f) = figures {

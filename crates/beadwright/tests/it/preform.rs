@@ -5,14 +5,18 @@ use crate::families;
 
 use beadwright::example;
 use beadwright::glam::{DQuat, DVec2, DVec3};
-use beadwright::model::Mesh;
 use beadwright::model::solid::Solid;
+use beadwright::model::{Import, Mesh, Part, import};
+use beadwright::plan::{self, stock::Stocked};
 use beadwright::planar::{Join, Polygon, Region, Ring};
+use beadwright::preform::faces::{self, Face};
 use beadwright::preform::figures::Figures;
 use beadwright::preform::section::PreformSection;
 use beadwright::preform::{Plate, Preform, PreformSettings, orient};
+use beadwright::profile::Profile;
 use beadwright::slice::{Slab, SliceOptions, Slicer};
 use beadwright::task::Task;
+use beadwright::warning::WarningKind;
 use common::profile_by;
 use families::{Random, extruded, islands};
 use std::f64::consts::PI;
@@ -211,6 +215,64 @@ fn no_slice_of_a_part_reaches_beyond_its_preform() {
                 let may = if settings.side > 0.0 { 1e-6 } else { 0.02 * slice.area() };
                 assert!(outside <= may, "{name} at {z:.2}: {outside:.3} of {:.1} mm2 outside", slice.area());
             }
+        }
+    }
+}
+
+/// A part and its preform by a profile.
+fn stocked(mesh: &Mesh, profile: &Profile) -> Part {
+    let import = Import { mesh: mesh.clone(), ..import(&example::find("cross").unwrap().stl(), &Task::new()).unwrap() };
+    Stocked::of(Part::Mesh(import), profile, &Task::new()).unwrap().part
+}
+
+/// Area of the part's faces over all layers without metal, mm².
+fn undersize(part: &Part, profile: &Profile) -> f64 {
+    let plan = plan::plan("part", part, profile, &Task::new()).unwrap();
+    let summaries = plan.summary.warnings.summaries();
+    summaries.filter(|w| w.kind == WarningKind::Undersize).map(|w| w.total).sum()
+}
+
+#[test]
+fn metal_lies_wherever_the_milled_part_will_be() {
+    let profile = profile_by("cmt-al2319-kuka", "loop");
+    // Those that are planned within seconds.
+    for (name, part) in parts().into_iter().skip(3) {
+        let preform = stocked(&part, &profile);
+        let missing = undersize(&preform, &profile);
+        assert_eq!(missing, 0.0, "{name}");
+    }
+    // A part that is thicker than what is welded is missed where it is.
+    let block = mesh(Solid::extrude(&rectangle(DVec2::new(60.0, 40.0)), 0.0, 20.0));
+    let Part::Mesh(mut preform) = stocked(&block, &profile) else { panic!("a solid") };
+    let milled = &mut preform.milled.as_mut().unwrap().mesh;
+    // 3 mm beyond the stock of 1.5 mm on one side, from 5.5 to 25.5 mm above the plate: in eleven layers of 2 mm.
+    milled.vertices.iter_mut().filter(|v| v.x > 50.0).for_each(|v| v.x += 1.5 + 3.0);
+    near(undersize(&Part::Mesh(preform), &profile), 3.0 * 40.0 * 11.0, 0.05);
+}
+
+#[test]
+fn faces_of_a_block_have_its_stock() {
+    let block = mesh(Solid::extrude(&rectangle(DVec2::new(80.0, 50.0)), 0.0, 20.0));
+    let settings = PreformSettings { side: 3.0, top: 2.0, bottom: 1.0, ..plain(1.0, 30.0) };
+    // A plate that is kept reaches 14 mm up into the part.
+    for (plate, lift, below) in [(Plate::Sawn { cut: 4.0 }, 5.0, 1.0), (Plate::Kept { thickness: 15.0 }, -14.0, 1.0)] {
+        let settings = PreformSettings { plate, ..settings };
+        let mut part = block.clone();
+        part.vertices.iter_mut().for_each(|v| v.z += lift);
+        let found = faces::faces(&part, &faces::stock(&part, &of(&block, &settings), plate));
+        let area: f64 = found.iter().map(|face| face.area).sum();
+        near(area, 2.0 * (80.0 * 50.0 + 80.0 * 20.0 + 50.0 * 20.0), 1e-9);
+        assert_eq!(found.len(), 6);
+        for Face { normal, stock: [least, mean, most], .. } in found {
+            let expected = if normal.z > 0.9 {
+                2.0
+            } else if normal.z < -0.9 {
+                below
+            } else {
+                3.0
+            };
+            assert!((least - expected).abs() < 2e-3 && (most - expected).abs() < 2e-3, "{normal}: {least} to {most}");
+            assert!((mean - expected).abs() < 2e-3);
         }
     }
 }

@@ -4,7 +4,7 @@ use beadwright::bead::library::printed_rows;
 use beadwright::check;
 use beadwright::example;
 use beadwright::fill::StrategyName;
-use beadwright::model::{Model, Part, PartRef, Placement};
+use beadwright::model::{Model, Part, Placement};
 use beadwright::pass::Pass;
 use beadwright::plan::{self, Plan, choice};
 use beadwright::profile::Profile;
@@ -152,7 +152,7 @@ fn the_built_in_profile_covers_each_part_with_a_strategy_of_its_choice() {
             let part = file.place(&placement, None, profile.bead.width).unwrap();
             let chosen = choice::choose(&part, &profile, false, &task).unwrap().profile;
             let Part::Mesh(import) = &part else { panic!("a solid") };
-            let plan = plan::plan("part", PartRef::Mesh(&import.mesh), &chosen, &task).unwrap();
+            let plan = plan::plan("part", &import.mesh, &chosen, &task).unwrap();
             let (covered, metal) = (plan.summary.metrics.coverage(), brought(&plan, &chosen) / import.mesh.volume());
             println!("{} layers, covered {covered:.4}, metal {metal:.4}", plan.layers.len());
             assert_eq!(chosen.fill.strategy, StrategyName::Wall);

@@ -60,7 +60,7 @@ pub(super) fn of_facets(
     }
     repair.normals_against_winding = against;
     task.step(Stage::Import, 1.0)?;
-    Ok(Import { mesh, repair, format, units: None, objects: Vec::new(), notes: Vec::new() })
+    Ok(Import { mesh, repair, format, units: None, objects: Vec::new(), notes: Vec::new(), milled: None })
 }
 
 /// Whether a stored normal points against the winding of its corners.

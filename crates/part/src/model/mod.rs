@@ -89,6 +89,24 @@ pub struct Import {
     pub objects: Vec<Object>,
     /// What was passed over, as sentences.
     pub notes: Vec<String>,
+    /// Of a preform, what is milled from it.
+    pub milled: Option<Milled>,
+}
+
+/// A part that is milled from its preform.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Milled {
+    /// The part, as it lies in the preform.
+    pub mesh: Mesh,
+    /// Metal over each of its triangles, along the normal from the middle, mm.
+    pub stock: Vec<f64>,
+}
+
+impl Milled {
+    /// Moves the part, mm.
+    pub(crate) fn shift(&mut self, by: DVec3) {
+        self.mesh.vertices.iter_mut().for_each(|vertex| *vertex += by);
+    }
 }
 
 /// An object of a file.

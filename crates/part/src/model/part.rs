@@ -6,7 +6,9 @@ use super::outline::{self, Outlines};
 use super::stand;
 use super::units::{self, UnitsUnclear};
 use super::wall_curves::{WallCurves, WallCurvesError};
-use super::{Import, ImportError, MAX_REACH_MM, Mesh, RepairReport, Units, decoded, import, import_damaged, is_iges};
+use super::{
+    Import, ImportError, MAX_REACH_MM, Mesh, Milled, RepairReport, Units, decoded, import, import_damaged, is_iges,
+};
 use crate::task::Task;
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, EulerRot};
 use planar::Bounds;
@@ -81,7 +83,12 @@ pub enum Part {
 #[derive(Debug, Clone, Copy)]
 pub enum PartRef<'a> {
     /// A solid that stands on z = 0.
-    Mesh(&'a Mesh),
+    Mesh {
+        /// What is welded.
+        mesh: &'a Mesh,
+        /// What is milled from it afterwards ([`Import::milled`]).
+        milled: Option<&'a Mesh>,
+    },
     /// The centre-lines of a wall, and where it ends, mm.
     Curves(&'a WallCurves, f64),
 }
@@ -89,7 +96,9 @@ pub enum PartRef<'a> {
 impl<'a> From<&'a Part> for PartRef<'a> {
     fn from(part: &'a Part) -> Self {
         match part {
-            Part::Mesh(import) => Self::Mesh(&import.mesh),
+            Part::Mesh(import) => {
+                Self::Mesh { mesh: &import.mesh, milled: import.milled.as_ref().map(|milled| &milled.mesh) }
+            }
             Part::Curves { curves, height, .. } => Self::Curves(curves, *height),
         }
     }
@@ -97,7 +106,7 @@ impl<'a> From<&'a Part> for PartRef<'a> {
 
 impl<'a> From<&'a Mesh> for PartRef<'a> {
     fn from(mesh: &'a Mesh) -> Self {
-        Self::Mesh(mesh)
+        Self::Mesh { mesh, milled: None }
     }
 }
 
@@ -322,13 +331,23 @@ impl Part {
         // What was repaired before the cut is still reported.
         let (triangles, vertices, open_edges, shells) = (cut.triangles, cut.vertices, cut.open_edges, cut.shells);
         let repair = RepairReport { triangles, vertices, open_edges, shells, ..import.repair };
-        Ok(Self::Mesh(Import { mesh, repair, ..import }))
+        let mut milled = import.milled;
+        milled.iter_mut().for_each(|milled| milled.shift(DVec3::NEG_Z * z));
+        Ok(Self::Mesh(Import { mesh, repair, milled, ..import }))
     }
 
     /// The solid; none for curves.
     pub fn mesh(&self) -> Option<&Mesh> {
         match self {
             Self::Mesh(import) => Some(&import.mesh),
+            Self::Curves { .. } => None,
+        }
+    }
+
+    /// Of a preform, what is milled from it.
+    pub fn milled(&self) -> Option<&Milled> {
+        match self {
+            Self::Mesh(import) => import.milled.as_ref(),
             Self::Curves { .. } => None,
         }
     }

@@ -63,6 +63,7 @@ pub fn arrange(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Vec<Named
     }
     let moved = parts.into_iter().zip(moves).map(|((name, mut import), by)| {
         import.mesh.vertices.iter_mut().for_each(|vertex| *vertex += by.extend(0.0));
+        import.milled.iter_mut().for_each(|milled| milled.shift(by.extend(0.0)));
         import.objects = vec![Object { name: name.clone(), triangles: import.repair.triangles_read }];
         (name, import)
     });
@@ -103,6 +104,13 @@ fn crowded(places: &[Place]) -> Option<(String, String)> {
 /// Two solids as one; each stays closed by itself.
 fn joined(mut first: Import, second: Import) -> Import {
     first.mesh.add(second.mesh);
+    match (&mut first.milled, second.milled) {
+        (Some(first), Some(second)) => {
+            first.mesh.add(second.mesh);
+            first.stock.extend(second.stock);
+        }
+        (first, second) => *first = first.take().or(second),
+    }
     first.repair = added(first.repair, second.repair);
     first.objects.extend(second.objects);
     first.notes.extend(second.notes);

@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -24,6 +24,7 @@ impl WarningKind {
         Self::ThinWall,
         Self::Refilled,
         Self::Bare,
+        Self::Undersize,
         Self::Unsound,
         Self::HighStart,
         Self::NothingBelow,
@@ -81,6 +82,11 @@ impl WarningKind {
                 "check the picture of the layer, and use another strategy if it is not acceptable",
             ),
             Self::Bare => ("bare", "beads do not reach part of an island", "compare what other strategies leave"),
+            Self::Undersize => (
+                "undersize",
+                "beads do not reach a corner of the preform, or leave a gap, and the part that is milled from it ends there",
+                "add stock (preform.side, preform.top, preform.bottom), or compare what other strategies leave",
+            ),
             Self::Unsound => (
                 "unsound",
                 "passes leave the part or cross each other, and nothing could replace them",

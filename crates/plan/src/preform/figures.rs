@@ -95,6 +95,30 @@ impl Figures {
         }
     }
 
+    /// The figures in sentences; prices in their currency.
+    pub fn sentences(&self, currency: &str) -> Vec<String> {
+        let Self { part_kg, preform_kg, plate_kg, milled_kg, buy_to_fly, billet_buy_to_fly, .. } = self;
+        let Self { milling_hours, billet_milling_hours, .. } = self;
+        let plate = if self.cut_height.is_some() { "is sawn off" } else { "becomes part of the part" };
+        let mut sentences = vec![
+            format!(
+                "The preform weighs {preform_kg:.3} kg, the part {part_kg:.3} kg; {milled_kg:.3} kg are milled off, and the plate \
+                 of {plate_kg:.3} kg {plate}."
+            ),
+            format!(
+                "For each kg of the part {buy_to_fly:.2} kg are bought, {billet_buy_to_fly:.2} kg for a block; milling takes \
+                 {milling_hours:.2} h, from the block {billet_milling_hours:.2} h."
+            ),
+        ];
+        let prices = self.price.zip(self.billet_price);
+        sentences.extend(prices.map(|(price, billet)| {
+            format!(
+                "Wire, plate, arc and milling cost {price:.2} {currency}, the block and its milling {billet:.2} {currency}."
+            )
+        }));
+        sentences
+    }
+
     /// What is as small as can be: the price or, without prices, the hours of arc and mill with a kilogram of plate as long
     /// as one of wire takes.
     pub fn score(&self) -> f64 {

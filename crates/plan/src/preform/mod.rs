@@ -7,6 +7,7 @@
 //! | what is milled off, weights, hours and prices | [`figures`] |
 //! | the way up in which all of this costs least | [`orient`] |
 //! | a closed surface of the result | [`solid`] |
+//! | the faces of the part, and how much metal lies over each | [`faces`] |
 //! | the keys of a profile | [`section`] |
 //!
 //! A preform is made of steps, thinner than a layer. From the top down, a step P(k) is the part within it with its stock, G(k),
@@ -14,6 +15,7 @@
 //! then widened to one, and what is narrower than `fill_holes` closed. The part is taken where it is widest in a step, so that
 //! no slice of it reaches beyond the preform.
 
+pub mod faces;
 pub mod figures;
 pub mod orient;
 pub mod section;

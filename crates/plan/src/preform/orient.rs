@@ -22,13 +22,16 @@ const DIRECTIONS: usize = 1200;
 const CELLS: f64 = 56.0;
 /// Directions scored by their steps, and those of them that are turned further.
 const SCORED: usize = 24;
-const REFINED: usize = 6;
+const REFINED: usize = 4;
 /// Directions nearer to each other than this are alike: 8°.
 const ALIKE: f64 = 0.9903;
 /// Angles of further turns, degrees.
 const TURNS: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
 /// Steps in the height of a part that is scored.
 const STEPS: f64 = 40.0;
+
+/// Outlines of a part that is scored are simplified by this much, in steps.
+const ROUGH: f64 = 0.05;
 
 /// A direction of the part that points down, with its figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +85,8 @@ impl Oriented {
     ) -> Result<Self, Cancelled> {
         let turned = standing(mesh, down);
         let step = settings.step.max(turned.size().z / STEPS);
-        let coarse = PreformSettings { bead_width: 0.0, step, ..*settings };
+        let simplify = settings.simplify.max(ROUGH * step);
+        let coarse = PreformSettings { bead_width: 0.0, step, simplify, ..*settings };
         let preform = Preform::of(&turned, &coarse, task)?;
         Ok(Self { down, figures: Figures::of(&turned, &preform, &coarse, rates) })
     }

@@ -14,6 +14,7 @@ mod pictures;
 mod place;
 mod placement;
 mod play;
+mod preform;
 mod scan;
 mod start;
 mod words;

@@ -109,6 +109,6 @@ impl Outlines {
         }
         let (mesh, repair) = Mesh::from_triangles(all.vertices, all.triangles);
         let (format, notes) = (self.format, self.notes.clone());
-        Ok(Import { mesh, repair, format, units: Some(Units::Millimetre), objects: Vec::new(), notes })
+        Ok(Import { mesh, repair, format, units: Some(Units::Millimetre), objects: Vec::new(), notes, milled: None })
     }
 }

@@ -1,0 +1,70 @@
+//! A part becomes its preform, which is planned in its place.
+
+use super::PlanError;
+use crate::model::holes::{self, Opening};
+use crate::model::{Import, Mesh, Milled, Part};
+use crate::preform::Preform;
+use crate::preform::faces;
+use crate::preform::figures::Figures;
+use crate::profile::Profile;
+use crate::slice::Surface;
+use crate::task::Task;
+use std::convert::Infallible;
+
+/// A part with what is milled off again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stocked {
+    /// The preform, to be planned; it holds the part that is milled from it ([`Import::milled`]).
+    pub part: Part,
+    /// The steps of which it is made.
+    pub preform: Preform,
+    /// What it weighs, takes and costs.
+    pub figures: Figures,
+}
+
+impl Stocked {
+    /// The preform of a solid by a profile.
+    ///
+    /// ```
+    /// use beadwright::plan::{plan, stock::Stocked};
+    /// use beadwright::{Profile, Task, example, model::{Model, Placement}};
+    ///
+    /// let profile = Profile::built_in("cmt-al2319-kuka")?;
+    /// let cross = Model::read(&example::find("cross").ok_or("no such example")?.stl(), &Task::new())?;
+    /// let cross = cross.place(&Placement::default(), None, profile.bead.width)?;
+    /// let Stocked { part, figures, .. } = Stocked::of(cross, &profile, &Task::new())?;
+    /// assert!(figures.preform_kg > figures.part_kg);
+    /// let plan = plan("cross", &part, &profile, &Task::new())?;
+    /// assert!(plan.summary.forbidden.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`PlanError::NoSolid`] for curves, [`PlanError::Open`] for a surface that is not closed, unless the profile says that it
+    /// is the skin of a solid, and [`PlanError::Cancelled`].
+    pub fn of(part: Part, profile: &Profile, task: &Task) -> Result<Self, PlanError<Infallible>> {
+        let Part::Mesh(mut import) = part else { return Err(PlanError::NoSolid) };
+        is_closed(&import.mesh, profile)?;
+        let settings = profile.preform_settings();
+        let preform = Preform::of(&import.mesh, &settings, task)?;
+        let figures = Figures::of(&import.mesh, &preform, &settings, &profile.preform_rates());
+        let mut mesh = std::mem::replace(&mut import.mesh, preform.mesh());
+        mesh.vertices.iter_mut().for_each(|vertex| vertex.z += preform.lift);
+        let milled = Milled { stock: faces::stock(&mesh, &preform, settings.plate), mesh };
+        Ok(Self { part: Part::Mesh(Import { milled: Some(milled), ..import }), preform, figures })
+    }
+}
+
+/// Refuses a surface that is not closed, unless the profile says that it is the skin of a solid.
+///
+/// # Errors
+/// [`PlanError::Open`].
+pub fn is_closed(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<Infallible>> {
+    let opening = holes::openings(mesh).into_iter().next();
+    match opening.filter(|opening| opening.width > profile.bead.width) {
+        Some(Opening { width, place, .. }) if profile.slice.surface != Some(Surface::Solid) => {
+            Err(PlanError::Open { width, place })
+        }
+        _ => Ok(()),
+    }
+}
