@@ -1,4 +1,4 @@
-//! How the part is placed: units, scale, turn, shift.
+//! How the part is placed: units, scale, turn, shift; and whether its preform is planned.
 
 use crate::actions;
 use crate::actions::Action;
@@ -24,10 +24,6 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             }
         });
         ui.checkbox(&mut placement.centre, studio.t("centre"));
-        let (mut preform, hint) = (studio.project().preform, studio.t("preform-hint"));
-        if ui.checkbox(&mut preform, studio.t("preform")).on_hover_text(hint).changed() {
-            studio.request(Action::Preform(preform));
-        }
         ui.horizontal(|ui| {
             if ui.button(studio.t("lay-flat")).clicked() {
                 placement.turn = laid_flat(studio, &placement);
@@ -45,6 +41,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             studio.request(Action::Place(placement));
         }
     });
+    let (mut preform, hint) = (studio.project().preform, studio.t("preform-hint"));
+    if ui.checkbox(&mut preform, studio.t("preform")).on_hover_text(hint).changed() {
+        studio.request(Action::Preform(preform));
+    }
 }
 
 /// The turn that lays the part in view flat.
