@@ -58,14 +58,43 @@ macro_rules! section {
             /// The limits of the numbers.
             pub fn limits(&self) -> Vec<$crate::limit::Limit> {
                 [$($({
-                    let (key, value) = (concat!($key, ".", stringify!($field)), self.$field.into());
-                    $crate::limit::limit(key, value, ($least, $greatest), $unit, $reason)
+                    let (key, value) = (concat!($key, ".", stringify!($field)), $crate::limit::Given::from(self.$field));
+                    $crate::limit::limit(key, value.or_between($least, $greatest), ($least, $greatest), $unit, $reason)
                 },)?)*].to_vec()
             }
         }
     };
 }
 pub use section;
+
+/// A number of a profile, or none where the key is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Given(Option<f64>);
+
+impl Given {
+    /// The number, or the middle of its range.
+    pub fn or_between(self, least: f64, greatest: f64) -> f64 {
+        self.0.unwrap_or(least.midpoint(greatest))
+    }
+}
+
+impl From<f64> for Given {
+    fn from(value: f64) -> Self {
+        Self(Some(value))
+    }
+}
+
+impl From<u32> for Given {
+    fn from(value: u32) -> Self {
+        Self(Some(value.into()))
+    }
+}
+
+impl From<Option<f64>> for Given {
+    fn from(value: Option<f64>) -> Self {
+        Self(value)
+    }
+}
 
 /// Rows of limits: key, value, least and greatest value, unit, reason.
 #[macro_export]

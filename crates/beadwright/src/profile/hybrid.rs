@@ -9,8 +9,9 @@ section! {
         /// Whether to follow the paper to the letter; default false. Corner pockets of half a bead width or more are then
         /// kept, and `scan_along = "auto"` means the short side.
         literal: bool = false;
-        /// How far a contour is moved inwards to find its pockets, in stepovers; default 1.5.
-        pocket_depth: f64 = 1.5, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead next to them";
+        /// How far a contour is moved inwards to find its pockets, in stepovers. If left out, it is chosen for each island
+        /// (1 or 1.5); 1.5 with `literal`.
+        pocket_depth: Option<f64> = None, 0.5, 3.0, "stepovers", "pockets lie within reach of the bead next to them";
         /// How much larger the backtracked contour is made (u), so that numerical slivers do not count as pockets, in
         /// stepovers; default 0.01.
         tolerance: f64 = 0.01, 0.001, 0.2, "stepovers", "smaller slivers are rounding errors, larger pockets are real";
@@ -36,8 +37,8 @@ section! {
         /// How far free ends of cut contours reach into the fill, in bead widths; default 0.5.
         end_overlap: f64 = 0.5, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
         /// How far sharp corners of contours are drawn out into the void beyond them, as a fraction from 0 (not at all)
-        /// to 1 (all the way); default 0.4.
-        tip_reach: f64 = 0.4, 0.0, 1.0, "(fraction)", "0 leaves corners as they are, 1 draws them out all the way";
+        /// to 1 (all the way). If left out, it is chosen for each island (0.4 to 1).
+        tip_reach: Option<f64> = None, 0.0, 1.0, "(fraction)", "0 leaves corners as they are, 1 draws them out all the way";
         /// Narrowest bead of the process, in bead widths; default 0.7.
         min_width: f64 = 0.7, 0.2, 1.0, "bead widths", "narrower beads have no steady arc";
         /// Widest bead of the process, in bead widths; default 1.4.
@@ -50,13 +51,17 @@ section! {
 /// starts with this, and 32 with three.
 const LITERAL_POCKET: f64 = 0.5;
 
+/// Depth at which the paper finds pockets, in stepovers.
+const PAPER_DEPTH: f64 = 1.5;
+
 impl HybridSection {
     /// In mm, for beads of width `w` that lie `d` apart.
     pub(super) fn settings(&self, w: f64, d: f64) -> HybridSettings {
         let pocket = if self.literal { self.min_pocket_length.min(LITERAL_POCKET) } else { self.min_pocket_length };
         HybridSettings {
             literal: self.literal,
-            pocket_depth: self.pocket_depth * d,
+            pocket_depth: self.pocket_depth.unwrap_or(PAPER_DEPTH) * d,
+            tries_depths: self.pocket_depth.is_none(),
             tolerance: self.tolerance * d,
             min_pocket_area: self.min_pocket_area * w * w,
             min_pocket_length: pocket * w,
@@ -66,7 +71,8 @@ impl HybridSection {
             scan_along: self.scan_along,
             order: self.order,
             end_overlap: self.end_overlap * w,
-            tip_reach: self.tip_reach,
+            tip_reach: self.tip_reach.unwrap_or_default(),
+            tries_reaches: self.tip_reach.is_none(),
             width_limits: (self.min_width * w, self.max_width * w),
         }
     }

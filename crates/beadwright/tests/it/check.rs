@@ -171,7 +171,9 @@ const FAULTS: [Fault; 20] = [
 
 #[test]
 fn every_seeded_fault_is_found() {
-    let profile = profile_by("cmt-al2319-kuka", "hybrid");
+    let mut profile = profile_by("cmt-al2319-kuka", "hybrid");
+    // Several passes a layer.
+    profile.hybrid.pocket_depth = Some(1.5);
     let clean = planned("cross", &profile, 4);
     for (what, seed, check) in FAULTS {
         let (mut layers, mut profile) = (clean.clone(), profile.clone());

