@@ -2,8 +2,8 @@
 //! for each strategy with its picture and its figures.
 //!
 //! `cargo bench -p beadwright --bench strategies` writes the table into docs/strategies.md, the figures into the pages of
-//! docs/strategies, both between the two marks there, and the pictures into docs/pictures/strategies. Each cell has the
-//! worst of the three angles. `-- --parts star --strategies mat` prints only these and writes nothing, `-- --pictures`
+//! docs/strategies, those of the propeller into README.md and docs/book/choosing.md, all between two marks, and the pictures
+//! into docs/pictures/strategies. Each cell has the worst of the three angles. `-- --parts star --strategies mat` prints only these and writes nothing, `-- --pictures`
 //! draws only the pictures. plate_holes.stl is read from `BEADWRIGHT_MODELS` (default ../shared/models).
 #![allow(clippy::unwrap_used, missing_docs)]
 
@@ -20,6 +20,23 @@ const PARTS: [(&str, f64); 5] =
     [("cross", 1.0), ("star", 1.0), ("gear", 1.0), ("propeller", 1.0), ("plate_holes.stl", 0.7)];
 const TURNS: [f64; 3] = [0.0, 10.0, 37.0];
 const HEAD: &str = "void % | worst layer | overfill % | arc starts | bead m | turns | time min | refilled | left out |";
+/// The rows of README.md: the method as the table names it, and whose it is.
+const README: [(&str, &str); 8] = [
+    ("loop", "ours"),
+    ("hybrid", "ours, after Zhao et al. 2023"),
+    ("mat", "Ding et al. 2016"),
+    (LITERAL, "Zhao et al. 2023"),
+    ("contour", "slicers"),
+    ("spiral", "Park et al. 2003"),
+    ("compound", "Liu et al. 2022"),
+    ("zigzag", "Han et al. 2018"),
+];
+/// The rows of docs/book/choosing.md.
+const CHOOSING: [&str; 8] = ["loop", "hybrid", LITERAL, "spiral", "contour", "compound", "zigzag", "raster"];
+/// The hybrid as its paper describes it.
+const LITERAL: &str = "hybrid --literal";
+/// The cells of a row that the short tables have: void, overfill, arc starts, time.
+const SHORT: [usize; 4] = [0, 2, 3, 6];
 /// Index of the layer that is drawn, from 0.
 const DRAWN: usize = 4;
 
@@ -33,19 +50,26 @@ fn main() {
     if words.iter().any(|word| word == "--pictures") {
         return pictures(&profile);
     }
-    let mut rows: Vec<(String, StrategyName, String)> = Vec::new();
+    let mut literal = profile.clone();
+    literal.hybrid.literal = true;
+    let mut methods: Vec<(String, StrategyName, &Profile)> =
+        StrategyName::ALL.iter().map(|&strategy| (strategy.to_string(), strategy, &profile)).collect();
+    methods.push((LITERAL.to_owned(), StrategyName::Hybrid, &literal));
+    let mut rows: Vec<Row> = Vec::new();
     for (name, scale) in PARTS.into_iter().filter(|part| chosen(given("--parts"), part.0)) {
         let mesh = mesh(name);
         let part = if scale == 1.0 { name.to_owned() } else { format!("{name} × {scale}") };
-        for &strategy in StrategyName::ALL.iter().filter(|s| chosen(given("--strategies"), s.name())) {
-            let worst = TURNS.map(|turn| row(&mesh, scale, turn, strategy, &profile)).into_iter();
+        for (method, strategy, profile) in
+            methods.iter().filter(|method| chosen(given("--strategies"), method.1.name()))
+        {
+            let worst = TURNS.map(|turn| row(&mesh, scale, turn, *strategy, profile)).into_iter();
             let worst = worst.reduce(|a, b| std::array::from_fn(|k| a[k].max(b[k]))).unwrap();
             let [void, layer, over, starts, metres, turns, minutes, refilled, lost] = worst;
             let cells = format!(
                 "{void:.2} | {layer:.2} | {over:.2} | {starts:.1} | {metres:.2} | {turns:.0} | {minutes:.1} | {refilled:.0} | {lost:.0} |"
             );
-            println!("{part} | {strategy} | {cells}");
-            rows.push((part.clone(), strategy, cells));
+            println!("{part} | {method} | {cells}");
+            rows.push(Row { part: part.clone(), method: method.clone(), strategy: *strategy, cells });
         }
     }
     if given("--parts").or(given("--strategies")).is_none() {
@@ -54,22 +78,44 @@ fn main() {
     }
 }
 
-/// Writes the common table, and the figures of each strategy into its page.
-fn write(rows: &[(String, StrategyName, String)]) {
+/// What a method does to a part.
+struct Row {
+    part: String,
+    method: String,
+    strategy: StrategyName,
+    cells: String,
+}
+
+/// Writes the common table, and the figures of each strategy into its page, and those of the propeller where they are shown.
+fn write(rows: &[Row]) {
     let mut common = String::new();
-    for of_part in rows.chunk_by(|a, b| a.0 == b.0) {
-        let lines: Vec<_> = of_part
-            .iter()
-            .map(|(_, strategy, cells)| (format!("[{strategy}](strategies/{strategy}.md)"), cells))
-            .collect();
-        common += &table(&of_part[0].0, lines.iter().map(|(name, cells)| (name.as_str(), cells.as_str())));
+    for of_part in rows.chunk_by(|a, b| a.part == b.part) {
+        let name = |row: &Row| format!("[{}](strategies/{}.md)", row.method, row.strategy);
+        let lines: Vec<_> = of_part.iter().map(|row| (name(row), &row.cells)).collect();
+        common += &table(&of_part[0].part, lines.iter().map(|(name, cells)| (name.as_str(), cells.as_str())));
     }
     fill("strategies.md", "table", &common);
     for &strategy in StrategyName::ALL {
-        let own = rows.iter().filter(|row| row.1 == strategy);
-        let figures = table("part", own.map(|(part, _, cells)| (part.as_str(), cells.as_str())));
+        let own = rows.iter().filter(|row| row.method == strategy.name());
+        let figures = table("part", own.map(|row| (row.part.as_str(), row.cells.as_str())));
         fill(&format!("strategies/{strategy}.md"), "figures", &figures);
     }
+    let propeller = |method: &str| rows.iter().find(|row| row.part == "propeller" && row.method == method).unwrap();
+    let readme = README.map(|(method, whose)| format!("| {method} | {whose} | {} |\n", short(propeller(method))));
+    let head = "| strategy | method of | void % | overfill % | arc starts | time min |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
+    fill("../README.md", "propeller", &(head.to_owned() + &readme.concat()));
+    let choosing = CHOOSING
+        .map(propeller)
+        .map(|row| format!("| [{}](../strategies/{}.md) | {} |\n", row.method, row.strategy, short(row)));
+    let head =
+        "| | void % | overfill % | arc starts a layer | time min a layer |\n| --- | ---: | ---: | ---: | ---: |\n";
+    fill("book/choosing.md", "propeller", &(head.to_owned() + &choosing.concat()));
+}
+
+/// The cells of the short tables.
+fn short(row: &Row) -> String {
+    let cells: Vec<&str> = row.cells.split('|').map(str::trim).collect();
+    SHORT.map(|k| cells[k]).join(" | ")
 }
 
 fn table<'a>(corner: &str, rows: impl Iterator<Item = (&'a str, &'a str)>) -> String {
