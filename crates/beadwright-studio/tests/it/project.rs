@@ -3,7 +3,7 @@
 use beadwright::files::Folder;
 use beadwright::model::{Placement, Units};
 use beadwright::profile::{BUILT_IN, Profile, edit};
-use beadwright_studio::form::{self, Kind};
+use beadwright_studio::form::{self, Kind, Parsed};
 use beadwright_studio::history::History;
 use beadwright_studio::project::{Project, ProjectError, Source};
 use beadwright_studio::settings::{Settings, Store};
@@ -103,6 +103,23 @@ fn collect(path: &str, value: &toml::Value, leaves: &mut Vec<String>) {
             collect(&path, value, leaves);
         }),
         _ => leaves.push(path.to_owned()),
+    }
+}
+
+#[test]
+fn a_number_may_be_left_out_and_given_by_hand() {
+    for key in ["hybrid.pocket_depth", "hybrid.tip_reach"] {
+        let parsed = Parsed::of(BUILT_IN[0].1).unwrap();
+        let field = form::field(key).unwrap();
+        assert!(field.optional && field.kind == (Kind::Number { whole: false }), "{field:?}");
+        assert_eq!(form::value(&parsed.values, key), None, "{key}");
+        // What the form puts in at first is possible.
+        let start = form::limit(&parsed.limits, key).unwrap().value;
+        let given = edit::with_value(&parsed.text, key, &start.to_string()).unwrap();
+        let given = Parsed::of(&given).unwrap();
+        assert_eq!(form::value(&given.values, key).and_then(|value| value.as_float()), Some(start), "{key}");
+        let without = edit::without_value(&given.text, key).unwrap();
+        assert_eq!(Parsed::of(&without).unwrap().profile, parsed.profile, "{key}");
     }
 }
 
