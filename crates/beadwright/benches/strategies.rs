@@ -101,7 +101,14 @@ fn write(rows: &[Row]) {
         fill(&format!("strategies/{strategy}.md"), "figures", &figures);
     }
     let propeller = |method: &str| rows.iter().find(|row| row.part == "propeller" && row.method == method).unwrap();
-    let readme = README.map(|(method, whose)| format!("| {method} | {whose} | {} |\n", short(propeller(method))));
+    let readme = README.map(|(method, whose)| {
+        let cells = short(propeller(method));
+        // The default stands out.
+        match method {
+            "loop" => format!("| **{method}** | {whose} | **{}** |\n", cells.replace(" | ", "** | **")),
+            _ => format!("| {method} | {whose} | {cells} |\n"),
+        }
+    });
     let head = "| strategy | method of | void % | overfill % | arc starts | time min |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
     fill("../README.md", "propeller", &(head.to_owned() + &readme.concat()));
     let choosing = CHOOSING
