@@ -205,6 +205,7 @@ fn the_hybrid_leaves_a_fifth_of_the_voids_of_contours_with_no_more_starts_and_ha
             assert!(5.0 * a <= b, "{name} at {turn}°: void {a} %, contours {b} %");
             let (a, b) = (hybrid.overfill_percent(), contour.overfill_percent());
             assert!(a <= b + 2.0, "{name} at {turn}°: overfill {a} %, contours {b} %");
+            assert!(hybrid.outside_percent() < 0.01, "{name} at {turn}°: {} % outside", hybrid.outside_percent());
         }
     }
 }
