@@ -138,8 +138,8 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Runs all steps. By default the regions, and what the settings leave open, are those that [`choose`] finds best; there
-    /// are never more passes than contours alone would have.
+    /// Runs all steps. By default the deposit model chooses the regions, and what the settings leave open; there are never
+    /// more passes than contours alone would have.
     pub fn of(island: &Polygon, settings: &FillSettings) -> Self {
         if !settings.hybrid.literal {
             return choose::best(island, settings);
