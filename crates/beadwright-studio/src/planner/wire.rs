@@ -44,7 +44,7 @@ enum Body {
         units: Option<Units>,
         objects: Vec<Object>,
         notes: Vec<String>,
-        milled: Option<Milled>,
+        milled: Option<Box<Milled>>,
     },
     Curves {
         curves: WallCurves,

@@ -51,7 +51,7 @@ impl Stocked {
         let mut mesh = std::mem::replace(&mut import.mesh, preform.mesh());
         mesh.vertices.iter_mut().for_each(|vertex| vertex.z += preform.lift);
         let milled = Milled { stock: faces::stock(&mesh, &preform, settings.plate), mesh };
-        Ok(Self { part: Part::Mesh(Import { milled: Some(milled), ..import }), preform, figures })
+        Ok(Self { part: Part::Mesh(Import { milled: Some(Box::new(milled)), ..import }), preform, figures })
     }
 }
 

@@ -90,7 +90,7 @@ pub struct Import {
     /// What was passed over, as sentences.
     pub notes: Vec<String>,
     /// Of a preform, what is milled from it.
-    pub milled: Option<Milled>,
+    pub milled: Option<Box<Milled>>,
 }
 
 /// A part that is milled from its preform.

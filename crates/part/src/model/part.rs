@@ -347,7 +347,7 @@ impl Part {
     /// Of a preform, what is milled from it.
     pub fn milled(&self) -> Option<&Milled> {
         match self {
-            Self::Mesh(import) => import.milled.as_ref(),
+            Self::Mesh(import) => import.milled.as_deref(),
             Self::Curves { .. } => None,
         }
     }
