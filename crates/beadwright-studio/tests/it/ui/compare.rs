@@ -120,6 +120,9 @@ fn the_steps_of_both_strategies_are_seen() {
         return;
     }
     let (_folder, mut harness) = planned("cross");
+    // Left to itself, the hybrid fills no region of the cross.
+    harness.state_mut().set_value("hybrid.pocket_depth", "1.5");
+    wait(&mut harness);
     harness.state_mut().compare_with(Some(StrategyName::Hybrid));
     wait(&mut harness);
     press(&mut harness, Key::F4);
