@@ -23,7 +23,7 @@ const PARTS: [(&str, [f64; 2]); 10] = [
     ("gourd", [90.0, 0.0]),
     ("gear", [0.0, 70.0]),
     ("tian", [45.0, 45.0]),
-    ("spider_ascii.stl", [0.0, 0.0]),
+    ("openthruster_prop_cw.stl", [0.0, 0.0]),
     ("supportless_sample.stl", [0.0, 0.0]),
     ("branches16.stl", [0.0, 0.0]),
     ("pulley_t30.stl", [20.0, 0.0]),

@@ -291,6 +291,13 @@ fn untold(layer: &Layer) -> Option<String> {
         .then(|| format!("layer {}: {covered:.1} covered, {said:.1} said", layer.index))
 }
 
+/// Rings in rings: thin strips along their edges stay bare, and rows along an edge would count them in whole rows.
+#[test]
+fn bare_strips_along_the_edges_of_polygons_are_measured_as_they_are() {
+    let fault = wrong(&islands(7, 8011), &profile_by("cmt-al2319-kuka", "contour"));
+    assert_eq!(fault, None);
+}
+
 /// `BEADWRIGHT_PARTS=2000` tries so many parts, `BEADWRIGHT_SEED=1000` others.
 #[test]
 fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {
