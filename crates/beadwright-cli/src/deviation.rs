@@ -1,6 +1,6 @@
 //! `beadwright deviation`: how far a scan of the built part lies from the part.
 
-use crate::{file, model, preform, profile, progress};
+use crate::{file, model, profile, progress};
 use anyhow::Context;
 use beadwright::adapt::scan;
 use beadwright::deviation::{Deviation, Doubt, Figures, deviation};
@@ -33,8 +33,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
     let use_as = if arguments.preform { model::Use::Preform } else { model::Use::AsDrawn };
-    let part = arguments.model.placed(&profile, use_as, &task)?;
-    let part = if arguments.preform { preform::milled(part, &profile, &task)? } else { part.mesh };
+    let mut part = arguments.model.placed(&profile, use_as, &task)?.mesh;
+    if arguments.preform {
+        let lift = profile.preform_settings().lift();
+        part.vertices.iter_mut().for_each(|vertex| vertex.z += lift);
+    }
     let context = || format!("{}", arguments.scan.display());
     let mut scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
     let millimetres = arguments.scan_units.in_mm();

@@ -155,12 +155,6 @@ pub(crate) fn of_part(part: Part, profile: &Profile, task: &Task) -> anyhow::Res
     Ok(part)
 }
 
-/// A solid as it lies in its preform.
-pub(crate) fn milled(import: Import, profile: &Profile, task: &Task) -> anyhow::Result<Mesh> {
-    let stocked = Stocked::of(Part::Mesh(import), profile, task).map_err(refused)?;
-    Ok(stocked.part.milled().map(|milled| milled.mesh.clone()).unwrap_or_default())
-}
-
 /// Why there is no preform, and what to do.
 fn refused(error: PlanError<Infallible>) -> anyhow::Error {
     let remedy = remedy::of_plan(&error).unwrap_or_default();
