@@ -5,7 +5,7 @@ use anyhow::Context;
 use beadwright::Profile;
 use beadwright::export::solids;
 use beadwright::glam::DVec3;
-use beadwright::model::{Import, Mesh, Part, stl};
+use beadwright::model::{Mesh, Part, stl};
 use beadwright::plan::PlanError;
 use beadwright::plan::stock::{Stocked, is_closed};
 use beadwright::preform::Preform;
@@ -39,23 +39,23 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
-    let Import { mesh: mut part, .. } = arguments.model.placed(&profile, model::Use::Preform, &task)?;
-    is_closed(&part, &profile).map_err(refused).with_context(|| format!("{}", arguments.model.model.display()))?;
-    let settings = profile.preform_settings();
-    let rates = profile.preform_rates();
+    let import = arguments.model.placed(&profile, model::Use::Preform, &task)?;
+    let context = || format!("{}", arguments.model.model.display());
+    is_closed(&import.mesh, &profile).map_err(refused).with_context(context)?;
+    let (settings, rates) = (profile.preform_settings(), profile.preform_rates());
     // The one goes from step to step, the other looks at many ways up at once.
-    let (preform, ways) =
-        rayon::join(|| Preform::of(&part, &settings, &task), || orient::best(&part, &settings, &rates, &task));
-    let (preform, ways) = (preform?, ways?);
-    let now = Oriented::of(&part, DVec3::NEG_Z, &settings, &rates, &task)?;
+    let (stocked, ways) = rayon::join(
+        || Stocked::of(Part::Mesh(import.clone()), &profile, &task),
+        || orient::best(&import.mesh, &settings, &rates, &task),
+    );
+    let (Stocked { part, preform, figures }, ways) = (stocked.map_err(refused)?, ways?);
+    let now = Oriented::of(&import.mesh, DVec3::NEG_Z, &settings, &rates, &task)?;
     bar.finish_and_clear();
-    let figures = Figures::of(&part, &preform, &settings, &rates);
-    let mesh = preform.mesh();
-    part.vertices.iter_mut().for_each(|vertex| vertex.z += preform.lift);
+    let (mesh, milled) = part.mesh().zip(part.milled()).context("only solids have a preform")?;
 
     let path = arguments.output.clone().unwrap_or_else(|| format!("{}_preform.stl", arguments.model.part()).into());
     let bytes = match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("3mf")) {
-        true => solids::threemf(&[("preform", &mesh), ("part", &part)])?,
+        true => solids::threemf(&[("preform", mesh), ("part", &milled.mesh)])?,
         false => {
             let corners = |t: &[u32; 3]| t.map(|corner| mesh.vertices[corner as usize]);
             stl::write(&format!("preform of {}", arguments.model.part()), mesh.triangles.iter().map(corners))
@@ -63,8 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     file::write(&path, &bytes)?;
     if let Some(path) = &arguments.faces {
-        let stock = faces::stock(&part, &preform, settings.plate);
-        file::write(path, table(&faces::faces(&part, &stock)).as_bytes())?;
+        file::write(path, table(&faces::faces(&milled.mesh, &milled.stock)).as_bytes())?;
     }
 
     if arguments.json {
@@ -157,6 +156,12 @@ pub(crate) fn of_part(part: Part, profile: &Profile, task: &Task) -> anyhow::Res
 
 /// Why there is no preform, and what to do.
 fn refused(error: PlanError<Infallible>) -> anyhow::Error {
-    let remedy = remedy::of_plan(&error).unwrap_or_default();
-    anyhow::anyhow!("only solids have a preform: {error} {remedy}")
+    match error {
+        PlanError::Open { .. } => {
+            let remedy = remedy::of_plan(&error).unwrap_or_default();
+            anyhow::anyhow!("only solids have a preform: {error} {remedy}")
+        }
+        PlanError::Cancelled(cancelled) => cancelled.into(),
+        other => other.into(),
+    }
 }

@@ -23,7 +23,7 @@ const PRINTED_SPEED: f64 = 20.0;
 /// Index of the layer that is drawn, from 0.
 const LAYER: usize = 4;
 
-/// Parts are turned about the vertical from 0° to 165° in steps of so many degrees.
+/// Parts are turned about the vertical from 0° to 165° in steps of this many degrees.
 const TURN: usize = 15;
 /// The parts on which our own hybrid is compared with contours.
 const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];

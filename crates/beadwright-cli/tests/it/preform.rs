@@ -88,5 +88,17 @@ fn curves_and_open_surfaces_have_no_preform() {
     assert!(run(folder.path(), &["example", "gourd", "-o", "gourd.igs"]).status.success());
     let refused = run(folder.path(), &["plan", "gourd.igs", "--height", "20", "--preform"]);
     let why = String::from_utf8(refused.stderr).unwrap();
-    assert!(refused.status.code() == Some(1) && why.contains("only solids have a preform"), "{why}");
+    let once = |why: &str| why.matches("only solids have a preform").count() == 1;
+    assert!(refused.status.code() == Some(1) && once(&why), "{why}");
+    table(folder.path());
+    let whole = fs::read_to_string(folder.path().join("table.stl")).unwrap();
+    // Without the upper face of its top.
+    let facets: Vec<&str> = whole.split_inclusive("endfacet\n").collect();
+    fs::write(folder.path().join("open.stl"), [&facets[..14], &facets[16..]].concat().concat()).unwrap();
+    for command in [["preform", "open.stl"].as_slice(), &["plan", "open.stl", "--preform"]] {
+        let refused = run(folder.path(), command);
+        let why = String::from_utf8(refused.stderr).unwrap();
+        assert!(refused.status.code() == Some(1) && once(&why) && why.contains("--surface solid"), "{why}");
+    }
+    assert!(!folder.path().join("open_preform.stl").exists());
 }

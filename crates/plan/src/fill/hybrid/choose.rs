@@ -18,7 +18,7 @@ const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 const DEPTHS: [f64; 2] = [1.0, 1.5];
 /// Reaches of corners that are tried. The regions are chosen with the first one, the others are tried on the best.
 const REACHES: [f64; 3] = [0.4, 0.9, 1.0];
-/// Overfill may exceed that of contours by so many percentage points of the judged area. The goal is two; grids of few
+/// Overfill may exceed that of contours by this many percentage points of the judged area. The goal is two; grids of few
 /// points are less exact.
 const MORE_OVERFILL: f64 = 1.9;
 /// Overfill beyond that counts this many times as much as void.

@@ -122,7 +122,7 @@ fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Path> {
 
 /// Zigzags at these angles to the side of the rectangle are compared, °.
 const LEANS: [f64; 9] = [0.0, -5.0, 5.0, -10.0, 10.0, -15.0, 15.0, -20.0, 20.0];
-/// So many of the best take turns from layer to layer.
+/// How many of the best take turns from layer to layer.
 const TAKE_TURNS: usize = 3;
 /// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this fraction of its width.
 const HIGH: f64 = 0.8;
