@@ -41,7 +41,7 @@ pub mod simulate;
 
 #[doc(hidden)]
 pub use bead_part::{curve, deviation, finding, task, text, warning};
-pub use bead_part::{example, model, slice};
+pub use bead_part::{chart, example, model, slice};
 use bead_plan::random;
 pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]

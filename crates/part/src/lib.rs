@@ -2,6 +2,7 @@
 //!
 //! | module | what it holds |
 //! | --- | --- |
+//! | [`chart`] | layers that are not level: around an axis, on a cone, square to any direction |
 //! | [`curve`] | NURBS curves, fits and lengths |
 //! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
@@ -11,6 +12,7 @@
 //! | [`task`] | progress and cancelling |
 //! | [`text`] | encodings and line ends |
 
+pub mod chart;
 pub mod curve;
 pub mod deviation;
 pub mod example;

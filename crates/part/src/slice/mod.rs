@@ -14,6 +14,7 @@
 mod close;
 mod trace;
 
+use crate::chart::{Chart, seam};
 use crate::model::Mesh;
 use crate::model::wall_curves::Section;
 use crate::task::{Cancelled, Stage, Task};
@@ -166,6 +167,8 @@ pub fn even_slabs(mesh: &Mesh, height: f64) -> Vec<Slab> {
 /// ```
 pub struct Slicer<'a> {
     mesh: &'a Mesh,
+    /// The chart in whose coordinates the mesh is, where its layers are not planes.
+    chart: Option<&'a Chart>,
     options: SliceOptions,
     slabs: Vec<Slab>,
     /// Height of each plane, mm.
@@ -223,7 +226,12 @@ impl<'a> Slicer<'a> {
             }
         }
         starts.pop();
-        Ok(Self { mesh, options, slabs, planes, levels, starts, items, scratch: Mutex::default() })
+        Ok(Self { mesh, chart: None, options, slabs, planes, levels, starts, items, scratch: Mutex::default() })
+    }
+
+    /// The same for a mesh in the coordinates of a chart ([`crate::chart::warp`]): islands are put together across the seam.
+    pub fn on(self, chart: &'a Chart) -> Self {
+        Self { chart: chart.goes_around().then_some(chart), ..self }
     }
 
     /// Number of layers.
@@ -333,7 +341,13 @@ impl<'a> Slicer<'a> {
         let rings: Vec<Ring> = rings.into_iter().filter_map(|r| planar::polyline::simplify_ring(r, simplify)).collect();
         let region = Region::from_rings(&rings, FillRule::NonZero);
         layer.warnings.extend(area_balance(index, &rings, &region));
-        layer.islands = region.into_polygons();
+        layer.islands = match self.chart {
+            None => region.into_polygons(),
+            Some(chart) => {
+                let (cut, middle) = (chart.sheet(self.planes[index]), chart.sheet(z - height / 2.0));
+                seam::joined(region.into_polygons(), &cut, &middle)
+            }
+        };
         drop_slivers(&mut layer);
         layer
     }

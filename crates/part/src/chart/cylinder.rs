@@ -1,0 +1,81 @@
+//! Layers around an axis: bosses and flanges on a shaft, blades on a hub, the overlay of a pipe, outside or inside.
+//!
+//! u = angle × radius at the layer's middle, v runs along the axis, h is the distance from the radius at which the build begins.
+
+use super::At;
+use super::polar::{Around, Axes, Polar};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// Layers around an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cylinder {
+    /// A point on the axis, at which v is 0, mm.
+    pub through: DVec3,
+    /// Unit vector along the axis.
+    pub axis: DVec3,
+    /// Radius at which the build begins, mm.
+    pub radius: f64,
+    /// On which side layers are laid.
+    pub side: Side,
+    /// Angle at which layers are cut open and unrolled, rad; about an axis along z it is counted from x.
+    pub seam: f64,
+}
+
+/// The side of a surface on which layers are laid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Away from the axis.
+    #[default]
+    Outer,
+    /// Towards the axis.
+    Inner,
+}
+
+impl Side {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Outer => 1.0,
+            Self::Inner => -1.0,
+        }
+    }
+}
+
+impl Cylinder {
+    fn axes(&self) -> Axes {
+        Axes::new(self.axis, self.seam)
+    }
+
+    fn radius_at(&self, height: f64) -> f64 {
+        self.radius + self.side.sign() * height
+    }
+}
+
+impl Polar for Cylinder {
+    fn around(&self, p: DVec3) -> Around {
+        let from = p - self.through;
+        let (angle, radius) = self.axes().polar(from);
+        Around { angle, along: from.dot(self.axis), height: self.side.sign() * (radius - self.radius) }
+    }
+
+    fn at(&self, angle: f64, along: f64, height: f64) -> At {
+        let [outward, around] = self.axes().outward_and_around(angle);
+        let sign = self.side.sign();
+        let place = self.through + self.axis * along + outward * self.radius_at(height);
+        // Seen along the normal, u and v are turned as x and y are seen from above.
+        At { place, along: [around * sign, self.axis], normal: outward * sign }
+    }
+
+    fn unrolled(&self, angle: f64, along: f64, middle: f64) -> DVec2 {
+        DVec2::new(self.side.sign() * angle * self.radius_at(middle), along)
+    }
+
+    fn rolled(&self, p: DVec2, middle: f64) -> (f64, f64) {
+        (self.side.sign() * p.x / self.radius_at(middle), p.y)
+    }
+
+    fn risen(&self, angle: f64, along: f64, _rise: f64) -> (f64, f64) {
+        (angle, along)
+    }
+}

@@ -1,0 +1,228 @@
+//! Charts: how the layers of a part lie in space, where they are not level.
+//!
+//! A chart gives each point of space coordinates (u, v, h): h is the height over the surface on which the build begins, (u, v)
+//! are millimetres on a layer. A layer of a plan is a plane in the chart, so that everything between slicing and welding
+//! sees level layers; [`Sheet`] takes its points back to space.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | `plane` | level layers, and layers square to any direction |
+//! | `cylinder` | layers around an axis, outwards or inwards |
+//! | `cone` | layers on a cone |
+//! | `polar` | what layers around an axis have in common: angles, and where a turn ends |
+//! | [`warp`] | a mesh in the coordinates of a chart |
+//! | [`seam`] | islands that cross the line at which a layer is unrolled |
+//! | `text` | charts as people write them: `cylinder:axis=z,radius=36` |
+
+mod cone;
+mod cylinder;
+mod plane;
+mod polar;
+pub mod seam;
+mod text;
+pub mod warp;
+
+pub use cone::Cone;
+pub use cylinder::{Cylinder, Side};
+pub use plane::Plane;
+pub use text::ChartError;
+
+use glam::{DVec2, DVec3};
+use polar::Polar;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+
+/// How the layers of a part lie in space. By default they are level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Chart {
+    /// Planes square to a direction.
+    Plane(Plane),
+    /// Cylinders around an axis.
+    Cylinder(Cylinder),
+    /// Cones around an axis.
+    Cone(Cone),
+}
+
+impl Default for Chart {
+    fn default() -> Self {
+        Self::Plane(Plane::default())
+    }
+}
+
+/// A point of a layer in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct At {
+    /// mm
+    pub place: DVec3,
+    /// Unit vectors along which u and v grow.
+    pub along: [DVec3; 2],
+    /// Unit vector out of the layer, along which h grows.
+    pub normal: DVec3,
+}
+
+/// One layer of a chart. Lengths on it are true at its middle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sheet<'a> {
+    chart: &'a Chart,
+    /// mm
+    middle: f64,
+}
+
+impl Chart {
+    /// Whether layers are level and h is z: the part's coordinates are those of the chart.
+    pub fn is_level(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Whether layers lie around an axis.
+    pub fn goes_around(&self) -> bool {
+        self.polar().is_some()
+    }
+
+    /// The name that people type.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Plane(_) => "plane",
+            Self::Cylinder(_) => "cylinder",
+            Self::Cone(_) => "cone",
+        }
+    }
+
+    /// The layer with this middle, mm.
+    pub fn sheet(&self, middle: f64) -> Sheet<'_> {
+        Sheet { chart: self, middle }
+    }
+
+    /// The coordinates of a point of space, unrolled at its own height; angles lie within half a turn of where a layer begins.
+    ///
+    /// ```
+    /// use bead_part::chart::Chart;
+    /// use glam::DVec3;
+    /// use std::f64::consts::FRAC_PI_2;
+    ///
+    /// // Layers around the z axis, from a radius of 20 mm on.
+    /// let chart: Chart = "cylinder:axis=z,radius=20".parse()?;
+    /// let at = chart.coordinates(DVec3::new(0.0, 30.0, 7.0));
+    /// assert!(at.distance(DVec3::new(FRAC_PI_2 * 30.0, 7.0, 10.0)) < 1e-12);
+    /// # Ok::<(), bead_part::chart::ChartError>(())
+    /// ```
+    pub fn coordinates(&self, p: DVec3) -> DVec3 {
+        match self.polar() {
+            None => self.plane().coordinates(p),
+            Some(polar) => {
+                let around = polar.around(p);
+                polar.unrolled(around.angle, around.along, around.height).extend(around.height)
+            }
+        }
+    }
+
+    /// How layers around an axis are unrolled; none where they are planes.
+    fn polar(&self) -> Option<&dyn Polar> {
+        match self {
+            Self::Plane(_) => None,
+            Self::Cylinder(cylinder) => Some(cylinder),
+            Self::Cone(cone) => Some(cone),
+        }
+    }
+
+    fn plane(&self) -> Plane {
+        match self {
+            Self::Plane(plane) => *plane,
+            _ => Plane::default(),
+        }
+    }
+}
+
+impl Sheet<'_> {
+    /// A point with these coordinates in space.
+    pub fn at(&self, p: DVec3) -> At {
+        match self.chart.polar() {
+            None => self.chart.plane().at(p),
+            Some(polar) => {
+                let (angle, along) = polar.rolled(p.truncate(), self.middle);
+                let (angle, along) = polar.risen(angle, along, p.z - self.middle);
+                polar.at(angle, along, p.z)
+            }
+        }
+    }
+
+    /// The coordinates of a point of space, within half a turn of `near`.
+    pub fn coordinates(&self, p: DVec3, near: DVec2) -> DVec3 {
+        match self.chart.polar() {
+            None => self.chart.plane().coordinates(p),
+            Some(polar) => {
+                let around = polar.around(p);
+                let (nearest, _) = polar.rolled(near, self.middle);
+                let (angle, along) = polar.risen(around.angle, around.along, self.middle - around.height);
+                polar.unrolled(polar::near(angle, nearest), along, self.middle).extend(around.height)
+            }
+        }
+    }
+
+    /// Where a point of another layer lies over or under this one, along the normal.
+    pub fn across(&self, p: DVec2, from: &Sheet<'_>) -> DVec2 {
+        let Some(polar) = self.chart.polar() else { return p };
+        let (angle, along) = polar.rolled(p, from.middle);
+        let (angle, along) = polar.risen(angle, along, self.middle - from.middle);
+        polar.unrolled(angle, along, self.middle)
+    }
+
+    /// The same place some turns further around the axis; `None` where layers do not go around one.
+    pub fn turned(&self, p: DVec2, turns: f64) -> Option<DVec2> {
+        let polar = self.chart.polar()?;
+        let (angle, along) = polar.rolled(p, self.middle);
+        Some(polar.unrolled(angle + turns * TAU, along, self.middle))
+    }
+
+    /// Where a point lies along the seam at this angle (rad), mm; `None` where it is farther from it than `within` (mm).
+    fn on_seam(&self, p: DVec2, angle: f64, within: f64) -> Option<f64> {
+        let polar = self.chart.polar()?;
+        let (_, along) = polar.rolled(p, self.middle);
+        (polar.unrolled(angle, along, self.middle).distance(p) <= within).then_some(along)
+    }
+
+    /// A point some turns further on; one within `within` (mm) of a seam is also moved over it, by `over` (mm).
+    fn over_seam(&self, p: DVec2, turns: f64, within: f64, over: f64) -> DVec2 {
+        let Some(polar) = self.chart.polar() else { return p };
+        let (angle, along) = polar.rolled(p, self.middle);
+        let side = [1.0, -1.0].into_iter().find(|side| self.on_seam(p, side * PI, within).is_some()).unwrap_or(0.0);
+        let further = |by: f64| polar.unrolled(angle + turns * TAU + by, along, self.middle);
+        // Length of a small turn, mm.
+        let around = further(SMALL_TURN).distance(further(0.0));
+        further(side * over / around.max(over) * SMALL_TURN)
+    }
+
+    /// Points between two (without the first, with the last) so close together that straight pieces in space between them
+    /// stay within `tolerance` (mm) of the straight piece in the chart, and normals turn by no more than `angle` (rad) on each.
+    pub fn divided(&self, from: DVec3, to: DVec3, tolerance: f64, angle: f64) -> impl Iterator<Item = DVec3> + use<> {
+        let count = match self.chart.polar() {
+            None => 1,
+            Some(_) => self.pieces(from, to, tolerance, angle),
+        };
+        (1..=count).map(move |k| if k == count { to } else { from.lerp(to, k as f64 / count as f64) })
+    }
+
+    fn pieces(&self, from: DVec3, to: DVec3, tolerance: f64, angle: f64) -> usize {
+        let mut count = 1;
+        let fits = |count: usize| {
+            let end = |k: usize| self.at(from.lerp(to, k as f64 / count as f64));
+            // On the layers of these charts the bend of a straight line changes steadily along it: its ends are the worst.
+            [0, count - 1].into_iter().all(|k| {
+                let (a, b) = (end(k), end(k + 1));
+                let middle = self.at(from.lerp(to, (k as f64 + 0.5) / count as f64)).place;
+                a.normal.angle_between(b.normal) <= angle && middle.distance(a.place.midpoint(b.place)) <= tolerance
+            })
+        };
+        while count < MOST_PIECES && !fits(count) {
+            count *= 2;
+        }
+        count
+    }
+}
+
+/// A straight piece is never divided into more than this.
+const MOST_PIECES: usize = 1 << 16;
+
+/// rad
+const SMALL_TURN: f64 = 1e-3;

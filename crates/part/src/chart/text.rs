@@ -1,0 +1,166 @@
+//! Charts as people write them: a name, then keys and values, such as `cylinder:axis=z,radius=36`.
+
+use super::{Chart, Cone, Cylinder, Plane, Side};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::str::FromStr;
+
+/// Why a chart cannot be read.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ChartError {
+    /// No such chart.
+    #[error("\"{0}\" is no kind of layers: write plane, cylinder or cone, such as cylinder:axis=z,radius=36")]
+    Kind(String),
+    /// No such key.
+    #[error("a {kind} has no \"{key}\": it takes {known}")]
+    Key {
+        /// The chart.
+        kind: &'static str,
+        /// What was written.
+        key: String,
+        /// What may be written.
+        known: &'static str,
+    },
+    /// A key without a value.
+    #[error("\"{0}\" is no KEY=VALUE, such as axis=z")]
+    Pair(String),
+    /// A value that cannot be read, or that makes no sense.
+    #[error("{key}={value}: {expected}")]
+    Value {
+        /// The key.
+        key: String,
+        /// What was written.
+        value: String,
+        /// What may be written.
+        expected: &'static str,
+    },
+    /// A value that must be given.
+    #[error("a {kind} needs {key}: {why}")]
+    Missing {
+        /// The chart.
+        kind: &'static str,
+        /// The key.
+        key: &'static str,
+        /// What it says.
+        why: &'static str,
+    },
+}
+
+const PLANE: &str = "up and through";
+const CYLINDER: &str = "axis, through, radius, side and seam";
+const CONE: &str = "axis, tip, angle and seam";
+
+impl FromStr for Chart {
+    type Err = ChartError;
+
+    fn from_str(text: &str) -> Result<Self, ChartError> {
+        let (name, values) = text.split_once(':').unwrap_or((text, ""));
+        match name.trim() {
+            "plane" => {
+                let given = Given::new("plane", PLANE, values, &["up", "through"])?;
+                Ok(Self::Plane(Plane { up: given.direction("up")?, origin: given.place("through")? }))
+            }
+            "cylinder" => {
+                let keys = ["axis", "through", "radius", "side", "seam"];
+                let given = Given::new("cylinder", CYLINDER, values, &keys)?;
+                Ok(Self::Cylinder(Cylinder {
+                    axis: given.direction("axis")?,
+                    through: given.place("through")?,
+                    radius: given.radius()?,
+                    side: given.side()?,
+                    seam: given.angle("seam", -360.0..=360.0)?.unwrap_or(PI),
+                }))
+            }
+            "cone" => {
+                let given = Given::new("cone", CONE, values, &["axis", "tip", "angle", "seam"])?;
+                let why = "the angle between its axis and its side, °";
+                let missing = ChartError::Missing { kind: "cone", key: "angle", why };
+                let half_angle = given.angle("angle", 1.0..=89.0)?.ok_or(missing)?;
+                let (axis, tip) = (given.direction("axis")?, given.place("tip")?);
+                let seam = given.angle("seam", -360.0..=360.0)?.unwrap_or(PI);
+                Ok(Self::Cone(Cone { tip, axis, half_angle: half_angle.min(FRAC_PI_2), seam }))
+            }
+            other => Err(ChartError::Kind(other.to_owned())),
+        }
+    }
+}
+
+/// Keys and values as written.
+struct Given<'a> {
+    kind: &'static str,
+    pairs: Vec<(&'a str, &'a str)>,
+}
+
+impl<'a> Given<'a> {
+    fn new(kind: &'static str, known: &'static str, text: &'a str, keys: &[&str]) -> Result<Self, ChartError> {
+        let pair = |pair: &'a str| {
+            let (key, value) = pair.split_once('=').ok_or_else(|| ChartError::Pair(pair.to_owned()))?;
+            let (key, value) = (key.trim(), value.trim());
+            if keys.contains(&key) {
+                Ok((key, value))
+            } else {
+                Err(ChartError::Key { kind, key: key.to_owned(), known })
+            }
+        };
+        let pairs = text.split(',').filter(|pair| !pair.trim().is_empty()).map(pair).collect::<Result<_, _>>()?;
+        Ok(Self { kind, pairs })
+    }
+
+    fn value(&self, key: &str) -> Option<&'a str> {
+        self.pairs.iter().rfind(|(known, _)| *known == key).map(|(_, value)| *value)
+    }
+
+    fn wrong(key: &str, value: &str, expected: &'static str) -> ChartError {
+        ChartError::Value { key: key.to_owned(), value: value.to_owned(), expected }
+    }
+
+    /// A unit vector; that along z where nothing is written.
+    fn direction(&self, key: &str) -> Result<DVec3, ChartError> {
+        let Some(value) = self.value(key) else { return Ok(DVec3::Z) };
+        let (sign, name) = value.strip_prefix('-').map_or((1.0, value), |name| (-1.0, name));
+        let axis = match name {
+            "x" => Some(DVec3::X),
+            "y" => Some(DVec3::Y),
+            "z" => Some(DVec3::Z),
+            _ => None,
+        };
+        let axis = axis.map(|axis| axis * sign).or_else(|| three(value).and_then(DVec3::try_normalize));
+        axis.ok_or_else(|| Self::wrong(key, value, "write x, y, z, -x, -y, -z, or three numbers such as 1/0/0.5"))
+    }
+
+    /// A point, mm; the origin where nothing is written.
+    fn place(&self, key: &str) -> Result<DVec3, ChartError> {
+        let Some(value) = self.value(key) else { return Ok(DVec3::ZERO) };
+        three(value).ok_or_else(|| Self::wrong(key, value, "write x/y/z in mm, such as 0/0/25"))
+    }
+
+    fn radius(&self) -> Result<f64, ChartError> {
+        let why = "that of what the build begins on, mm";
+        let value = self.value("radius").ok_or(ChartError::Missing { kind: self.kind, key: "radius", why })?;
+        let radius = value.parse().ok().filter(|radius| (0.1..=20_000.0).contains(radius));
+        radius.ok_or_else(|| Self::wrong("radius", value, "write mm, 0.1 to 20000"))
+    }
+
+    fn side(&self) -> Result<Side, ChartError> {
+        match self.value("side") {
+            None | Some("outer") => Ok(Side::Outer),
+            Some("inner") => Ok(Side::Inner),
+            Some(other) => Err(Self::wrong("side", other, "write outer or inner")),
+        }
+    }
+
+    /// rad
+    fn angle(&self, key: &str, range: std::ops::RangeInclusive<f64>) -> Result<Option<f64>, ChartError> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let degrees = value.parse().ok().filter(|degrees: &f64| range.contains(degrees));
+        let expected = if key == "seam" { "write degrees, -360 to 360" } else { "write degrees, 1 to 89" };
+        degrees.map(|degrees| Some(degrees.to_radians())).ok_or_else(|| Self::wrong(key, value, expected))
+    }
+}
+
+fn three(text: &str) -> Option<DVec3> {
+    let numbers: Vec<f64> = text.split('/').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
+    let vector = DVec3::from_array(numbers.try_into().ok()?);
+    vector.is_finite().then_some(vector)
+}

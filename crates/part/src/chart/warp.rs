@@ -1,0 +1,277 @@
+//! A mesh in the coordinates of a chart: its triangles are divided until their edges are straight there, too, what lies below
+//! the surface on which the build begins is cut off, and a mesh around an axis is cut open at the seam.
+//!
+//! Between a part and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's underside
+//! are planes.
+
+use super::Chart;
+use super::polar::{Around, Polar, near};
+use crate::model::{Mesh, cut};
+use crate::task::{Cancelled, Task};
+use glam::DVec3;
+use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::{PI, TAU};
+
+/// A mesh in the coordinates of a chart, whose edges lie within `tolerance` (mm) of the true ones. Where nothing lies above the
+/// chart's first layer, nothing is left.
+///
+/// ```
+/// use bead_part::{chart::{Chart, warp}, example, task::Task};
+///
+/// // A cross 20 mm high, of two arms of 100 × 36 mm, unrolled from a radius of 30 mm on: the metal stays as much.
+/// let chart: Chart = "cylinder:axis=z,radius=30".parse()?;
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let unrolled = warp::warped(&chart, &cross, 0.01, &Task::new())?;
+/// let (low, high) = unrolled.bounds();
+/// assert!(low.z == 0.0 && (high.z - (50_f64.hypot(18.0) - 30.0)).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Cancelled`] when the task was.
+pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, Cancelled> {
+    let Some(polar) = chart.polar() else {
+        let mut turned = mesh.clone();
+        turned.vertices.iter_mut().for_each(|vertex| *vertex = chart.coordinates(*vertex));
+        return Ok(above(turned, 0.0));
+    };
+    let divided = Divided::of(mesh, polar, tolerance, task)?;
+    let mut cut = Cut::opened(&divided, polar);
+    let (low, high) = cut.bounds();
+    let middle = low.midpoint(high);
+    // Points to which no edge of the part leads.
+    let under = middle.with_z(low.z.min(0.0) - APEX * SPREAD);
+    cut.clip(Face { axis: 0, up: true, at: -PI * SPREAD }, under);
+    cut.clip(Face { axis: 0, up: false, at: PI * SPREAD }, under);
+    task.check()?;
+    cut.clip(Face { axis: 2, up: true, at: 0.0 }, middle + DVec3::Y * (APEX * SPREAD));
+    cut.vertices.iter_mut().for_each(|p| *p = polar.unrolled(p.x / SPREAD, p.y, p.z).extend(p.z));
+    Ok(Mesh::from_triangles(cut.vertices, cut.triangles).0)
+}
+
+/// Angles as lengths, mm per rad: large enough that vertices close together stay apart.
+const SPREAD: f64 = 100.0;
+/// How far out the tips of closing faces lie, in rad of [`SPREAD`].
+const APEX: f64 = 0.734_209;
+/// Heights this small are those of a part that begins on the first layer's underside, mm.
+const ON_IT: f64 = 1e-6;
+
+/// What lies above a height, mm; the heights stay as they are.
+fn above(mesh: Mesh, z: f64) -> Mesh {
+    if mesh.bounds().0.z >= z {
+        return mesh;
+    }
+    let Some((mut rest, _)) = cut::above(&mesh, z) else { return Mesh::default() };
+    rest.vertices.iter_mut().for_each(|vertex| vertex.z += z);
+    rest
+}
+
+/// A plane square to an axis of the coordinates, and the side of it that is kept.
+#[derive(Clone, Copy)]
+struct Face {
+    axis: usize,
+    up: bool,
+    at: f64,
+}
+
+impl Face {
+    fn keeps(self, p: DVec3) -> bool {
+        if self.up { p[self.axis] >= self.at } else { p[self.axis] <= self.at }
+    }
+
+    fn crossing(self, a: DVec3, b: DVec3) -> DVec3 {
+        let mut crossing = a.lerp(b, (self.at - a[self.axis]) / (b[self.axis] - a[self.axis]));
+        crossing[self.axis] = self.at;
+        crossing
+    }
+}
+
+/// Triangles that are cut.
+#[derive(Default)]
+struct Cut {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Cut {
+    fn bounds(&self) -> (DVec3, DVec3) {
+        self.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+    }
+
+    /// Keeps one side of a plane. Each edge of the cut becomes a triangle with the tip `apex`, moved onto the plane: where the
+    /// edges form a ring, its triangles close it, though they may lie on one another, so that a slice has edges there and back
+    /// again, but its area is right.
+    fn clip(&mut self, face: Face, mut apex: DVec3) {
+        apex[face.axis] = face.at;
+        let (vertices, mut crossings) = (&mut self.vertices, HashMap::new());
+        let kept: Vec<bool> = vertices.iter().map(|p| face.keeps(*p)).collect();
+        if kept.iter().all(|kept| *kept) {
+            return;
+        }
+        let mut rim: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        for triangle in &self.triangles {
+            let (mut corners, mut leaves, mut enters) = (Vec::with_capacity(4), None, None);
+            for k in 0..3 {
+                let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+                let inside = [kept[a as usize], kept[b as usize]];
+                if inside[0] {
+                    corners.push(a);
+                }
+                if inside[0] != inside[1] {
+                    let ends = [a.min(b), a.max(b)];
+                    let crossing = *crossings.entry(ends).or_insert_with(|| {
+                        let places = ends.map(|end| vertices[end as usize]);
+                        match places.iter().position(|p| p[face.axis] == face.at) {
+                            Some(on_it) => ends[on_it],
+                            None => {
+                                vertices.push(face.crossing(places[0], places[1]));
+                                vertices.len() as u32 - 1
+                            }
+                        }
+                    });
+                    corners.push(crossing);
+                    *if inside[0] { &mut leaves } else { &mut enters } = Some(crossing);
+                }
+            }
+            corners.dedup();
+            if corners.first() == corners.last() {
+                corners.pop();
+            }
+            triangles.extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
+            if let (Some(leaves), Some(enters)) = (leaves, enters)
+                && leaves != enters
+            {
+                // Where two faces leave along one edge, nothing is open.
+                let ends = [leaves.min(enters), leaves.max(enters)];
+                *rim.entry(ends).or_default() += if leaves == ends[0] { -1 } else { 1 };
+            }
+        }
+        let tip = vertices.len() as u32;
+        vertices.push(apex);
+        for ([a, b], count) in rim {
+            let closing = if count > 0 { [a, b, tip] } else { [b, a, tip] };
+            triangles.extend((0..count.abs()).map(|_| closing));
+        }
+        self.triangles = triangles;
+        self.compact();
+    }
+
+    /// Leaves out vertices that no triangle uses.
+    fn compact(&mut self) {
+        let (mut numbers, mut used) = (vec![None; self.vertices.len()], Vec::new());
+        for corner in self.triangles.iter_mut().flatten() {
+            let number = *numbers[*corner as usize].get_or_insert_with(|| {
+                used.push(self.vertices[*corner as usize]);
+                used.len() as u32 - 1
+            });
+            *corner = number;
+        }
+        self.vertices = used;
+    }
+
+    /// Triangles with angle × [`SPREAD`], place along the straight lines and height as coordinates; those that cross the seam are
+    /// there on both sides.
+    fn opened(mesh: &Divided, polar: &dyn Polar) -> Self {
+        let snapped =
+            |around: Around| if around.height.abs() < ON_IT { Around { height: 0.0, ..around } } else { around };
+        let around: Vec<Around> = mesh.vertices.iter().map(|p| snapped(polar.around(*p))).collect();
+        let (mut vertices, mut triangles, mut numbers) = (Vec::new(), Vec::new(), HashMap::new());
+        for triangle in &mesh.triangles {
+            let corners = triangle.map(|corner| around[corner as usize]);
+            if corners.iter().all(|corner| corner.height < 0.0) {
+                continue;
+            }
+            let angles = corners.map(|corner| near(corner.angle, corners[0].angle));
+            let beyond = |turns: f64| {
+                let angles = angles.map(|angle| angle + turns * TAU);
+                angles.iter().any(|angle| *angle < PI) && angles.iter().any(|angle| *angle > -PI)
+            };
+            for turns in [-1.0, 0.0, 1.0].into_iter().filter(|turns| beyond(*turns)) {
+                triangles.push([0, 1, 2].map(|k| {
+                    let angle = angles[k] + turns * TAU;
+                    let turn = ((angle - corners[k].angle) / TAU).round() as i32;
+                    *numbers.entry((triangle[k], turn)).or_insert_with(|| {
+                        vertices.push(DVec3::new(angle * SPREAD, corners[k].along, corners[k].height));
+                        vertices.len() as u32 - 1
+                    })
+                }));
+            }
+        }
+        Self { vertices, triangles }
+    }
+}
+
+/// A mesh whose edges are straight in a chart, too.
+struct Divided {
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Divided {
+    fn of(mesh: &Mesh, polar: &dyn Polar, tolerance: f64, task: &Task) -> Result<Self, Cancelled> {
+        let (mut vertices, mut open, mut done) = (mesh.vertices.clone(), mesh.triangles.clone(), Vec::new());
+        let mut middles: HashMap<[u32; 2], Option<u32>> = HashMap::new();
+        while !open.is_empty() {
+            task.check()?;
+            let mut next = Vec::new();
+            for triangle in open {
+                let middle = [0, 1, 2].map(|k| {
+                    let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+                    *middles.entry([a.min(b), a.max(b)]).or_insert_with_key(|ends| {
+                        let [a, b] = ends.map(|end| vertices[end as usize]);
+                        is_bent(a, b, polar, tolerance).then(|| {
+                            vertices.push(a.midpoint(b));
+                            vertices.len() as u32 - 1
+                        })
+                    })
+                });
+                match middle {
+                    [None, None, None] => done.push(triangle),
+                    _ => split(triangle, middle, &vertices, &mut next),
+                }
+            }
+            open = next;
+        }
+        Ok(Self { vertices, triangles: done })
+    }
+}
+
+/// Whether an edge bends in a chart by more than `tolerance` (mm). One that lies wholly below the first layer is of no
+/// concern.
+fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
+    let length = a.distance(b);
+    let [first, last] = [a, b].map(|p| polar.around(p));
+    // Heights change by no more than the distance.
+    if length < tolerance || first.height + last.height + length < 0.0 {
+        return false;
+    }
+    let angle = |around: Around| near(around.angle, first.angle);
+    let unrolled =
+        |angle: f64, around: Around| polar.unrolled(angle, around.along, around.height).extend(around.height);
+    let (from, to) = (unrolled(first.angle, first), unrolled(angle(last), last));
+    [0.25, 0.5, 0.75].into_iter().any(|part| {
+        let on_it = polar.around(a.lerp(b, part));
+        let place = unrolled(angle(on_it), on_it);
+        // Between the two it is cut where angles are lengths.
+        let even = first.angle + (angle(last) - first.angle) * part;
+        place.distance(from.lerp(to, part)) > tolerance || place.distance(unrolled(even, on_it)) > tolerance
+    })
+}
+
+/// The pieces of a triangle some of whose edges have a middle.
+fn split([a, b, c]: [u32; 3], middle: [Option<u32>; 3], vertices: &[DVec3], pieces: &mut Vec<[u32; 3]>) {
+    match middle {
+        [None, None, None] => pieces.push([a, b, c]),
+        [Some(ab), Some(bc), Some(ca)] => pieces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]),
+        [Some(ab), None, None] => pieces.extend([[a, ab, c], [ab, b, c]]),
+        [Some(ab), Some(bc), None] => {
+            pieces.push([ab, b, bc]);
+            // The shorter diagonal makes the rounder triangles.
+            let length = |from: u32, to: u32| vertices[from as usize].distance_squared(vertices[to as usize]);
+            let shorter = length(a, bc) < length(ab, c);
+            pieces.extend(if shorter { [[a, ab, bc], [a, bc, c]] } else { [[a, ab, c], [ab, bc, c]] });
+        }
+        _ => split([b, c, a], [middle[1], middle[2], middle[0]], vertices, pieces),
+    }
+}
