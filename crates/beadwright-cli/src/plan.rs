@@ -4,6 +4,7 @@ use crate::several::{Build, Order, Several};
 use crate::{model, preform, profile, progress, remedy, say};
 use anyhow::Context;
 use beadwright::Finding;
+use beadwright::chart::{Chart, ChartError};
 use beadwright::check;
 use beadwright::compare::{Chosen, MAP_PIXELS};
 use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
@@ -48,6 +49,11 @@ pub(crate) struct Arguments {
     /// Meaning of curves that run side by side: the two sides of a wall, or the centre-lines of walls.
     #[arg(long, value_name = "sides|centre", value_parser = ["sides", "centre"])]
     curves: Option<String>,
+    /// How layers lie where they are not level: around an axis, such as cylinder:axis=z,radius=36, on a cone, such as
+    /// cone:axis=-z,tip=0/0/90,angle=30, or square to a direction, such as plane:up=1/0/1; mm and degrees, in the coordinates of the
+    /// part as it stands on the table.
+    #[arg(long, value_name = "KIND:KEY=VALUE,...", value_parser = parse_chart)]
+    chart: Option<Chart>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
@@ -109,6 +115,10 @@ fn post_help() -> String {
          own, such as ./gantry",
         dialect::names().join(", ")
     )
+}
+
+fn parse_chart(text: &str) -> Result<Chart, String> {
+    text.parse().map_err(|error: ChartError| error.to_string())
 }
 
 pub(crate) fn parse_height(text: &str) -> Result<f64, String> {
@@ -193,7 +203,8 @@ impl Arguments {
         let literal = self.literal.then(|| "hybrid.literal=true".to_owned());
         let surface = self.surface.iter().map(|surface| format!("slice.surface=\"{surface}\""));
         let curves = self.curves.iter().map(|curves| format!("wall.curves=\"{curves}\""));
-        self.set.iter().cloned().chain(strategy).chain(surface).chain(curves).chain(literal).collect()
+        let chart = self.chart.iter().map(|chart| format!("layers.chart=\"{chart}\""));
+        self.set.iter().cloned().chain(chart).chain(strategy).chain(surface).chain(curves).chain(literal).collect()
     }
 }
 

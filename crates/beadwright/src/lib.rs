@@ -39,9 +39,9 @@ pub mod plan_file;
 #[doc(hidden)]
 pub mod simulate;
 
+pub use bead_part::{chart, example, model, slice};
 #[doc(hidden)]
 pub use bead_part::{curve, deviation, finding, task, text, warning};
-pub use bead_part::{chart, example, model, slice};
 use bead_plan::random;
 pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]

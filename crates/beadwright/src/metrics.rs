@@ -138,7 +138,7 @@ impl Metrics {
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += layer.slice_area * layer.height;
         if let Some(pause) =
-            (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten()
+            (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle())).flatten()
         {
             self.pause(pause);
         }

@@ -75,6 +75,13 @@ pub struct Layer {
     pub warnings: Vec<Warning>,
 }
 
+impl Layer {
+    /// Height of its middle, mm.
+    pub fn middle(&self) -> f64 {
+        self.z - self.height / 2.0
+    }
+}
+
 /// How many layers a part has, and where it lies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Extent {

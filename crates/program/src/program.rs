@@ -6,6 +6,7 @@
 //! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
 
 mod attitude;
+mod placed;
 mod safety;
 mod settings;
 mod spread;
@@ -22,6 +23,7 @@ use weave::Swing;
 pub use weave::Weave;
 
 use crate::number;
+use bead_part::chart::Chart;
 use bead_plan::layer::Layer;
 use bead_plan::pass::{Pass, PassKind};
 use bead_plan::process::Follow;
@@ -84,6 +86,11 @@ pub enum Instruction {
         /// Multiple of the nominal wire feed.
         ratio: f64,
     },
+    /// The attitude of torch and table at the end of the next move and from there on.
+    Turn {
+        /// It.
+        attitude: Attitude,
+    },
     /// A move with the arc on.
     Weld {
         /// Tool point, mm.
@@ -128,7 +135,7 @@ impl Instruction {
     /// The attitude of torch and table from here on; `None` where it does not change.
     pub fn attitude(&self) -> Option<Attitude> {
         match *self {
-            Self::PassStart { attitude, .. } | Self::Weld { attitude, .. } => Some(attitude),
+            Self::PassStart { attitude, .. } | Self::Turn { attitude } | Self::Weld { attitude, .. } => Some(attitude),
             _ => None,
         }
     }
@@ -187,6 +194,9 @@ pub struct LayerProgram {
 #[derive(Debug, Clone)]
 pub struct Programmer {
     torch: Torch,
+    /// How layers lie in space, and the height of the current one's middle, mm.
+    chart: Chart,
+    middle: f64,
     fit: Option<Fit>,
     speed_tolerance: f64,
     /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
@@ -208,6 +218,8 @@ impl Programmer {
         let torch = Torch::new(clearance);
         Self {
             torch,
+            chart: Chart::default(),
+            middle: 0.0,
             fit: None,
             speed_tolerance: 0.0,
             feed: None,
@@ -227,13 +239,20 @@ impl Programmer {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let (tilt, table) = (Tilt::new(program), Follower::new(program));
-        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
+        let chart = weld.chart;
+        let programmer =
+            Self { torch, chart, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
     }
 
     /// The same programmer, but the torch swings by moves of its own.
     pub fn woven(self, weave: Option<&Weave>) -> Self {
         Self { weave: weave.cloned(), ..self }
+    }
+
+    /// The same programmer, but it stays in the coordinates in which layers are level.
+    pub fn unplaced(self) -> Self {
+        Self { chart: Chart::default(), ..self }
     }
 
     /// The same programmer, but it keeps every point of the passes.
@@ -250,7 +269,11 @@ impl Programmer {
         self.spread = (time > 0.0 && tolerance > 0.0).then_some(Spread { time, tolerance: tolerance / 2.0 });
         let tolerance = if self.spread.is_some() { tolerance / 2.0 } else { tolerance };
         self.speed_tolerance = program.speed_tolerance;
-        self.fit = (tolerance > 0.0).then_some(Fit { tolerance, arcs: program.arcs, grid: RESOLUTION_MM });
+        self.fit = (tolerance > 0.0).then_some(Fit {
+            tolerance,
+            arcs: program.arcs && self.chart.is_level(),
+            grid: RESOLUTION_MM,
+        });
         self
     }
 
@@ -277,16 +300,19 @@ impl Programmer {
     pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         self.pass_over(layer);
+        self.middle = layer.middle();
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
-        let mut pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten();
+        let mut pause = (!layer.passes.is_empty())
+            .then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle()))
+            .flatten();
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut pause, &mut instructions);
         }
         if self.dry {
             let kept = |i: &Instruction| {
                 let places = matches!(i, Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd);
-                places || i.target().is_some()
+                places || matches!(i, Instruction::Turn { .. }) || i.target().is_some()
             };
             instructions.retain(kept);
         }
@@ -317,6 +343,8 @@ impl Programmer {
             moves = Tilt::divided(moves, width);
         }
         let [(start, _), (_, first), ..] = moves[..] else { return };
+        self.torch.turn_towards(start);
+        let (own, before) = (out.len(), self.torch.at());
         let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, width)).unwrap_or_default();
         let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
         let places = || moves.iter().map(|(at, _)| *at).collect::<Vec<_>>();
@@ -330,7 +358,8 @@ impl Programmer {
         let down = legs.pop();
         let mut legs = legs.into_iter();
         if !lit.before {
-            out.push(Instruction::PassStart { pass: number, above, attitude: Attitude { lean: lean(0), table } });
+            let attitude = Attitude { lean: lean(0), table, ..Attitude::default() };
+            out.push(Instruction::PassStart { pass: number, above, attitude });
         }
         pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
         let joints = begins || turned.is_some_and(|turned| turned.far);
@@ -349,7 +378,7 @@ impl Programmer {
             self.set_feed(self.torch.feed_at(moves[end].1), out);
             let length = circle.map_or(from.distance(to), |circle| circle.length());
             let table = self.table.as_mut().map(|table| table.follow(to, length));
-            let attitude = Attitude { lean: lean(end), table };
+            let attitude = Attitude { lean: lean(end), table, ..Attitude::default() };
             out.push(Instruction::Weld { to, circle, speed, last: i + 1 == pieces.len(), attitude });
             from = to;
         }
@@ -359,12 +388,15 @@ impl Programmer {
             self.feed = ratio;
             out.push(Instruction::Crater { seconds, ratio });
         }
-        if lit.after {
-            return;
+        if !lit.after {
+            out.push(Instruction::ArcOff { pass: number });
+            out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
+            out.push(Instruction::PassEnd);
         }
-        out.push(Instruction::ArcOff { pass: number });
-        out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
-        out.push(Instruction::PassEnd);
+        if !self.chart.is_level() {
+            let of_chart = out.split_off(own);
+            out.extend(placed::placed(of_chart, &self.chart.sheet(self.middle), before));
+        }
     }
 
     /// How a path is run: as swings, as pieces that fit it, or as all its moves.

@@ -136,6 +136,7 @@ impl Track {
                     self.go(Stop { layer, pass, point, at: to, seconds: speed, arc: true, attitude, leg: Leg::Part });
                 }
                 Instruction::PassStart { .. }
+                | Instruction::Turn { .. }
                 | Instruction::Above
                 | Instruction::PassEnd
                 | Instruction::WireFeed { .. }

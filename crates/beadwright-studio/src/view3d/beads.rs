@@ -132,7 +132,9 @@ impl LayerBeads {
             boxes: Vec::new(),
             seconds: 0.0,
         };
-        if let Some(pause) = (!layer.passes.is_empty()).then(|| torch.begin_layer(layer.index, layer.lit)).flatten() {
+        if let Some(pause) =
+            (!layer.passes.is_empty()).then(|| torch.begin_layer(layer.index, layer.lit, layer.middle())).flatten()
+        {
             beads.seconds = pause.moving + pause.seconds;
         }
         for (i, pass) in layer.passes.iter().enumerate() {

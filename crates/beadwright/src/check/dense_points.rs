@@ -52,6 +52,7 @@ fn seconds(instructions: &[Instruction]) -> Vec<Vec<f64>> {
                 times.last_mut().into_iter().for_each(|pass| pass.push(length / speed.max(1e-9)));
             }
             Instruction::PassStart { .. }
+            | Instruction::Turn { .. }
             | Instruction::Above
             | Instruction::PassEnd
             | Instruction::WireFeed { .. }

@@ -25,7 +25,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     if clearance <= 0.0 {
         return Vec::new();
     }
-    let (mut programmer, mut at, mut findings) = (subject.profile.programmer().unfitted(), None, Vec::new());
+    let (mut programmer, mut at, mut findings) = (subject.profile.programmer().unfitted().unplaced(), None, Vec::new());
     for layer in subject.layers.iter().copied().filter(|layer| sound(layer)) {
         let (mut pass, mut told) = (0, false);
         for instruction in programmer.layer(layer).instructions {
@@ -45,6 +45,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
                 // Numbers count from 1 and `pass` from 0, so the number is the index of the next pass.
                 Instruction::ArcOff { pass: number } => pass = number,
                 Instruction::PassStart { .. }
+                | Instruction::Turn { .. }
                 | Instruction::Above
                 | Instruction::PassEnd
                 | Instruction::ArcOn { .. }

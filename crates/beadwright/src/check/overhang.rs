@@ -2,6 +2,7 @@
 
 use super::{Check, Finding, Subject};
 use crate::layer::{Layer, overhang};
+use crate::plan::charted::Across;
 
 pub(super) const CHECK: Check = Check {
     name: "overhang",
@@ -16,7 +17,10 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
     let hanging = |pair: &[&Layer]| {
-        let (area, place) = overhang(&pair[0].islands, &pair[1].islands, reach, width)?;
+        let across = Across::layers(subject.profile, pair[0], pair[1]);
+        let below = across.map(|across| across.islands(&pair[0].islands));
+        let below = below.as_deref().unwrap_or(&pair[0].islands);
+        let (area, place) = overhang(below, &pair[1].islands, reach, width)?;
         let text = format!("{area:.1} mm² overhang the layer below by more than {reach:.1} mm.");
         Some(CHECK.of_layer(pair[1], Some(place.extend(pair[1].z)), text))
     };

@@ -3,6 +3,7 @@
 use super::{Check, Finding, Subject};
 use crate::layer::Layer;
 use crate::pass::{Pass, PassKind};
+use crate::plan::charted::Across;
 
 pub(super) const CHECK: Check = Check {
     name: "stacked-starts",
@@ -22,7 +23,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     // place.
     let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
     let mut findings = Vec::new();
-    for layer in &subject.layers {
+    let mut lower: Option<&Layer> = None;
+    for &layer in &subject.layers {
+        if let Some(across) = lower.and_then(|lower| Across::layers(subject.profile, lower, layer)) {
+            below = below.iter().flat_map(|(p, count)| across.places(*p).map(move |p| (p, *count))).collect();
+        }
         let mut here = Vec::with_capacity(layer.passes.len());
         for (i, start) in starts(layer) {
             let under = below.iter().filter(|(at, _)| at.distance(start.truncate()) < NEAR * width);
@@ -34,6 +39,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             here.push((start.truncate(), count));
         }
         below = here;
+        lower = Some(layer);
     }
     findings
 }

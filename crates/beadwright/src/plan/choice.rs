@@ -1,5 +1,6 @@
 //! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
 
+use super::charted;
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, StrategyName, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
@@ -39,7 +40,8 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
         Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if !kept && profile.fill.strategy == StrategyName::Loop => {
-            if let Some(walls) = walls(&import.mesh, &profile, task)? {
+            let mesh = &*charted::unrolled(&import.mesh, &profile, task)?;
+            if let Some(walls) = walls(mesh, &profile, task)? {
                 profile.fill.strategy = StrategyName::Wall;
                 if walls == Walls::Thick && profile.layers.predict == Predict::Auto {
                     profile.layers.predict = Predict::Never;
@@ -77,7 +79,7 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
     let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
     let settings = profile.fill_settings(0);
     let slices = slicer.all(task)?;
     let all: f64 = slices.iter().map(Slice::area).sum();

@@ -1,6 +1,7 @@
 //! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers over what
 //! lies below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
+use super::charted::Across;
 use super::cover::Cover;
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
@@ -20,6 +21,7 @@ use crate::slice::Slice;
 use crate::warning::{Warning, WarningKind, Warnings};
 use glam::DVec2;
 use planar::Polygon;
+use std::borrow::Cow;
 
 /// Puts filled layers in order and hands them over.
 pub(super) struct Emitter<'a, S> {
@@ -36,6 +38,8 @@ pub(super) struct Emitter<'a, S> {
     pub(super) grown: Option<Stack>,
     /// Outlines of the layer below, of the islands that are welded.
     pub(super) below: Vec<Polygon>,
+    /// Height of its middle, mm.
+    pub(super) below_middle: f64,
     /// Top of the highest layer with beads, mm.
     pub(super) built: f64,
     pub(super) points: usize,
@@ -82,6 +86,7 @@ impl<S: Sink> Emitter<'_, S> {
         self.warm(&mut layer);
         self.doubts(&mut layer);
         self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
+        self.below_middle = layer.middle();
         layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
         self.metrics.add(&layer);
         if let Some(grown) = &mut self.grown {
@@ -133,15 +138,17 @@ impl<S: Sink> Emitter<'_, S> {
     fn doubts(&mut self, layer: &mut Layer) {
         let (profile, index) = (self.profile, layer.index);
         let limits = &profile.check;
+        let across = Across::new(&profile.layers.chart, self.below_middle, layer.middle());
+        let below = across.map_or(Cow::Borrowed(&self.below[..]), |across| across.islands(&self.below).into());
         let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
         if let Some(first) = layer.passes.first() {
             let gap = layer.z - layer.height - self.built;
             if gap > LARGE_GAP * layer.height {
                 let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
                 doubt(kind, first.start().unwrap_or_default().truncate(), gap);
-            } else if !self.below.is_empty() {
+            } else if !below.is_empty() {
                 let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
-                if let Some((area, place)) = overhang(&self.below, &layer.islands, reach, width) {
+                if let Some((area, place)) = overhang(&below, &layer.islands, reach, width) {
                     doubt(WarningKind::Overhang, place, area);
                 }
             }

@@ -37,7 +37,7 @@ pub(super) fn of_mesh(
 ) -> Result<Vec<Slab>, Cancelled> {
     let (step, top) = (wall.rise(), mesh.bounds().1.z.max(0.0));
     let slabs = slice::even_slabs(mesh, step);
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
     let is_surface = is_wall_surface(mesh, profile);
     let mut rises = Vec::with_capacity(slicer.layer_count());
     let mut below: Option<Vec<Vec<DVec2>>> = None;

@@ -9,6 +9,7 @@
 //! | [`clearance`] | whether the torch has room next to finished parts |
 //! | `parts` | parts that are welded one after another |
 //! | `centre_lines` | walls of one bead by their centre-lines |
+//! | [`charted`] | parts whose layers are not level |
 //! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
@@ -30,6 +31,7 @@
 
 mod candidates;
 mod centre_lines;
+pub mod charted;
 pub mod choice;
 pub mod clearance;
 mod cover;
@@ -71,6 +73,7 @@ use crate::slice::{self, BATCH, Slab, Slicer};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, WarningSummary, Warnings};
 use centre_lines::{centre_lines, weld_curves, weld_lines};
+use charted::Unrolled;
 use emitter::Emitter;
 use filled::Filled;
 use glam::DVec2;
@@ -128,7 +131,9 @@ pub fn plan_into<'a, S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let part = part.into();
+    let given = part.into();
+    let unrolled = Unrolled::of(given, profile, task)?;
+    let part = unrolled.as_ref().map_or(given, Unrolled::part);
     plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)
 }
 
@@ -161,6 +166,7 @@ pub fn plan_with<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
+    let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
     plan_mesh(&warmth, name, (mesh, None), strategy, profile, task, sink)
 }
@@ -187,7 +193,7 @@ fn plan_mesh<S: Sink + Send>(
     let heat = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
     let milled_volume = milled.map(Mesh::volume);
     let milled = milled.map(|part| Milled::new(part, &slabs, profile, task)).transpose()?;
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         if is_wall {
@@ -240,7 +246,9 @@ pub fn slabs<'a>(
     profile: &Profile,
     task: &Task,
 ) -> Result<Vec<Slab>, PlanError<Infallible>> {
-    let part = part.into();
+    let given = part.into();
+    let unrolled = Unrolled::of(given, profile, task)?;
+    let part = unrolled.as_ref().map_or(given, Unrolled::part);
     let warmth = warm::predicted(part, profile, task)?;
     match part {
         PartRef::Mesh { mesh, .. } => slabs_at(&warmth, mesh, profile, task),
@@ -257,7 +265,7 @@ fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> 
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
         None if profile.is_level() => level_layers::slabs(mesh, profile.fill.strategy.strategy(), profile, task)?,
-        None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
+        None => slice::fitted_slabs(mesh, profile.layers.height, profile.fit()),
     })
 }
 
@@ -326,6 +334,7 @@ fn run<S: Sink + Send>(
             Stack::new(&bounds, deposit_settings_over(profile, (low, high)))
         }),
         below: Vec::new(),
+        below_middle: 0.0,
         built: 0.0,
         points: 0,
         metrics: Metrics::new(profile),

@@ -25,6 +25,9 @@ pub fn parts_into<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let torch = torch_of(profile)?;
+    if !profile.layers.chart.is_level() {
+        return Err(PlanError::Parts("layers.chart: only parts with level layers can be"));
+    }
     if !profile.process.layers.is_empty() {
         return Err(PlanError::Parts(
             "process.layers: layers are numbered separately for each part, so it is not clear which are meant",

@@ -5,7 +5,7 @@ use super::emitter::Emitter;
 use super::filled::{Filled, fill_planned};
 use super::support::Support;
 use super::warm::{Heat, Warmth};
-use super::{PlanError, Sink, levels, scan_lines, slabs_at};
+use super::{PlanError, Sink, charted, levels, scan_lines, slabs_at};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
@@ -29,7 +29,7 @@ pub fn preview(
     task: &Task,
 ) -> Result<Option<Layer>, PlanError<Infallible>> {
     let filled = match part {
-        Part::Mesh(import) => of_mesh(&import.mesh, profile, index, task)?,
+        Part::Mesh(import) => of_mesh(&*charted::unrolled(&import.mesh, profile, task)?, profile, index, task)?,
         Part::Curves { curves, height, .. } => {
             let curves = &*centre_lines(curves, profile)?;
             let slabs = levels::of_curves(curves, *height, &profile.single_wall()?, &Warmth::default());
@@ -53,6 +53,7 @@ pub fn preview(
         support: Support::default(),
         grown: None,
         below: Vec::new(),
+        below_middle: 0.0,
         built,
         points: 0,
         metrics,
@@ -66,7 +67,8 @@ fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<
     let (strategy, slabs) = (profile.fill.strategy.strategy(), slabs_at(&Warmth::default(), mesh, profile, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
-    let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?;
+    let slicer =
+        Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?.on(&profile.layers.chart);
     // Slices are numbered in the window; a sparse infill looks at its neighbours there.
     let planned = scan_lines::planned(0, &slicer, strategy, profile, task)?;
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {

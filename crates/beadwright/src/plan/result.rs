@@ -102,6 +102,9 @@ pub enum PlanError<E> {
     /// Curves where a solid is needed.
     #[error("only solids have a preform, and this part is given by curves. Give its solid.")]
     NoSolid,
+    /// Curves with layers that are not level.
+    #[error("walls given by curves have level layers. Leave layers.chart out, or give the wall as a solid.")]
+    ChartOfCurves,
     /// Curves that may be the sides of one wall or the centre-lines of two.
     #[error(
         "curves run side by side {:.2} to {:.2} mm apart, near x {:.1} y {:.1} z {:.1} mm. If they are the two sides of a wall, \

@@ -1,5 +1,6 @@
 //! Whether passes lie on metal, judged by the footprints of the passes below.
 
+use super::charted::Across;
 use crate::fill::line_index::LineIndex;
 use crate::layer::Layer;
 use crate::pass::Pass;
@@ -28,12 +29,13 @@ const STANDS: f64 = 0.05;
 /// What lies below the next layer.
 #[derive(Default)]
 pub(super) struct Support {
-    /// The passes of the layer below; `None` before the first layer, which lies on the plate.
-    metal: Option<Metal>,
-    /// Outlines of the layer below.
+    /// The passes of the layer below; none before the first layer, which lies on the plate.
+    passes: Vec<Pass>,
+    /// Its outlines, and those of them that were left out because they hang.
     islands: Vec<Polygon>,
-    /// Those of them that were left out because they hang.
     left_out: Vec<Polygon>,
+    /// Height of its middle, mm.
+    middle: f64,
 }
 
 /// Footprints of passes.
@@ -48,8 +50,14 @@ impl Support {
     /// Sparse layers support the next as if they were filled, and printed beads bridge gaps.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
         let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
+        if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
+            self.passes = across.passes(&self.passes);
+            self.islands = across.islands(&self.islands);
+            self.left_out = across.islands(&self.left_out);
+        }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        if let Some(metal) = self.metal.take().filter(|_| !alike) {
+        if !self.passes.is_empty() && !alike {
+            let metal = Metal::of(&self.passes, width);
             let within = |p: DVec2| !solid && self.islands.iter().any(|island| island.contains(p));
             let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
                 true => Below::Metal,
@@ -63,8 +71,9 @@ impl Support {
         } else if !alike {
             self.left_out.clear();
         }
-        self.metal = (!layer.passes.is_empty()).then(|| Metal::of(&layer.passes, width));
+        self.passes.clone_from(&layer.passes);
         self.islands.clone_from(&layer.islands);
+        self.middle = layer.middle();
     }
 
     /// Whether an island of the layer that was judged last was left out.

@@ -1,5 +1,6 @@
 //! The section `[layers]`.
 
+use crate::chart::Chart;
 use crate::limit::{Limit, limits};
 use crate::slice::LayerFit;
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,11 @@ pub struct LayersSection {
     /// bead), `always` or `never`; default auto.
     #[serde(default, alias = "foretell")]
     pub predict: Predict,
+    /// How layers lie in space where they are not level: `plane:up=X/Y/Z`, `cylinder:axis=z,radius=MM` or
+    /// `cone:axis=-z,tip=X/Y/Z,angle=DEGREES`; optional.
+    #[serde(default, skip_serializing_if = "Chart::is_level")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
+    pub chart: Chart,
 }
 
 fn yes() -> bool {

@@ -287,7 +287,11 @@ fn counted(profile: &Profile) -> (f64, f64) {
                 (time, wire, at) = (time + seconds, wire + seconds * feed, Some(to));
             }
             Instruction::ArcOn { .. } => time += DELAY,
-            Instruction::ArcOff { .. } | Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd => {}
+            Instruction::ArcOff { .. }
+            | Instruction::PassStart { .. }
+            | Instruction::Turn { .. }
+            | Instruction::Above
+            | Instruction::PassEnd => {}
             Instruction::WireFeed { ratio } => feed = ratio,
             Instruction::Crater { seconds, ratio } => {
                 feed = ratio.unwrap_or(feed);

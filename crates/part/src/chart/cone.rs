@@ -6,24 +6,23 @@
 use super::At;
 use super::polar::{Around, Axes, Polar};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
 
 /// Layers on the outside of a cone.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
     /// Tip of the cone on which the build begins, mm.
     pub tip: DVec3,
     /// Unit vector along the axis, into the cone.
     pub axis: DVec3,
-    /// Between the axis and the cone, rad.
+    /// Between the axis and the cone, °.
     pub half_angle: f64,
-    /// Angle at which layers are cut open and unrolled, rad; about an axis along z it is counted from x.
+    /// Angle at which layers are cut open and unrolled, °; about an axis along z it is counted from x.
     pub seam: f64,
 }
 
 impl Cone {
     fn axes(&self) -> Axes {
-        Axes::new(self.axis, self.seam)
+        Axes::new(self.axis, self.seam.to_radians())
     }
 }
 
@@ -31,13 +30,13 @@ impl Polar for Cone {
     fn around(&self, p: DVec3) -> Around {
         let from = p - self.tip;
         let (angle, radius) = self.axes().polar(from);
-        let (sin, cos) = self.half_angle.sin_cos();
+        let (sin, cos) = self.half_angle.to_radians().sin_cos();
         Around { angle, along: radius / sin, height: radius * cos - from.dot(self.axis) * sin }
     }
 
     fn at(&self, angle: f64, along: f64, height: f64) -> At {
         let [outward, around] = self.axes().outward_and_around(angle);
-        let (sin, cos) = self.half_angle.sin_cos();
+        let (sin, cos) = self.half_angle.to_radians().sin_cos();
         let line = self.axis * cos + outward * sin;
         let place = self.tip - self.axis * (height / sin) + line * along;
         // Unrolled, the straight line at this angle points away from the tip.
@@ -46,15 +45,15 @@ impl Polar for Cone {
     }
 
     fn unrolled(&self, angle: f64, along: f64, _middle: f64) -> DVec2 {
-        let (sin, cos) = (angle * self.half_angle.sin()).sin_cos();
+        let (sin, cos) = (angle * self.half_angle.to_radians().sin()).sin_cos();
         DVec2::new(along * sin, along * cos)
     }
 
     fn rolled(&self, p: DVec2, _middle: f64) -> (f64, f64) {
-        (p.x.atan2(p.y) / self.half_angle.sin(), p.length())
+        (p.x.atan2(p.y) / self.half_angle.to_radians().sin(), p.length())
     }
 
     fn risen(&self, angle: f64, along: f64, rise: f64) -> (f64, f64) {
-        (angle, along + rise / self.half_angle.tan())
+        (angle, along + rise / self.half_angle.to_radians().tan())
     }
 }

@@ -5,10 +5,9 @@
 use super::At;
 use super::polar::{Around, Axes, Polar};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
 
 /// Layers around an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {
     /// A point on the axis, at which v is 0, mm.
     pub through: DVec3,
@@ -18,13 +17,12 @@ pub struct Cylinder {
     pub radius: f64,
     /// On which side layers are laid.
     pub side: Side,
-    /// Angle at which layers are cut open and unrolled, rad; about an axis along z it is counted from x.
+    /// Angle at which layers are cut open and unrolled, °; about an axis along z it is counted from x.
     pub seam: f64,
 }
 
 /// The side of a surface on which layers are laid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
     /// Away from the axis.
     #[default]
@@ -44,7 +42,7 @@ impl Side {
 
 impl Cylinder {
     fn axes(&self) -> Axes {
-        Axes::new(self.axis, self.seam)
+        Axes::new(self.axis, self.seam.to_radians())
     }
 
     fn radius_at(&self, height: f64) -> f64 {

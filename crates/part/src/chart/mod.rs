@@ -32,9 +32,9 @@ use polar::Polar;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// How the layers of a part lie in space. By default they are level.
+/// How the layers of a part lie in space. By default they are level. In files it is text, as people write it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
+#[serde(try_from = "String", into = "String")]
 pub enum Chart {
     /// Planes square to a direction.
     Plane(Plane),

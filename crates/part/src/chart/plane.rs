@@ -3,10 +3,9 @@
 
 use super::At;
 use glam::{DQuat, DVec3};
-use serde::{Deserialize, Serialize};
 
 /// Layers square to a direction.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
     /// The point of the first layer's underside that has the coordinates 0, mm.
     pub origin: DVec3,

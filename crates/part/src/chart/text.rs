@@ -2,7 +2,7 @@
 
 use super::{Chart, Cone, Cylinder, Plane, Side};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
 use std::str::FromStr;
 
 /// Why a chart cannot be read.
@@ -69,7 +69,7 @@ impl FromStr for Chart {
                     through: given.place("through")?,
                     radius: given.radius()?,
                     side: given.side()?,
-                    seam: given.angle("seam", -360.0..=360.0)?.unwrap_or(PI),
+                    seam: given.angle("seam", -360.0..=360.0)?.unwrap_or(SEAM),
                 }))
             }
             "cone" => {
@@ -78,11 +78,45 @@ impl FromStr for Chart {
                 let missing = ChartError::Missing { kind: "cone", key: "angle", why };
                 let half_angle = given.angle("angle", 1.0..=89.0)?.ok_or(missing)?;
                 let (axis, tip) = (given.direction("axis")?, given.place("tip")?);
-                let seam = given.angle("seam", -360.0..=360.0)?.unwrap_or(PI);
-                Ok(Self::Cone(Cone { tip, axis, half_angle: half_angle.min(FRAC_PI_2), seam }))
+                let seam = given.angle("seam", -360.0..=360.0)?.unwrap_or(SEAM);
+                Ok(Self::Cone(Cone { tip, axis, half_angle, seam }))
             }
             other => Err(ChartError::Kind(other.to_owned())),
         }
+    }
+}
+
+/// Where layers are cut open if nothing is written, °: the angle 0 is that of x.
+const SEAM: f64 = 180.0;
+
+impl fmt::Display for Chart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let three = |v: DVec3| format!("{}/{}/{}", v.x, v.y, v.z);
+        match self {
+            Self::Plane(Plane { origin, up }) => write!(f, "plane:up={},through={}", three(*up), three(*origin)),
+            Self::Cylinder(Cylinder { through, axis, radius, side, seam }) => {
+                let side = if *side == Side::Inner { "inner" } else { "outer" };
+                let (axis, through) = (three(*axis), three(*through));
+                write!(f, "cylinder:axis={axis},through={through},radius={radius},side={side},seam={seam}")
+            }
+            Self::Cone(Cone { tip, axis, half_angle, seam }) => {
+                write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three(*axis), three(*tip))
+            }
+        }
+    }
+}
+
+impl From<Chart> for String {
+    fn from(chart: Chart) -> Self {
+        chart.to_string()
+    }
+}
+
+impl TryFrom<String> for Chart {
+    type Error = ChartError;
+
+    fn try_from(text: String) -> Result<Self, ChartError> {
+        text.parse()
     }
 }
 
@@ -125,7 +159,7 @@ impl<'a> Given<'a> {
             "z" => Some(DVec3::Z),
             _ => None,
         };
-        let axis = axis.map(|axis| axis * sign).or_else(|| three(value).and_then(DVec3::try_normalize));
+        let axis = axis.map(|axis| axis * sign).or_else(|| three(value).and_then(unit));
         axis.ok_or_else(|| Self::wrong(key, value, "write x, y, z, -x, -y, -z, or three numbers such as 1/0/0.5"))
     }
 
@@ -150,13 +184,18 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// rad
+    /// °
     fn angle(&self, key: &str, range: std::ops::RangeInclusive<f64>) -> Result<Option<f64>, ChartError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let degrees = value.parse().ok().filter(|degrees: &f64| range.contains(degrees));
         let expected = if key == "seam" { "write degrees, -360 to 360" } else { "write degrees, 1 to 89" };
-        degrees.map(|degrees| Some(degrees.to_radians())).ok_or_else(|| Self::wrong(key, value, expected))
+        degrees.map(Some).ok_or_else(|| Self::wrong(key, value, expected))
     }
+}
+
+/// A unit vector stays as it is, so that what was written can be read again.
+fn unit(vector: DVec3) -> Option<DVec3> {
+    if vector.is_normalized() { Some(vector) } else { vector.try_normalize() }
 }
 
 fn three(text: &str) -> Option<DVec3> {

@@ -30,6 +30,14 @@ fn places() -> impl Iterator<Item = DVec3> {
 }
 
 #[test]
+fn charts_are_read_as_they_were_written() {
+    for chart in charts() {
+        assert_eq!(chart.to_string().parse(), Ok(chart));
+    }
+    assert!("plane".parse::<Chart>().unwrap().is_level());
+}
+
+#[test]
 fn what_goes_to_space_comes_back() {
     for chart in charts() {
         for p in places() {

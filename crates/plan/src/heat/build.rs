@@ -208,7 +208,9 @@ impl Build {
     /// Begins a layer: the wait that it needs for reasons other than heat.
     pub(super) fn begin(&mut self, layer: &Layer) -> LayerHeat {
         self.process = self.nominal.at_layer(layer.index);
-        let pause = (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit)).flatten();
+        let pause = (!layer.passes.is_empty())
+            .then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle()))
+            .flatten();
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
         self.catch_up(None);
         self.body.settle();

@@ -20,6 +20,7 @@ pub use torch::{Pause, Torch, Way, Welded};
 
 use crate::motion::Motion;
 use crate::process::{Process, StartStop, Travel};
+use bead_part::chart::Chart;
 
 /// What times, travels and moves depend on besides the passes.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,4 +38,6 @@ pub struct WeldSettings {
     pub arc_end_time: Option<f64>,
     /// Height of what stands next to the part before its first pass, mm; the travel to that pass leads over it.
     pub standing: f64,
+    /// How the layers lie in space.
+    pub chart: Chart,
 }

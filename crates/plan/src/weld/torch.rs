@@ -6,10 +6,14 @@ use crate::layer::Lit;
 use crate::motion::Motion;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop};
-use glam::DVec3;
+use bead_part::chart::Chart;
+use glam::{DVec2, DVec3};
 
 /// Waits are multiples of this, s; they are rounded up, never down.
 const WAIT_STEP: f64 = 0.01;
+
+/// A pass is at most this many turns longer than one.
+const TURNS: [f64; 5] = [0.0, -1.0, 1.0, -2.0, 2.0];
 
 /// Where the torch is, and how long the layer has taken.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,6 +28,9 @@ pub struct Torch {
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
     travel_speed: f64,
+    /// How layers lie in space, and the height of the current one's middle, mm.
+    chart: Chart,
+    middle: f64,
     clearance: f64,
     at: Option<DVec3>,
     /// Height of the last pass's end, mm: travels keep clear of it.
@@ -91,6 +98,8 @@ impl Torch {
             motion: None,
             arc_end_time: None,
             travel_speed: f64::INFINITY,
+            chart: Chart::default(),
+            middle: 0.0,
             clearance,
             at: None,
             low: 0.0,
@@ -102,7 +111,7 @@ impl Torch {
 
     /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
-        let WeldSettings { process, ends, travel, motion, arc_end_time, standing } = settings.clone();
+        let WeldSettings { process, ends, travel, motion, arc_end_time, standing, chart } = settings.clone();
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
@@ -111,6 +120,7 @@ impl Torch {
             motion,
             arc_end_time,
             travel_speed: travel.speed,
+            chart,
             highest: standing,
             ..Self::new(travel.clearance)
         }
@@ -146,8 +156,12 @@ impl Torch {
         self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
-    /// Begins the layer with this index, with the wait that the previous layer needs, unless the arc stays lit.
-    pub fn begin_layer(&mut self, index: usize, lit: Lit) -> Option<Pause> {
+    /// Begins the layer with this index and middle (mm), with the wait that the previous layer needs, unless the arc stays lit.
+    pub fn begin_layer(&mut self, index: usize, lit: Lit, middle: f64) -> Option<Pause> {
+        let over =
+            |at: DVec3| self.chart.sheet(middle).across(at.truncate(), &self.chart.sheet(self.middle)).extend(at.z);
+        self.at = self.at.map(over);
+        self.middle = middle;
         self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
         (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
         if lit.before {
@@ -199,6 +213,7 @@ impl Torch {
         if self.lit.before && self.at.is_some() {
             return Way::default();
         }
+        self.turn_towards(start);
         let another = std::mem::take(&mut self.fresh) && start.z <= self.low;
         let below = if another || self.at.is_none() { self.highest } else { self.low };
         let high = below.max(start.z) + self.clearance;
@@ -206,6 +221,16 @@ impl Torch {
         let top = self.at.map_or(high, |at| at.z.max(high));
         let rise = self.at.map(|at| at.with_z(top));
         self.go(rise.into_iter().chain([start.with_z(top), start]))
+    }
+
+    /// Counts turns around the chart's axis so that the way to a place is short.
+    pub fn turn_towards(&mut self, to: DVec3) {
+        let Some(at) = self.at.filter(|_| self.chart.goes_around()) else { return };
+        let sheet = self.chart.sheet(self.middle);
+        let turned = TURNS.into_iter().filter_map(|turns| sheet.turned(at.truncate(), turns));
+        let distance = |p: &DVec2| p.distance(to.truncate());
+        let nearest = turned.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        self.at = nearest.map(|p| p.extend(at.z));
     }
 
     /// The move up from the end of a pass: whatever comes between passes happens above the fresh bead.

@@ -102,7 +102,7 @@ fn point(text: &mut String, at: DVec3, lean: Option<DVec2>) {
     let name = if lean.is_some() { "point6d" } else { "point3d" };
     text.push_str(&format!("<{name} x=\"{}\" y=\"{}\" z=\"{}\"", units(at.x), units(at.y), units(at.z)));
     if let Some(lean) = lean {
-        let q = Attitude { lean, table: None }.rotation();
+        let q = Attitude { lean, ..Attitude::default() }.rotation();
         for (key, value) in [("i", q.x), ("j", q.y), ("k", q.z), ("w", q.w)] {
             text.push_str(&format!(" {key}=\"{}\"", fixed(value, 9)));
         }

@@ -287,6 +287,7 @@ impl FanucTp {
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(program, pass, above),
             Instruction::Above => self.above(program),
+            Instruction::Turn { .. } => {}
             Instruction::PassEnd => {
                 self.lines(program, &self.fanuc.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));

@@ -140,7 +140,7 @@ impl Section for Gcode {
             Extra::Restart => self.control.is_some() && self.wire_axis.is_none(),
             Extra::LayerOffsets => self.control.is_some(),
             Extra::Weave => true,
-            Extra::Tilt => false,
+            Extra::Tilt | Extra::Chart => false,
         }
     }
 

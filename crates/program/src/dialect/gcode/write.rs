@@ -312,6 +312,7 @@ impl CncGcode {
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
             Instruction::Above => self.above(text),
+            Instruction::Turn { .. } => {}
             Instruction::PassEnd => {
                 let lines = self.gcode.hooks.pass_end.clone();
                 self.blocks(text, &lines);

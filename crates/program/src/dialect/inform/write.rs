@@ -232,6 +232,7 @@ impl YaskawaInform {
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(job, pass, above),
             Instruction::Above => self.above(job),
+            Instruction::Turn { .. } => {}
             Instruction::PassEnd => {
                 self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
                 self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));

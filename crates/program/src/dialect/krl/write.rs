@@ -372,6 +372,7 @@ impl KukaKrl {
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, pass, above),
             Instruction::Above => self.above(text),
+            Instruction::Turn { .. } => {}
             Instruction::PassEnd => {
                 self.lines(text, &self.krl.hooks.pass_end);
                 self.end_skippable(text);

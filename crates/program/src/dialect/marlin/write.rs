@@ -188,7 +188,7 @@ impl MarlinGcode {
                 text.push_str(&format!("G4 P{}\n", fixed(seconds * 1000.0, 0)));
             }
             Instruction::ArcOff { .. } => self.lays = false,
-            Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd => {}
+            Instruction::PassStart { .. } | Instruction::Turn { .. } | Instruction::Above | Instruction::PassEnd => {}
         }
     }
 

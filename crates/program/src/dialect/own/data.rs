@@ -56,8 +56,12 @@ impl Steps {
     }
 
     pub(super) fn layer(&mut self, program: &LayerProgram) -> Vec<Value> {
-        let between =
-            |i: &&Instruction| matches!(i, Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd);
+        let between = |i: &&Instruction| {
+            matches!(
+                i,
+                Instruction::PassStart { .. } | Instruction::Turn { .. } | Instruction::Above | Instruction::PassEnd
+            )
+        };
         let steps = program.instructions.iter().filter(|i| !between(i));
         steps.map(|&instruction| self.step(instruction)).collect()
     }
@@ -92,7 +96,9 @@ impl Step {
             Instruction::ArcOff { .. } => "arc-off",
             Instruction::Dwell { .. } => "dwell",
             // Templates see what is between them.
-            Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd => "pass",
+            Instruction::PassStart { .. } | Instruction::Turn { .. } | Instruction::Above | Instruction::PassEnd => {
+                "pass"
+            }
         }
     }
 
@@ -109,7 +115,9 @@ impl Step {
             Instruction::Crater { .. } => &["kind", "seconds", "ratio", "wire_feed"],
             Instruction::ArcOff { .. } => &["kind", "pass"],
             Instruction::Dwell { .. } => &["kind", "seconds"],
-            Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd => &["kind"],
+            Instruction::PassStart { .. } | Instruction::Turn { .. } | Instruction::Above | Instruction::PassEnd => {
+                &["kind"]
+            }
         }
     }
 

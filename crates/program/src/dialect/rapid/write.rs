@@ -328,6 +328,7 @@ impl AbbRapid {
                 (Instruction::Dwell { seconds }, _) => wait(text, seconds),
                 (Instruction::PassStart { pass, above, .. }, _) => self.pass_start(text, pass, above),
                 (Instruction::Above, _) => self.above(text),
+                (Instruction::Turn { .. }, _) => {}
                 (Instruction::PassEnd, _) => {
                     self.hook(text, &self.rapid.hooks.pass_end);
                     self.end_skippable(text);

@@ -222,6 +222,7 @@ impl UniversalScript {
             }
             Instruction::PassStart { pass, above, .. } => self.pass_start(text, indent, pass, above),
             Instruction::Above => self.above(text, indent),
+            Instruction::Turn { .. } => {}
             Instruction::PassEnd => {
                 self.lines(text, indent, &self.urscript.hooks.pass_end);
                 self.end_skippable(text, indent);

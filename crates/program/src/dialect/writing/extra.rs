@@ -15,10 +15,12 @@ pub enum Extra {
     Weave,
     /// A torch that leans (`program.follow_wall`, `program.travel_angle`).
     Tilt,
+    /// Layers that are not level (`layers.chart`).
+    Chart,
 }
 
 impl Extra {
-    const ALL: [Self; 4] = [Self::Restart, Self::LayerOffsets, Self::Weave, Self::Tilt];
+    const ALL: [Self; 5] = [Self::Restart, Self::LayerOffsets, Self::Weave, Self::Tilt, Self::Chart];
 
     fn is_asked(self, job: &Job<'_>) -> bool {
         match self {
@@ -26,6 +28,7 @@ impl Extra {
             Self::LayerOffsets => job.program.layer_offsets,
             Self::Weave => job.weave.is_some(),
             Self::Tilt => job.program.tilts(),
+            Self::Chart => !job.weld.chart.is_level(),
         }
     }
 
@@ -45,6 +48,10 @@ impl Extra {
             Self::Tilt => (
                 "program.follow_wall or program.travel_angle",
                 "Only robots lean their torch; set both to 0 for others.",
+            ),
+            Self::Chart => (
+                "layers.chart",
+                "Only robots turn their torch to layers that are not level: choose a robot's post, or leave layers.chart out.",
             ),
         }
     }

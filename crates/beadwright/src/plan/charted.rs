@@ -1,0 +1,106 @@
+//! Parts whose layers are not level: planned from their mesh in the coordinates of the profile's chart, in which layers are level.
+
+use super::PlanError;
+use crate::chart::{Chart, warp};
+use crate::layer::Layer;
+use crate::model::{Mesh, PartRef};
+use crate::pass::Pass;
+use crate::profile::Profile;
+use crate::task::{Cancelled, Task};
+use glam::DVec2;
+use planar::{Polygon, Ring};
+use std::borrow::Cow;
+
+/// The edges of a mesh in the coordinates of a chart lie this close to the true ones, mm.
+const TOLERANCE: f64 = 0.02;
+
+/// A mesh in the coordinates in which its layers are level.
+///
+/// # Errors
+/// [`Cancelled`] when the task was.
+pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, Cancelled> {
+    let chart = &profile.layers.chart;
+    Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
+}
+
+/// A solid in the coordinates in which its layers are level.
+pub(super) struct Unrolled<'a> {
+    mesh: Cow<'a, Mesh>,
+    milled: Option<Cow<'a, Mesh>>,
+}
+
+impl<'a> Unrolled<'a> {
+    /// `None` for what is planned as it is.
+    pub(super) fn of<E>(part: PartRef<'a>, profile: &Profile, task: &Task) -> Result<Option<Self>, PlanError<E>> {
+        let chart = &profile.layers.chart;
+        if chart.is_level() {
+            return Ok(None);
+        }
+        let PartRef::Mesh { mesh, milled } = part else { return Err(PlanError::ChartOfCurves) };
+        let own = unrolled(mesh, profile, task)?;
+        if own.triangles.is_empty() {
+            return Err(PlanError::Empty(format!(
+                "all of the part lies below the first layer of {chart} (layers.chart); the part's coordinates are those in which \
+                 it stands on the table."
+            )));
+        }
+        let milled = milled.map(|part| unrolled(part, profile, task)).transpose()?;
+        Ok(Some(Self { mesh: own, milled }))
+    }
+
+    pub(super) fn part(&self) -> PartRef<'_> {
+        PartRef::Mesh { mesh: &self.mesh, milled: self.milled.as_deref() }
+    }
+}
+
+/// What lies over or under a layer, as that layer is unrolled: around an axis each layer is longer than the one below it, and an
+/// island that crosses the seam may begin a turn earlier.
+#[derive(Clone, Copy)]
+pub(crate) struct Across<'a> {
+    chart: &'a Chart,
+    /// Middles of the layers, mm.
+    from: f64,
+    to: f64,
+}
+
+/// Turns after which a place on a layer is there again.
+const TURNS: [f64; 3] = [-1.0, 0.0, 1.0];
+
+impl<'a> Across<'a> {
+    /// From the layer with one middle (mm) to that with another; `None` where layers lie over one another as they are.
+    pub(crate) fn new(chart: &'a Chart, from: f64, to: f64) -> Option<Self> {
+        chart.goes_around().then_some(Self { chart, from, to })
+    }
+
+    /// From one layer to another.
+    pub(crate) fn layers(profile: &'a Profile, from: &Layer, to: &Layer) -> Option<Self> {
+        Self::new(&profile.layers.chart, from.middle(), to.middle())
+    }
+
+    /// Where a place lies, a turn before, and a turn after.
+    pub(crate) fn places(&self, p: DVec2) -> impl Iterator<Item = DVec2> {
+        TURNS.into_iter().map(move |turns| self.place(p, turns))
+    }
+
+    fn place(&self, p: DVec2, turns: f64) -> DVec2 {
+        let sheet = self.chart.sheet(self.to);
+        let over = sheet.across(p, &self.chart.sheet(self.from));
+        sheet.turned(over, turns).unwrap_or(over)
+    }
+
+    pub(crate) fn islands(&self, islands: &[Polygon]) -> Vec<Polygon> {
+        let moved = |island: &Polygon, turns: f64| {
+            let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| self.place(*p, turns)).collect());
+            Polygon { outer: ring(&island.outer), holes: island.holes.iter().map(ring).collect() }
+        };
+        islands.iter().flat_map(|island| TURNS.map(|turns| moved(island, turns))).collect()
+    }
+
+    pub(crate) fn passes(&self, passes: &[Pass]) -> Vec<Pass> {
+        let moved = |pass: &Pass, turns: f64| {
+            let points = pass.points.iter().map(|p| self.place(p.truncate(), turns).extend(p.z)).collect();
+            Pass { points, ..pass.clone() }
+        };
+        passes.iter().flat_map(|pass| TURNS.map(|turns| moved(pass, turns))).collect()
+    }
+}
