@@ -41,6 +41,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     drop(out);
     file::write(&path, &bytes)?;
-    writeln!(say::done(file::is_standard(&path)), "{}: {}", path.display(), example.about)?;
+    let mut out = say::done(file::is_standard(&path));
+    writeln!(out, "{}: {}", path.display(), example.about)?;
+    if let Some(chart) = example.chart.filter(|_| !wants_curves) {
+        writeln!(out, "Plan it with --chart {chart}.")?;
+    }
     Ok(())
 }

@@ -1,24 +1,33 @@
 //! plan.json, version 2: the plan as text, written layer by layer, and read back. It carries the whole profile that it was
 //! made with. Lengths are in mm, paces in mm/s.
 //!
+//! Version 3, for plans whose layers are not level (the profile's `layers.chart`), gives points in the part's space, close enough
+//! together to follow the layer, with the layer's normal at each (`normals`). `z`, `height` and islands are those of the layer
+//! as the chart unrolls it.
+//!
 //! Version 1, which is still read, holds only the name of the profile and its bead, and calls the pace `speed`.
 
 use crate::bead::{Bead, Section};
+use crate::chart::{Chart, Sheet};
 use crate::deposit::{DepositSettings, Nominal};
 use crate::heat::LONGEST_WAIT;
 use crate::layer::{Extent, Layer, Lit};
 use crate::model::MAX_REACH_MM;
 use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
-use crate::plan::{self, Header};
+use crate::plan::{self, Header, charted};
 use crate::profile::{Profile, ProfileError};
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;
 use serde_json::json;
 
-/// Version of the format.
+/// Version of the format for level layers, and the newest one.
 pub const VERSION: u32 = 2;
+const NEWEST: u32 = 3;
+
+/// Decimals of normals: 0.0001°.
+const NORMAL_DECIMALS: usize = 6;
 
 /// Decimals of coordinates: the 0.1 µm grid of the plane.
 const DECIMALS: usize = 4;
@@ -28,11 +37,12 @@ pub fn head(header: &Header, profile: &Profile) -> String {
     let Header { part, strategy, extent, .. } = header;
     let bounds = [extent.low, extent.high];
     let fields = json!({ "part": part, "strategy": strategy, "profile": profile, "bounds": bounds }).to_string();
-    format!("{{\"version\":{VERSION},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
+    let version = if profile.layers.chart.is_level() { VERSION } else { NEWEST };
+    format!("{{\"version\":{version},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
-/// The text of one layer; all but the one with index 0 begin with a comma.
-pub fn layer(layer: &Layer) -> String {
+/// The text of one layer; all but the one with index 0 begin with a comma. `sheet` says how it lies in space, if it is not level.
+pub fn layer(layer: &Layer, sheet: Option<&Sheet<'_>>) -> String {
     let points: usize = layer.passes.iter().map(|p| p.points.len()).sum();
     let mut text = String::with_capacity(256 + points * 28);
     text.push_str(if layer.index == 0 { "\n" } else { ",\n" });
@@ -52,7 +62,13 @@ pub fn layer(layer: &Layer) -> String {
         text.push('}');
     });
     text.push_str(",\"passes\":");
-    list(&mut text, &layer.passes, pass);
+    list(&mut text, &layer.passes, |text, own| match sheet {
+        None => pass(text, own, None),
+        Some(sheet) => {
+            let (own, normals) = charted::in_space(own, sheet);
+            pass(text, &own, Some(&normals));
+        }
+    });
     text.push('}');
     text
 }
@@ -62,7 +78,7 @@ pub fn tail() -> &'static str {
     "\n]}\n"
 }
 
-fn pass(text: &mut String, pass: &Pass) {
+fn pass(text: &mut String, pass: &Pass, normals: Option<&[DVec3]>) {
     text.push_str(&format!("{{\"kind\":\"{}\",\"closed\":{},\"points\":", pass.kind.name(), pass.closed));
     // Nearly all points of a pass lie at one height: it is turned into text once.
     let (mut height, mut z) = (f64::NAN, String::new());
@@ -78,6 +94,12 @@ fn pass(text: &mut String, pass: &Pass) {
         text.push_str(&z);
         text.push(']');
     });
+    if let Some(normals) = normals {
+        text.push_str(",\"normals\":");
+        list(text, normals, |text, normal| {
+            list(text, &normal.to_array(), |text, v| push_fixed(text, *v, NORMAL_DECIMALS))
+        });
+    }
     text.push_str(",\"width\":");
     along(text, &pass.width);
     text.push_str(",\"pace\":");
@@ -137,7 +159,7 @@ pub enum PlanFileError {
     Malformed(#[from] serde_json::Error),
     /// Another version.
     #[error(
-        "this plan.json has version {0}; versions 1 and {VERSION} are read. Make the plan again with `beadwright plan`."
+        "this plan.json has version {0}; versions 1 to {NEWEST} are read. Make the plan again with `beadwright plan`."
     )]
     Version(u32),
     /// Not in millimetres.
@@ -184,7 +206,7 @@ pub enum PlanFileError {
 /// profile.fill.strategy = StrategyName::Zigzag;
 /// let cross = example::find("cross").ok_or("no such example")?.mesh();
 /// let plan = plan("cross", &cross, &profile, &Task::new())?;
-/// let layers: String = plan.layers.iter().map(plan_file::layer).collect();
+/// let layers: String = plan.layers.iter().map(|layer| plan_file::layer(layer, None)).collect();
 /// let again = plan_file::read(&(plan_file::head(&plan.header, &profile) + &layers + plan_file::tail()))?;
 /// assert_eq!((again.header.part.as_str(), again.layers.len()), ("cross", plan.layers.len()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -194,7 +216,7 @@ pub enum PlanFileError {
 /// [`PlanFileError`] with the line, or the layer and pass.
 pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     let file: File = serde_json::from_str(text)?;
-    if !(1..=VERSION).contains(&file.version) {
+    if !(1..=NEWEST).contains(&file.version) {
         return Err(PlanFileError::Version(file.version));
     }
     if file.units != "mm" {
@@ -207,7 +229,13 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
         }
         FileProfile::Name(name) => (name, None, file.bead.map(|b| b.settings(file.machining_allowance)).transpose()?),
     };
-    let mut layers = file.layers.into_iter().enumerate().map(FileLayer::layer).collect::<Result<Vec<_>, _>>()?;
+    let chart = profile.as_ref().map(|profile| profile.layers.chart).unwrap_or_default();
+    let mut layers = file
+        .layers
+        .into_iter()
+        .enumerate()
+        .map(|layer| FileLayer::layer(layer, &chart))
+        .collect::<Result<Vec<_>, _>>()?;
     Lit::join(&mut layers).map_err(|index| PlanFileError::Layer { layer: index + 1, reason: NOT_ONE_TURN })?;
     if layers.is_empty() {
         return Err(PlanFileError::Empty);
@@ -325,7 +353,7 @@ fn possible(value: f64) -> bool {
 const MAX_MEASURE: f64 = 2000.0;
 
 impl FileLayer {
-    fn layer((number, layer): (usize, Self)) -> Result<Layer, PlanFileError> {
+    fn layer((number, layer): (usize, Self), chart: &Chart) -> Result<Layer, PlanFileError> {
         let Self { index, z, height, goes_on, islands, passes } = layer;
         let wrong = |reason| Err(PlanFileError::Layer { layer: number + 1, reason });
         if index != number {
@@ -338,7 +366,11 @@ impl FileLayer {
         let read = |(i, pass): (usize, FilePass)| {
             pass.pass().map_err(|reason| PlanFileError::Pass { layer: index + 1, pass: i + 1, reason })
         };
-        let passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+        let mut passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
+        if !chart.is_level() {
+            let sheet = chart.sheet(z - height / 2.0);
+            passes = passes.into_iter().map(|pass| charted::on_layer(pass, &sheet, &islands)).collect();
+        }
         let slice_area = islands.iter().map(Polygon::area).sum();
         let lit = Lit { before: false, after: goes_on };
         Ok(Layer { index, z, height, islands, passes, lit, slice_area, ..Layer::default() })

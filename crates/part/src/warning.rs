@@ -6,7 +6,7 @@ mod about;
 pub use about::About;
 
 use crate::finding::{Finding, Severity, as_sentence};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -128,6 +128,9 @@ pub struct WarningSummary {
     pub largest: Warning,
     /// Top of its layer, mm.
     pub z: f64,
+    /// Where it lies in space, mm, if its layer is not level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<DVec3>,
     /// Sum of the sizes, in the unit of the kind.
     pub total: f64,
 }
@@ -139,18 +142,24 @@ pub struct Warnings(BTreeMap<WarningKind, WarningSummary>);
 impl Warnings {
     /// Counts one event on a layer whose top lies at `z` (mm); events come in the order of layers.
     pub fn add(&mut self, warning: Warning, z: f64) {
+        self.add_at(warning, z, None);
+    }
+
+    /// The same for an event that lies elsewhere in space (mm) than on its layer.
+    pub fn add_at(&mut self, warning: Warning, z: f64, at: Option<DVec3>) {
         let summary = self.0.entry(warning.kind).or_insert_with(|| WarningSummary {
             kind: warning.kind,
             count: 0,
             layers: Vec::new(),
             largest: warning,
             z,
+            at,
             total: 0.0,
         });
         summary.count += 1;
         summary.total += warning.size;
         if warning.size > summary.largest.size {
-            (summary.largest, summary.z) = (warning, z);
+            (summary.largest, summary.z, summary.at) = (warning, z, at);
         }
         match summary.layers.last_mut() {
             Some((_, last)) if warning.layer <= *last + 1 => *last = warning.layer.max(*last),
@@ -173,7 +182,8 @@ impl WarningSummary {
     /// What happened, with layer range, place and size.
     fn text(&self) -> String {
         let Self { count, largest, z, total, .. } = self;
-        let (layers, place, size) = (self.layer_text(), place_text(largest, *z), largest.size);
+        let at = self.at.unwrap_or(largest.place.extend(*z));
+        let (layers, place, size) = (self.layer_text(), place_text(largest.layer, at), largest.size);
         let times = |one: &str, many: &str| format!("{count} {}", if *count == 1 { one } else { many });
         match self.kind {
             WarningKind::GapClosed => {
@@ -296,6 +306,6 @@ impl WarningSummary {
     }
 }
 
-fn place_text(w: &Warning, z: f64) -> String {
-    format!("(layer {}, near x {:.1} y {:.1} z {z:.1} mm)", w.layer + 1, w.place.x, w.place.y)
+fn place_text(layer: usize, at: DVec3) -> String {
+    format!("(layer {}, near x {:.1} y {:.1} z {:.1} mm)", layer + 1, at.x, at.y, at.z)
 }

@@ -14,6 +14,7 @@ mod dense_points;
 mod heat_input;
 mod layers;
 mod low_travel;
+mod off_level;
 mod outside;
 mod overfill;
 mod overhang;
@@ -46,7 +47,7 @@ use std::borrow::Borrow;
 use std::collections::BTreeSet;
 
 /// The checks.
-pub const CHECKS: [Check; 24] = [
+pub const CHECKS: [Check; 25] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
@@ -54,6 +55,7 @@ pub const CHECKS: [Check; 24] = [
     retraced::CHECK,
     clearance::CHECK,
     low_travel::CHECK,
+    off_level::CHECK,
     short_pass::CHECK,
     short_arc::CHECK,
     speed_window::CHECK,
@@ -81,7 +83,7 @@ const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
 ];
 
 /// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
-const SERIOUS: [&Check; 8] = [
+const SERIOUS: [&Check; 9] = [
     &points::CHECK,
     &layers::CHECK,
     &air::CHECK,
@@ -89,6 +91,7 @@ const SERIOUS: [&Check; 8] = [
     &retraced::CHECK,
     &clearance::CHECK,
     &low_travel::CHECK,
+    &off_level::CHECK,
     &towers::CHECK,
 ];
 
@@ -226,7 +229,7 @@ pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: 
     let LayerFigures { figures, grown: Grown { layers: growth, built }, .. } = judged;
     let layers = layers.iter().map(L::borrow).collect();
     let subject = Subject { layers, profile, figures, growth, built };
-    CHECKS.iter().flat_map(|check| (check.find)(&subject)).collect()
+    CHECKS.iter().flat_map(|check| (check.find)(&subject)).map(|finding| subject.located(finding)).collect()
 }
 
 /// The check with this name.
@@ -281,13 +284,11 @@ impl Check {
     }
 
     fn of_layer(&self, layer: &Layer, place: Option<DVec3>, text: String) -> Finding {
-        let text = format!("layer {}{}: {text}", layer.index + 1, at(place));
         Finding { layer: Some(layer.index), place, ..self.of_plan(text) }
     }
 
     fn of_pass(&self, layer: &Layer, pass: usize, place: Option<DVec3>, text: String) -> Finding {
-        let text = format!("layer {}, pass {}{}: {text}", layer.index + 1, pass + 1, at(place));
-        Finding { layer: Some(layer.index), pass: Some(pass), place, ..self.of_plan(text) }
+        Finding { pass: Some(pass), ..self.of_layer(layer, place, text) }
     }
 }
 
@@ -300,6 +301,16 @@ impl Subject<'_> {
     /// Every pass with its layer and its index in it.
     fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+    }
+
+    /// A finding that says where it is: its place is on the layer, the sentence names that in space.
+    fn located(&self, finding: Finding) -> Finding {
+        let Some(layer) = finding.layer else { return finding };
+        let sheet = self.layers.iter().find(|l| l.index == layer).and_then(|l| self.profile.layers.sheet(l));
+        let place = finding.place.map(|p| sheet.map_or(p, |sheet| sheet.at(p).place));
+        let pass = finding.pass.map_or_else(String::new, |pass| format!(", pass {}", pass + 1));
+        let text = format!("layer {}{pass}{}: {}", layer + 1, at(place), finding.text);
+        Finding { text, ..finding }
     }
 
     /// Those that are beads: for dots, the profile says how long they take and how high they are.

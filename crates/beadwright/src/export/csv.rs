@@ -18,7 +18,7 @@ fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     for piece in &pieces {
         COUNTS.iter().for_each(|(_, count)| text.push_str(&format!("{},", count(piece))));
         text.push_str(piece.kind.name());
-        for column in measures {
+        for column in &measures {
             text.push(',');
             push_fixed(&mut text, (column.value)(piece), column.decimals);
         }

@@ -77,6 +77,11 @@ pub enum ExportError {
         /// Its size, GB.
         gigabytes: f64,
     },
+    /// Layers that the format cannot hold.
+    #[error(
+        "this format holds level layers only, and those of the plan lie on {0} (layers.chart); export csv, vtp, stl or glb"
+    )]
+    NotLevel(&'static str),
     /// A picture cannot be drawn.
     #[cfg(feature = "png")]
     #[error("the picture cannot be drawn: {0}")]
@@ -153,6 +158,8 @@ pub struct Piece {
     pub from: DVec3,
     /// Where it ends, mm.
     pub to: DVec3,
+    /// Unit vector out of the layer, in the middle of the piece.
+    pub normal: DVec3,
     /// Width of the bead, mm.
     pub width: f64,
     /// Thickness of the layer, mm.
@@ -175,9 +182,19 @@ impl Beads<'_> {
     /// The pieces of all beads, in the order in which they are welded.
     pub fn pieces(&self) -> Vec<Piece> {
         let mut pieces: Vec<Piece> =
-            walk::runs(self.layers, self.profile).into_iter().flat_map(|run| run.pieces).collect();
+            walk::runs(self.layers, self.profile).into_iter().flat_map(|run| self.in_space(run)).collect();
         for run in pieces.chunk_by_mut(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
             self.warm(run);
+        }
+        pieces
+    }
+
+    /// The pieces of a pass, where they lie in space.
+    fn in_space(&self, run: walk::Run<'_>) -> Vec<Piece> {
+        let mut pieces = run.pieces;
+        if let Some(sheet) = self.profile.layers.sheet(run.layer) {
+            let place = |p: &mut DVec3| *p = sheet.at(*p).place;
+            pieces.iter_mut().flat_map(|piece| [&mut piece.from, &mut piece.to]).for_each(place);
         }
         pieces
     }

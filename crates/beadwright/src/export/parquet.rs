@@ -20,16 +20,16 @@ fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let (pieces, measures) = (beads.pieces(), measures(beads));
     let properties =
         WriterProperties::builder().set_created_by(concat!("Beadwright ", env!("CARGO_PKG_VERSION")).to_owned());
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(measures)?, Arc::new(properties.build()))?;
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema(&measures)?, Arc::new(properties.build()))?;
     for rows in pieces.chunks(GROUP) {
         let mut group = writer.next_row_group()?;
-        columns(&mut group, rows, measures)?;
+        columns(&mut group, rows, &measures)?;
         group.close()?;
     }
     Ok(writer.into_inner()?)
 }
 
-fn schema(measures: &[Column]) -> Result<TypePtr, ParquetError> {
+fn schema(measures: &[&Column]) -> Result<TypePtr, ParquetError> {
     let field = |name: &str, kind: Physical, meaning: Option<LogicalType>| {
         let field = Type::primitive_type_builder(name, kind).with_repetition(Repetition::REQUIRED);
         field.with_logical_type(meaning).build().map(Arc::new)
@@ -45,7 +45,7 @@ fn schema(measures: &[Column]) -> Result<TypePtr, ParquetError> {
 fn columns(
     group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
     rows: &[Piece],
-    measures: &[Column],
+    measures: &[&Column],
 ) -> Result<(), ParquetError> {
     let mut counts = COUNTS.iter();
     let mut measures = measures.iter();

@@ -29,7 +29,15 @@ pub(super) fn bodies(beads: &Beads<'_>) -> Vec<Body> {
     let process = &beads.profile.process;
     let metal = beads.profile.bead().area() * process.deposition_speed;
     let runs = walk::runs(beads.layers, beads.profile);
-    runs.iter().flat_map(|run| of_run(run, beads.profile.bead.section, metal)).collect()
+    let in_space = |run: &Run<'_>| {
+        let mut bodies = of_run(run, beads.profile.bead.section, metal);
+        if let Some(sheet) = beads.profile.layers.sheet(run.layer) {
+            let vertices = bodies.iter_mut().flat_map(|body| &mut body.solid.vertices);
+            vertices.for_each(|p| *p = sheet.at(*p).place);
+        }
+        bodies
+    };
+    runs.iter().flat_map(in_space).collect()
 }
 
 /// A piece of the path with its section.

@@ -20,12 +20,21 @@ pub(super) const COUNTS: [Count; 2] = [("layer", |p| p.layer), ("pass", |p| p.pa
 /// The name of the column with the kinds of passes.
 pub(super) const KIND: &str = "kind";
 
-/// The columns of measures; that of temperatures only where they were computed.
-pub(super) fn measures(beads: &Beads<'_>) -> &'static [Column] {
-    if beads.heat.is_some() { &MEASURES } else { &MEASURES[..MEASURES.len() - 1] }
+/// The columns of measures; normals only where layers are not level, temperatures only where they were computed.
+pub(super) fn measures(beads: &Beads<'_>) -> Vec<&'static Column> {
+    let normals = NORMALS.iter().filter(|_| !beads.profile.layers.chart.is_level());
+    MEASURES.iter().chain(normals).chain(beads.heat.map(|_| &TEMPERATURE)).collect()
 }
 
-const MEASURES: [Column; 14] = [
+const TEMPERATURE: Column = measure("temperature (°C)", |p| p.temperature);
+
+const NORMALS: [Column; 3] = [
+    measure("normal x", |p| p.normal.x),
+    measure("normal y", |p| p.normal.y),
+    measure("normal z", |p| p.normal.z),
+];
+
+const MEASURES: [Column; 13] = [
     place("x0 (mm)", |p| p.from.x),
     place("y0 (mm)", |p| p.from.y),
     place("z0 (mm)", |p| p.from.z),
@@ -39,7 +48,6 @@ const MEASURES: [Column; 14] = [
     measure("wire feed (ratio)", |p| p.feed),
     measure("start (s)", |p| p.start),
     measure("time (s)", |p| p.seconds),
-    measure("temperature (°C)", |p| p.temperature),
 ];
 
 const fn place(name: &'static str, value: fn(&Piece) -> f64) -> Column {

@@ -1,12 +1,14 @@
 //! The torch's walk over a plan: what each pass becomes when it is welded, with times and waits.
 
 use super::Piece;
+use crate::chart::Sheet;
 use crate::layer::Layer;
 use crate::pass::Pass;
+use crate::plan::charted;
 use crate::profile::Profile;
 use crate::program::Tilt;
 use crate::weld::{Torch, path};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// A pass as it is welded.
 pub(super) struct Run<'a> {
@@ -42,7 +44,7 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
             travel += pauses().map(|pause| pause.moving).sum::<f64>() + walk.torch.approach(start).moving;
             let pause = pauses().map(|pause| pause.seconds).sum::<f64>();
             walk.now += travel + pause;
-            let run = walk.run(layer, number, pass);
+            let run = walk.run(layer, number, pass, profile.layers.sheet(layer));
             found.push(Run { travel, pause, ..run });
             travel = walk.torch.retract().moving;
         }
@@ -61,10 +63,13 @@ struct Walk {
 
 impl Walk {
     /// Welds a pass from its start.
-    fn run<'a>(&mut self, layer: &'a Layer, number: usize, pass: &'a Pass) -> Run<'a> {
+    fn run<'a>(&mut self, layer: &'a Layer, number: usize, pass: &'a Pass, sheet: Option<Sheet<'_>>) -> Run<'a> {
         let (mut moves, wide) = (path(pass, self.torch.ends()), pass.width.max());
         if self.tilt.is_some() {
             moves = Tilt::divided(moves, wide);
+        }
+        if let Some(sheet) = sheet {
+            moves = followed(moves, &sheet);
         }
         let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
         let welded = self.torch.weld(pass.kind, &moves);
@@ -78,6 +83,7 @@ impl Walk {
             let (speed, feed) = (self.torch.speed_at(pace), self.torch.feed_at(pace));
             let seconds = from.distance(to) / speed * slower;
             let width = widths.iter().find(|(end, _)| way < end - 1e-9).or(widths.last()).map_or(0.0, |w| w.1);
+            let normal = sheet.map_or(DVec3::Z, |sheet| sheet.at(from.midpoint(to)).normal);
             let (layer, height, kind) = (layer.index + 1, layer.height, pass.kind);
             pieces.push(Piece {
                 layer,
@@ -85,6 +91,7 @@ impl Walk {
                 kind,
                 from,
                 to,
+                normal,
                 width,
                 height,
                 speed,
@@ -101,6 +108,18 @@ impl Walk {
         self.now += welded.before + welded.moving + after;
         Run { layer, pass, pieces, leans, pause: 0.0, before: welded.before, after, travel: 0.0 }
     }
+}
+
+/// Moves close enough together that straight pieces between them follow their layer.
+fn followed(moves: Vec<(DVec3, f64)>, sheet: &Sheet<'_>) -> Vec<(DVec3, f64)> {
+    let points: Vec<DVec3> = moves.iter().map(|(to, _)| *to).collect();
+    let pace = |piece: usize| moves[(piece + 1).min(moves.len() - 1)].1;
+    let mut before = 0;
+    let followed = charted::followed(&points, false, sheet).into_iter().map(|(to, piece)| {
+        let own = std::mem::replace(&mut before, piece);
+        (to, pace(own))
+    });
+    followed.collect()
 }
 
 /// How far along a pass each width reaches, mm, and the width, mm; the overlap of a closed pass begins anew.

@@ -245,7 +245,7 @@ impl PlanFiles {
             }
             None => self.layers.clear(),
         }
-        let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer))];
+        let mut chunks = vec![Chunk::new(PLAN, plan_file::layer(layer, self.profile.layers.sheet(layer).as_ref()))];
         match self.selection.first_pass(layer.index) {
             Some(first) => {
                 chunks.extend(self.programs.layer(layer, first));

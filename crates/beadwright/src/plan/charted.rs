@@ -1,13 +1,13 @@
 //! Parts whose layers are not level: planned from their mesh in the coordinates of the profile's chart, in which layers are level.
 
 use super::PlanError;
-use crate::chart::{Chart, warp};
+use crate::chart::{At, Chart, Sheet, warp};
 use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
-use crate::pass::Pass;
+use crate::pass::{Along, Pass};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Task};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use std::borrow::Cow;
 
@@ -103,4 +103,52 @@ impl<'a> Across<'a> {
         };
         passes.iter().flat_map(|pass| TURNS.map(|turns| moved(pass, turns))).collect()
     }
+}
+
+/// Pieces of passes in space keep this close to the line on their layer, mm, and normals turn by no more than this on each, rad.
+const FINE: (f64, f64) = (0.01, 0.05);
+
+/// Points of a line on a layer, close enough together that the straight pieces between them follow the layer; for each, the index
+/// of the point of the line whose piece it begins.
+pub(crate) fn followed(points: &[DVec3], closed: bool, sheet: &Sheet<'_>) -> Vec<(DVec3, usize)> {
+    let (tolerance, angle) = FINE;
+    let mut followed: Vec<(DVec3, usize)> = points.first().map(|first| (*first, 0)).into_iter().collect();
+    let closing = points.last().zip(points.first()).filter(|_| closed).map(|(last, first)| [*last, *first]);
+    let pieces = points.windows(2).map(|w| [w[0], w[1]]).chain(closing);
+    for (i, [from, to]) in pieces.enumerate() {
+        let ends = sheet.divided(from, to, tolerance, angle).map(|p| if p == to { (p, i + 1) } else { (p, i) });
+        followed.extend(ends);
+    }
+    // The closing piece ends where the line began.
+    followed.truncate(followed.len() - usize::from(closed && followed.len() > 1));
+    followed
+}
+
+/// A pass in space, and the normal of its layer at each of its points.
+pub(crate) fn in_space(pass: &Pass, sheet: &Sheet<'_>) -> (Pass, Vec<DVec3>) {
+    let followed = followed(&pass.points, pass.closed, sheet);
+    let along = |along: &Along| match along {
+        Along::Same(value) => Along::Same(*value),
+        Along::Each(_) => Along::Each(followed.iter().map(|(_, piece)| along.after(*piece)).collect()),
+    };
+    let (width, pace) = (along(&pass.width), along(&pass.pace));
+    let at: Vec<At> = followed.iter().map(|(p, _)| sheet.at(*p)).collect();
+    let points = at.iter().map(|at| at.place).collect();
+    (Pass { points, width, pace, ..pass.clone() }, at.iter().map(|at| at.normal).collect())
+}
+
+/// A pass from space on its layer: its first point lies within the layer's islands if some turn brings it there.
+pub(crate) fn on_layer(pass: Pass, sheet: &Sheet<'_>, islands: &[Polygon]) -> Pass {
+    let Some(first) = pass.points.first() else { return pass };
+    let start = sheet.coordinates(*first, DVec2::ZERO).truncate();
+    let turned = [0.0, 1.0, -1.0].into_iter().filter_map(|turns| sheet.turned(start, turns));
+    let inside = |p: &DVec2| islands.iter().any(|island| island.contains(*p));
+    let mut near = turned.clone().find(inside).unwrap_or(start);
+    let place = |p: &DVec3| {
+        let on_it = sheet.coordinates(*p, near);
+        near = on_it.truncate();
+        on_it
+    };
+    let points = pass.points.iter().map(place).collect();
+    Pass { points, ..pass }
 }

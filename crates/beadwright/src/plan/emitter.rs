@@ -87,7 +87,11 @@ impl<S: Sink> Emitter<'_, S> {
         self.doubts(&mut layer);
         self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
         self.below_middle = layer.middle();
-        layer.warnings.iter().for_each(|w| self.warnings.add(*w, layer.z));
+        let sheet = self.profile.layers.sheet(&layer);
+        for warning in &layer.warnings {
+            let at = sheet.map(|sheet| sheet.at(warning.place.extend(layer.z)).place);
+            self.warnings.add_at(*warning, layer.z, at);
+        }
         self.metrics.add(&layer);
         if let Some(grown) = &mut self.grown {
             grown.weld(&welded(&layer, self.profile).passes);

@@ -265,7 +265,7 @@ fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> 
     Ok(match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
         None if profile.is_level() => level_layers::slabs(mesh, profile.fill.strategy.strategy(), profile, task)?,
-        None => slice::fitted_slabs(mesh, profile.layers.height, profile.fit()),
+        None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
     })
 }
 
@@ -328,7 +328,8 @@ fn run<S: Sink + Send>(
         helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
         no_turn: None,
         support: Support::default(),
-        grown: profile.is_level().then(|| {
+        // Around an axis layers do not lie over one another as they are unrolled.
+        grown: (profile.is_level() && !profile.layers.chart.goes_around()).then(|| {
             let (low, high) = (extent.low, extent.high);
             let bounds = Bounds { min: low.truncate(), max: high.truncate() };
             Stack::new(&bounds, deposit_settings_over(profile, (low, high)))

@@ -1,6 +1,7 @@
 //! The section `[layers]`.
 
-use crate::chart::Chart;
+use crate::chart::{Chart, Sheet};
+use crate::layer::Layer;
 use crate::limit::{Limit, limits};
 use crate::slice::LayerFit;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,11 @@ pub enum Predict {
 }
 
 impl LayersSection {
+    /// How a layer lies in space; `None` where it is level.
+    pub fn sheet(&self, layer: &Layer) -> Option<Sheet<'_>> {
+        (!self.chart.is_level()).then(|| self.chart.sheet(layer.middle()))
+    }
+
     /// The limits of the numbers.
     pub(super) fn limits(&self) -> Vec<Limit> {
         limits! {

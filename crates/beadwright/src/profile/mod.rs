@@ -298,15 +298,7 @@ impl Profile {
     pub fn is_level(&self) -> bool {
         let walls = self.wall_bead().is_ok_and(|wall| wall.is_some());
         let literal = self.hybrid.literal && self.fill.strategy == StrategyName::Hybrid;
-        // Around an axis layers do not lie over one another as they are unrolled.
-        let over_one_another = !self.layers.chart.goes_around();
-        self.layers.level && over_one_another && self.fill.infill_density >= 1.0 && !walls && !literal
-    }
-
-    /// How layers fit the height of a part: those that would be level but lie around an axis are equal, and end with it.
-    pub fn fit(&self) -> LayerFit {
-        let around = self.layers.level && self.layers.chart.goes_around();
-        if around && self.layers.fit == LayerFit::Fixed { LayerFit::Even } else { self.layers.fit }
+        self.layers.level && self.fill.infill_density >= 1.0 && !walls && !literal
     }
 
     /// The wall as thick as the bead is wide, one bead per layer, with the metal that a bead holds.
@@ -319,7 +311,7 @@ impl Profile {
 
     /// What determines the pace of beads. Layers fitted evenly to a part, or to its walls, get the metal that fills them.
     pub fn pace_settings(&self) -> PaceSettings<'_> {
-        let fitted = self.fit() == LayerFit::Even && !self.is_level();
+        let fitted = self.layers.fit == LayerFit::Even && !self.is_level();
         PaceSettings {
             bead: self.bead(),
             law: &self.bead.law,

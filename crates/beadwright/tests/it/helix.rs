@@ -96,7 +96,7 @@ fn no_check_takes_a_helix_for_something_else() {
 fn plan_json_holds_the_helix() {
     let profile = profile(true);
     let plan = planned(&tube(40.0, 7.54, 16.0, 0.0), &profile);
-    let layers: String = plan.layers.iter().map(plan_file::layer).collect();
+    let layers: String = plan.layers.iter().map(|layer| plan_file::layer(layer, None)).collect();
     let text = plan_file::head(&plan.header, &profile) + &layers + plan_file::tail();
     let read = plan_file::read(&text).unwrap();
     assert!(read.layers.iter().zip(&plan.layers).all(|(a, b)| a.lit == b.lit));

@@ -3,6 +3,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
+//! | `hub`, `shaft` | one part each that is welded in layers around its axis |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
@@ -10,10 +11,12 @@ pub mod blade;
 mod cross;
 mod gear;
 mod gourd;
+mod hub;
 mod outline;
 mod plate;
 mod pot;
 mod propeller;
+mod shaft;
 mod star;
 mod tian;
 mod vase;
@@ -33,6 +36,8 @@ pub struct Example {
     pub about: &'static str,
     build: fn() -> Solid,
     curves: Option<fn() -> Vec<Nurbs>>,
+    /// How its layers lie if they are not level: [`Chart`](crate::chart::Chart) as text.
+    pub chart: Option<&'static str>,
 }
 
 /// Every example, by name.
@@ -42,66 +47,91 @@ pub const ALL: &[Example] = &[
         about: "blade, an arched 3.5 mm wall that turns by 25° on its way up, 92.5 × 28.4 × 100 mm",
         build: blade::build,
         curves: Some(blade::curves),
+        chart: None,
     },
     Example {
         name: "cross",
         about: "cross with 36 mm wide arms, 100 × 100 × 20 mm",
         build: cross::build,
         curves: None,
+        chart: None,
     },
     Example {
         name: "gear",
         about: "gear with 12 trapezoidal teeth and a 40 mm bore, 140 × 140 × 20 mm",
         build: gear::build,
         curves: None,
+        chart: None,
     },
     Example {
         name: "gourd",
         about: "bottle gourd with a 4 mm wall, open at both ends, 120 × 120 × 200 mm",
         build: gourd::build,
         curves: Some(gourd::curves),
+        chart: None,
+    },
+    Example {
+        name: "hub",
+        about: "hub of 80 mm with four twisted blades, welded around its axis, 240.3 × 240.3 × 70 mm",
+        build: hub::build,
+        curves: None,
+        chart: Some("cylinder:axis=z,radius=40"),
     },
     Example {
         name: "plate",
         about: "plate with rounded corners and five holes from 10 to 30 mm, 120 × 80 × 12 mm",
         build: plate::build,
         curves: None,
+        chart: None,
     },
     Example {
         name: "pot",
         about: "pot with a 4 mm wall, square below and round above, 100 × 100 × 80 mm",
         build: pot::build,
         curves: Some(pot::curves),
+        chart: None,
     },
     Example {
         name: "propeller",
         about: "ship propeller, four twisted blades on an 80 mm hub with a 36 mm bore, 260 × 260 × 20 mm",
         build: propeller::build,
         curves: None,
+        chart: None,
+    },
+    Example {
+        name: "shaft",
+        about: "shaft of 50 mm with two flanges, welded around its axis, 122 × 122 × 160 mm",
+        build: shaft::build,
+        curves: None,
+        chart: Some("cylinder:axis=z,radius=25"),
     },
     Example {
         name: "star",
         about: "five-pointed star of 80 mm radius, 152.2 × 144.7 × 20 mm",
         build: star::build,
         curves: None,
+        chart: None,
     },
     Example {
         name: "tian",
         about: "frame like the character 田, four openings between 4.5 mm walls, 100 × 100 × 26 mm",
         build: tian::build,
         curves: Some(tian::curves),
+        chart: None,
     },
     Example {
         name: "vase",
         about: "vase with a 14 mm wall and a closed 12 mm bottom, 104 × 104 × 120 mm",
         build: vase::build,
         curves: None,
+        chart: None,
     },
     Example {
         name: "wall",
         about: "straight wall of one bead, 120 × 4.5 × 72 mm",
         build: wall::build,
         curves: Some(wall::curves),
+        chart: None,
     },
 ];
 

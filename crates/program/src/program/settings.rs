@@ -49,6 +49,8 @@ pub struct ProgramSettings {
     /// Lean of the torch along its path, °: above 0 the wire points forward (push), below 0 back (drag). Robots only. Default
     /// 0.
     pub travel_angle: f64,
+    /// How far the normal of a layer that is not level may lean from upright, °, where no positioner turns the part; default 15.
+    pub max_off_level: f64,
     /// Whether a stopped build can continue inside the program, without a new one: a variable, which each program names at its
     /// head, holds the layer times 10000 plus the pass at which to begin, and 0 to begin at the beginning. For robots and
     /// LinuxCNC; for others use `plan --from-layer --from-pass`. Default false.
@@ -76,6 +78,7 @@ impl Default for ProgramSettings {
             follow_wall: 0.0,
             max_work_angle: 30.0,
             travel_angle: 0.0,
+            max_off_level: 15.0,
             restart: false,
             layer_offsets: false,
             measure_every: 10,
@@ -115,6 +118,7 @@ impl ProgramSettings {
             "program.table_side": self.table_side.unwrap_or(0.0), -360.0, 360.0, "°", "values outside this range make no sense";
             "program.follow_wall": self.follow_wall, 0.0, 1.0, "(fraction of the wall's lean)", "a torch leans no more than the wall";
             "program.max_work_angle": self.max_work_angle, 0.0, 45.0, "°", "the gas does not cover the metal at a greater lean";
+            "program.max_off_level": self.max_off_level, 0.0, 180.0, "°", "180° is overhead";
             "program.travel_angle": self.travel_angle, -30.0, 30.0, "°", "the gas does not cover the metal at a greater lean";
         }
     }

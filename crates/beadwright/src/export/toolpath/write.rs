@@ -13,6 +13,10 @@ use glam::DVec3;
 use uuid::Uuid;
 
 pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
+    let chart = &beads.profile.layers.chart;
+    if !chart.is_level() {
+        return Err(ExportError::NotLevel(chart.name()));
+    }
     let runs = walk::runs(beads.layers, beads.profile);
     let (values, tags): (Vec<Vec<Values>>, Vec<Vec<u32>>) = runs.iter().map(layer::lines).unzip();
     let nominal = [beads.profile.bead.width, beads.profile.process.deposition_speed];
@@ -53,7 +57,7 @@ impl Ids {
     fn of(beads: &Beads<'_>) -> Self {
         let own = Uuid::new_v5(&Uuid::NAMESPACE_URL, OWN.as_bytes());
         let head = Uuid::new_v5(&own, plan_file::head(beads.header, beads.profile).as_bytes());
-        let next = |id: Uuid, layer| Uuid::new_v5(&id, plan_file::layer(layer).as_bytes());
+        let next = |id: Uuid, layer| Uuid::new_v5(&id, plan_file::layer(layer, None).as_bytes());
         let file = beads.layers.iter().fold(head, next);
         let of = |name: &str| Uuid::new_v5(&file, name.as_bytes());
         Self { file, object: of("object"), build: of("build"), item: of("item") }

@@ -49,7 +49,7 @@ pub(super) fn slabs(
     let apart = top / count as f64;
     // A slice lies in the middle of its slab.
     let looked_at = (0..count).map(|k| Slab { z: (k as f64 + 0.5) * apart + 0.5 * height, height }).collect();
-    let slicer = Slicer::of_slabs(mesh, looked_at, profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(mesh, looked_at, profile.slice_options(), task)?.on(&profile.layers.chart);
     const { assert!(HEIGHTS <= BATCH) };
     let slices = slicer.batch(0, task)?;
     let alike: Vec<usize> =

@@ -1,0 +1,241 @@
+//! Plans whose layers are not level: they are those of the level part, bent; and what is written of them lies in space.
+
+use crate::common;
+
+use beadwright::chart::Chart;
+use beadwright::model::Mesh;
+use beadwright::pass::Pass;
+use beadwright::plan::{self, Plan};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
+use beadwright::{dialect, example, plan_file};
+use common::profile;
+use glam::{DMat3, DQuat, DVec3, EulerRot};
+use std::f64::consts::TAU;
+
+fn charted(chart: &str) -> Profile {
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.layers.chart = chart.parse().unwrap();
+    profile
+}
+
+fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
+    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+}
+
+fn mesh(name: &str) -> Mesh {
+    example::find(name).unwrap().mesh()
+}
+
+fn text(plan: &Plan, profile: &Profile) -> String {
+    let layers = plan.layers.iter().map(|layer| plan_file::layer(layer, profile.layers.sheet(layer).as_ref()));
+    plan_file::head(&plan.header, profile) + &layers.collect::<String>() + plan_file::tail()
+}
+
+#[test]
+fn level_planes_change_no_byte() {
+    let (level, plane) = (profile("cmt-al2319-kuka"), charted("plane"));
+    for name in ["cross", "tian", "plate"] {
+        let (a, b) = (planned(&mesh(name), &level), planned(&mesh(name), &plane));
+        assert_eq!(text(&a, &level), text(&b, &plane), "{name}");
+        let programs =
+            |plan: &Plan, profile: &Profile| dialect::write("krl", &plan.layers, &profile.job("part")).unwrap();
+        assert_eq!(programs(&a, &level), programs(&b, &plane), "{name}");
+    }
+}
+
+#[test]
+fn a_part_turned_with_its_layers_has_the_same_passes() {
+    let flat = planned(&mesh("cross"), &profile("cmt-al2319-kuka"));
+    for (up, through) in [("1/0/1", "5/-3/40"), ("-0.3/0.2/-1", "0/0/0"), ("-x", "10/20/30")] {
+        let profile = charted(&format!("plane:up={up},through={through}"));
+        let sheet = profile.layers.chart.sheet(0.0);
+        let mut turned = mesh("cross");
+        turned.vertices.iter_mut().for_each(|p| *p = sheet.at(*p).place);
+        let plan = planned(&turned, &profile);
+        assert_eq!(plan.layers.len(), flat.layers.len());
+        for (a, b) in flat.layers.iter().zip(&plan.layers).flat_map(|(a, b)| a.passes.iter().zip(&b.passes)) {
+            assert_eq!(a.points.len(), b.points.len(), "{up}");
+            assert!(a.points.iter().zip(&b.points).all(|(a, b)| a.distance(*b) < 1e-3), "{up}");
+        }
+    }
+}
+
+/// A mesh whose edges are short.
+fn fine(mut mesh: Mesh, longest: f64) -> Mesh {
+    let length = |mesh: &Mesh, [a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|i| mesh.vertices[i as usize]);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    };
+    while mesh.triangles.iter().any(|t| length(&mesh, *t) > longest) {
+        let mut vertices = mesh.vertices.clone();
+        let mut triangles = Vec::new();
+        for &[a, b, c] in &mesh.triangles {
+            let mut middle = |a: u32, b: u32| {
+                vertices.push(mesh.vertices[a as usize].midpoint(mesh.vertices[b as usize]));
+                vertices.len() as u32 - 1
+            };
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        mesh = Mesh::from_triangles(vertices, triangles).0;
+    }
+    mesh
+}
+
+/// A cross bent around a cylinder is planned as the cross is, whatever way it lies and wherever the seam is.
+#[test]
+fn a_part_bent_around_a_cylinder_has_the_passes_of_the_flat_one() {
+    let cross = fine(mesh("cross"), 2.0);
+    let mut level = profile("cmt-al2319-kuka");
+    // Beads of level layers are laid on what lies below; bent, each lies on a layer as planned.
+    level.layers.level = false;
+    let flat = planned(&cross, &level);
+    for text in ["cylinder:axis=z,radius=60", "cylinder:axis=1/2/3,through=4/5/6,radius=60,seam=10"] {
+        let mut profile = charted(text);
+        profile.layers.level = false;
+        let chart = profile.layers.chart;
+        let mut bent = cross.clone();
+        bent.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
+        let plan = planned(&bent, &profile);
+        assert_eq!(plan.layers.len(), flat.layers.len(), "{text}");
+        for (a, b) in flat.layers.iter().zip(&plan.layers) {
+            let area = |layer: &beadwright::Layer| layer.planned_area / layer.slice_area;
+            assert!((b.slice_area / a.slice_area - 1.0).abs() < 1e-3, "{text}: {} {}", a.slice_area, b.slice_area);
+            assert!((area(a) - area(b)).abs() < 2e-3, "{text}: {} {}", area(a), area(b));
+            let length = |passes: &[Pass]| passes.iter().map(Pass::length).sum::<f64>();
+            assert_eq!(a.passes.len(), b.passes.len(), "{text}");
+            assert!((length(&b.passes) / length(&a.passes) - 1.0).abs() < 5e-3, "{text}, layer {}", a.index);
+        }
+    }
+}
+
+/// Whatever part of the shaft is metal outside its bar is laid, one pass for each flange and layer.
+#[test]
+fn flanges_are_laid_around_the_shaft() {
+    let shaft = example::find("shaft").unwrap();
+    let profile = charted(shaft.chart.unwrap());
+    let plan = planned(&shaft.mesh(), &profile);
+    let ring = |outer: f64, wide: f64| TAU / 2.0 * (outer * outer - 625.0) * wide;
+    let volume = ring(61.0, 30.0) + ring(45.0, 22.0);
+    let metrics = &plan.summary.metrics;
+    assert!((metrics.part_volume_mm3 / volume - 1.0).abs() < 0.01, "{} of {volume}", metrics.part_volume_mm3);
+    assert!((metrics.deposited_volume_mm3 / volume - 1.0).abs() < 0.03, "{} of {volume}", metrics.deposited_volume_mm3);
+    for layer in &plan.layers {
+        assert_eq!(layer.passes.len(), layer.islands.len(), "layer {}", layer.index);
+    }
+    assert!(plan.summary.forbidden.is_empty(), "{:?}", plan.summary.forbidden);
+}
+
+/// The file gives points in space, each with the normal there, and is read back as the plan it was made from.
+#[test]
+fn plan_files_hold_places_in_space() {
+    for name in ["shaft", "hub"] {
+        let example = example::find(name).unwrap();
+        let profile = charted(example.chart.unwrap());
+        let plan = planned(&example.mesh(), &profile);
+        let text = text(&plan, &profile);
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(json["version"], 3);
+        let three = |v: &serde_json::Value| DVec3::from_array([0, 1, 2].map(|k| v[k].as_f64().unwrap()));
+        let radius = if name == "hub" { 40.0 } else { 25.0 };
+        for (layer, written) in plan.layers.iter().zip(json["layers"].as_array().unwrap()) {
+            for pass in written["passes"].as_array().unwrap() {
+                let (points, normals) = (pass["points"].as_array().unwrap(), pass["normals"].as_array().unwrap());
+                assert_eq!(points.len(), normals.len());
+                for (p, normal) in points.iter().map(three).zip(normals.iter().map(three)) {
+                    assert!((p.truncate().length() - radius - layer.z).abs() < 1e-3, "{name}: {p}");
+                    assert!(normal.distance(p.with_z(0.0).normalize()) < 1e-4);
+                }
+            }
+        }
+        let again = plan_file::read(&text).unwrap();
+        for (a, b) in plan.layers.iter().zip(&again.layers).flat_map(|(a, b)| a.passes.iter().zip(&b.passes)) {
+            assert!((a.length() - b.length()).abs() < 1e-2, "{name}: {} {}", a.length(), b.length());
+            assert!(a.start().unwrap().distance(b.start().unwrap()) < 1e-3, "{name}: {:?} {:?}", a.start(), b.start());
+        }
+    }
+}
+
+/// Targets of a KRL program while the arc is lit, and where the tool points.
+fn krl_welds(text: &str) -> Vec<(DVec3, DVec3)> {
+    let (mut lit, mut found) = (false, Vec::new());
+    for line in text.lines() {
+        lit = (lit || line.contains("_ARC( )")) && !line.contains("$OUT[2] = FALSE");
+        let Some(target) = line.strip_prefix("LIN {").filter(|_| lit) else { continue };
+        let value = |key: &str| -> f64 {
+            let field = target.split([',', '}']).find_map(|field| field.trim().strip_prefix(key)).unwrap();
+            field.trim().parse().unwrap()
+        };
+        let [a, b, c] = ["A", "B", "C"].map(|key| value(key).to_radians());
+        let tool = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, a, b, c)).z_axis;
+        found.push((DVec3::new(value("X"), value("Y"), value("Z")), tool));
+    }
+    found
+}
+
+/// Read from the program's text: every weld ends on the layer, and the tool points along the layer's normal, into the part.
+#[test]
+fn programs_follow_the_layers_in_space() {
+    let shaft = example::find("shaft").unwrap();
+    let profile = charted(shaft.chart.unwrap());
+    let plan = planned(&shaft.mesh(), &profile);
+    let files = dialect::write("krl", &plan.layers, &profile.job("part")).unwrap();
+    for layer in &plan.layers {
+        let welds = krl_welds(&files[&format!("PART_L{:03}.src", layer.index + 1)]);
+        assert!(welds.len() > 60 * layer.passes.len());
+        for (at, tool) in &welds {
+            assert!((at.truncate().length() - 25.0 - layer.z).abs() < 0.002, "layer {}: {at}", layer.index);
+            assert!(tool.angle_between(-at.with_z(0.0)).to_degrees() < 0.05, "layer {}: {at} {tool}", layer.index);
+        }
+        // Chords stay close to the circle.
+        for pair in welds.windows(2).filter(|pair| pair[0].0.distance(pair[1].0) < 12.0) {
+            let middle = pair[0].0.midpoint(pair[1].0);
+            assert!(25.0 + layer.z - middle.truncate().length() < 0.06, "layer {}: {middle}", layer.index);
+        }
+    }
+    let gcode = dialect::write(
+        "gcode",
+        &plan.layers,
+        &{
+            let mut profile = common::profile("plasma-304-cnc");
+            profile.layers.chart = "cylinder:radius=25".parse().unwrap();
+            profile
+        }
+        .job("part"),
+    );
+    assert!(gcode.unwrap_err().to_string().contains("layers.chart"));
+}
+
+#[test]
+fn blades_on_a_hub_are_supported_wherever_the_seam_lies() {
+    let hub = example::find("hub").unwrap();
+    for seam in [180, 45, 301] {
+        let profile = charted(&format!("cylinder:axis=z,radius=40,seam={seam}"));
+        let plan = planned(&hub.mesh(), &profile);
+        assert!(plan.summary.forbidden.is_empty(), "seam {seam}: {:?}", plan.summary.forbidden);
+        assert!(plan.layers.iter().all(|layer| layer.islands.len() == 4), "seam {seam}");
+        let volume = plan.summary.metrics.part_volume_mm3;
+        assert!((plan.summary.metrics.mesh_volume_mm3.unwrap() / volume - 1.0).abs() < 0.01, "seam {seam}");
+    }
+}
+
+#[test]
+fn what_lies_below_the_first_layer_is_refused() {
+    let profile = charted("cylinder:axis=z,radius=500");
+    let refused = plan::plan("part", &mesh("cross"), &profile, &Task::new()).unwrap_err().to_string();
+    assert!(refused.contains("below the first layer of cylinder"), "{refused}");
+}
+
+#[test]
+fn torches_that_stand_overhead_are_found() {
+    let shaft = example::find("shaft").unwrap();
+    let profile = charted("cylinder:axis=z,radius=25");
+    let plan = planned(&shaft.mesh(), &profile);
+    let settings = plan::deposit_settings(&profile);
+    let found = beadwright::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+    let leaning: Vec<_> = found.iter().filter(|finding| finding.kind == "off-level").collect();
+    assert!(leaning.len() == 1 && (leaning[0].size.unwrap() - 90.0).abs() < 1e-6, "{leaning:?}");
+    let chart: Chart = "plane".parse().unwrap();
+    assert!(chart.is_level());
+}
