@@ -18,15 +18,18 @@ use std::collections::BTreeSet;
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
     let m = &summary.metrics;
+    let chart = &profile.layers.chart;
+    let lie = if chart.is_level() { String::new() } else { format!(" Layers lie on {chart} and are shown unrolled.") };
     format!(
-        "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.",
+        "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.{}",
         count(header.extent.layers, "layer", "layers") + &empty(header, m),
         count(m.passes, "pass", "passes"),
         escape(&header.strategy),
         metres(m.deposited_length_mm),
         mass(m.wire_mass_kg),
         escape(&profile.wire.material),
-        duration(m.total_time_s)
+        duration(m.total_time_s),
+        escape(&lie)
     )
 }
 

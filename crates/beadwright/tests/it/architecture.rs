@@ -15,6 +15,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             // Pure geometry; a file of curves is read by the model.
             &["curve"],
             &["model"],
+            &["chart"],
             &["deviation", "example", "slice"],
         ],
     ),

@@ -10,7 +10,7 @@ use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{dialect, example, plan_file};
 use common::profile;
-use glam::{DMat3, DQuat, DVec3, EulerRot};
+use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot};
 use std::f64::consts::TAU;
 
 fn charted(chart: &str) -> Profile {
@@ -55,8 +55,15 @@ fn a_part_turned_with_its_layers_has_the_same_passes() {
         let plan = planned(&turned, &profile);
         assert_eq!(plan.layers.len(), flat.layers.len());
         for (a, b) in flat.layers.iter().zip(&plan.layers).flat_map(|(a, b)| a.passes.iter().zip(&b.passes)) {
-            assert_eq!(a.points.len(), b.points.len(), "{up}");
-            assert!(a.points.iter().zip(&b.points).all(|(a, b)| a.distance(*b) < 1e-3), "{up}");
+            assert!((a.length() - b.length()).abs() < 1e-3 * a.length(), "{up}: {} {}", a.length(), b.length());
+            // Rounding adds and drops points on straight lines.
+            let line = a.line();
+            let off = |p: DVec2| {
+                let piece = |w: &[DVec2]| beadwright::planar::polyline::distance_squared_to_segment(p, w[0], w[1]);
+                line.windows(2).map(piece).fold(f64::INFINITY, f64::min).sqrt()
+            };
+            let farthest = b.line().into_iter().map(off).fold(0.0, f64::max);
+            assert!(farthest < 0.02, "{up}: {farthest}");
         }
     }
 }
@@ -116,12 +123,13 @@ fn flanges_are_laid_around_the_shaft() {
     let shaft = example::find("shaft").unwrap();
     let profile = charted(shaft.chart.unwrap());
     let plan = planned(&shaft.mesh(), &profile);
-    let ring = |outer: f64, wide: f64| TAU / 2.0 * (outer * outer - 625.0) * wide;
-    let volume = ring(61.0, 30.0) + ring(45.0, 22.0);
     let metrics = &plan.summary.metrics;
-    assert!((metrics.part_volume_mm3 / volume - 1.0).abs() < 0.01, "{} of {volume}", metrics.part_volume_mm3);
-    assert!((metrics.deposited_volume_mm3 / volume - 1.0).abs() < 0.03, "{} of {volume}", metrics.deposited_volume_mm3);
+    let (laid, sliced) = (metrics.deposited_volume_mm3, metrics.part_volume_mm3);
+    assert!((laid / sliced - 1.0).abs() < 0.02, "{laid} of {sliced}");
     for layer in &plan.layers {
+        let radius = 25.0 + layer.middle();
+        let wide = if radius < 45.0 { 30.0 + 22.0 } else { 30.0 };
+        assert!((layer.slice_area / (TAU * radius * wide) - 1.0).abs() < 1e-3, "layer {}", layer.index);
         assert_eq!(layer.passes.len(), layer.islands.len(), "layer {}", layer.index);
     }
     assert!(plan.summary.forbidden.is_empty(), "{:?}", plan.summary.forbidden);
@@ -214,7 +222,9 @@ fn blades_on_a_hub_are_supported_wherever_the_seam_lies() {
         let profile = charted(&format!("cylinder:axis=z,radius=40,seam={seam}"));
         let plan = planned(&hub.mesh(), &profile);
         assert!(plan.summary.forbidden.is_empty(), "seam {seam}: {:?}", plan.summary.forbidden);
-        assert!(plan.layers.iter().all(|layer| layer.islands.len() == 4), "seam {seam}");
+        // The ends of the blades are flat, so that their corners reach farthest.
+        let counts: Vec<usize> = plan.layers.iter().map(|layer| layer.islands.len()).collect();
+        assert!(counts.iter().filter(|count| **count == 4).count() + 2 >= counts.len(), "seam {seam}: {counts:?}");
         let volume = plan.summary.metrics.part_volume_mm3;
         assert!((plan.summary.metrics.mesh_volume_mm3.unwrap() / volume - 1.0).abs() < 0.01, "seam {seam}");
     }

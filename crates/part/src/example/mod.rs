@@ -72,7 +72,7 @@ pub const ALL: &[Example] = &[
     },
     Example {
         name: "hub",
-        about: "hub of 80 mm with four twisted blades, welded around its axis, 240.3 × 240.3 × 70 mm",
+        about: "hub of 80 mm with four twisted blades, welded around its axis, 240 × 240 × 70 mm",
         build: hub::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=40"),
