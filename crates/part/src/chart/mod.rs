@@ -28,6 +28,7 @@ pub use plane::Plane;
 pub use text::ChartError;
 
 use glam::{DVec2, DVec3};
+use planar::{Polygon, Ring};
 use polar::Polar;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -175,6 +176,17 @@ impl Sheet<'_> {
         Some(polar.unrolled(angle + turns * TAU, along, self.middle))
     }
 
+    /// The part of the layer between two angles (rad), as far as `reach` (mm) along its straight lines to both sides.
+    fn sector(&self, [from, to]: [f64; 2], reach: f64) -> Polygon {
+        let Some(polar) = self.chart.polar() else { return Polygon::default() };
+        let count = ((to - from) / SECTOR_STEP).ceil().max(1.0) as usize;
+        let at =
+            |k: usize, along: f64| polar.unrolled(from + (to - from) * k as f64 / count as f64, along, self.middle);
+        let near = (0..=count).map(|k| at(k, polar.nearest(reach)));
+        let far = (0..=count).rev().map(|k| at(k, reach));
+        Polygon::simple(Ring::new(near.chain(far).collect()))
+    }
+
     /// Where a point lies along the seam at this angle (rad), mm; `None` where it is farther from it than `within` (mm).
     fn on_seam(&self, p: DVec2, angle: f64, within: f64) -> Option<f64> {
         let polar = self.chart.polar()?;
@@ -226,3 +238,6 @@ const MOST_PIECES: usize = 1 << 16;
 
 /// rad
 const SMALL_TURN: f64 = 1e-3;
+
+/// Sectors have corners this close together, rad: their far sides lie well outside of what is cut.
+const SECTOR_STEP: f64 = 0.2;

@@ -1,9 +1,9 @@
 //! Islands that cross the seam, where a layer around an axis is unrolled: their halves are put together again, and each island is
-//! kept once. What goes all around stays cut open.
+//! kept once. What goes all around stays cut open, each layer elsewhere, so that no cut lies over another.
 
 use super::Sheet;
 use planar::{DVec2, Polygon, Region, Ring};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Points this close to the seam lie on it, mm.
 const ON_SEAM: f64 = 2e-3;
@@ -12,13 +12,18 @@ const OVERLAP: f64 = 1e-3;
 /// Stretches of the seam that two halves share must be longer than this, mm.
 const SHARED: f64 = 1e-2;
 
-/// The islands of a cut, put together across the seam, as they lie on the sheet of their layer.
-pub fn joined(islands: Vec<Polygon>, cut: &Sheet<'_>, layer: &Sheet<'_>) -> Vec<Polygon> {
-    let islands = together(islands, cut);
+/// By how much of a turn the cut moves from one layer to the next: the golden section keeps it away from all that came before.
+const ON: f64 = 0.618_034;
+
+/// The islands of the layer with a number, put together across the seam, as they lie on the sheet of their layer. `cut` is the
+/// sheet on which the mesh was cut.
+pub fn joined(islands: Vec<Polygon>, number: usize, cut: &Sheet<'_>, layer: &Sheet<'_>) -> Vec<Polygon> {
+    let islands = together(islands, TAU * (ON * number as f64).fract(), cut);
     if cut == layer { islands } else { islands.iter().map(|island| moved(island, |p| layer.across(p, cut))).collect() }
 }
 
-fn together(islands: Vec<Polygon>, sheet: &Sheet<'_>) -> Vec<Polygon> {
+/// What goes all around is cut open `later` (rad) than at the seam.
+fn together(islands: Vec<Polygon>, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
     let ends: Vec<[Vec<[f64; 2]>; 2]> =
         islands.iter().map(|island| [1.0, -1.0].map(|side| on_seam(island, side, sheet))).collect();
     let meeting = meeting(&ends);
@@ -37,7 +42,10 @@ fn together(islands: Vec<Polygon>, sheet: &Sheet<'_>) -> Vec<Polygon> {
     for (_, members) in groups {
         let around = members.iter().any(|&i| turns[i].1.is_none());
         match &members[..] {
-            _ if around => joined.extend(members.iter().map(|&i| islands[i].clone())),
+            _ if around => {
+                let all = Region::from_normalised(members.iter().map(|&i| islands[i].clone()).collect());
+                joined.extend(cut_later(&all, later, sheet));
+            }
             [alone] => joined.push(islands[*alone].clone()),
             _ => {
                 let first = members.iter().filter_map(|&i| turns[i].1).min().unwrap_or(0);
@@ -51,6 +59,19 @@ fn together(islands: Vec<Polygon>, sheet: &Sheet<'_>) -> Vec<Polygon> {
         }
     }
     joined
+}
+
+/// A region that goes all around, cut open at another angle: what lies before it comes a turn later.
+fn cut_later(region: &Region, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
+    let Some(reach) = region.bounds().map(|bounds| bounds.min.length().max(bounds.max.length()) * 2.0) else {
+        return Vec::new();
+    };
+    let part = |from: f64, to: f64| region.intersection(&Region::from(sheet.sector([from, to], reach)));
+    let (before, after) = (part(-PI, later - PI), part(later - PI, PI));
+    let further = |island: &Polygon| Region::from(moved(island, |p| sheet.over_seam(p, 1.0, ON_SEAM, OVERLAP)));
+    let own = |island: &Polygon| Region::from(moved(island, |p| sheet.over_seam(p, 0.0, ON_SEAM, OVERLAP)));
+    let pieces = before.polygons().iter().map(further).chain(after.polygons().iter().map(own));
+    pieces.fold(Region::default(), |all, piece| all.union(&piece)).simplified(OVERLAP).into_polygons()
 }
 
 fn moved(island: &Polygon, to: impl Fn(DVec2) -> DVec2) -> Polygon {

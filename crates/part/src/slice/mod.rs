@@ -345,7 +345,7 @@ impl<'a> Slicer<'a> {
             None => region.into_polygons(),
             Some(chart) => {
                 let (cut, middle) = (chart.sheet(self.planes[index]), chart.sheet(z - height / 2.0));
-                seam::joined(region.into_polygons(), &cut, &middle)
+                seam::joined(region.into_polygons(), index, &cut, &middle)
             }
         };
         drop_slivers(&mut layer);

@@ -120,6 +120,24 @@ fn flanges_unroll_to_bands() {
     }
 }
 
+/// Where a band is cut open, no cut lies near those of the layers below.
+#[test]
+fn cuts_move_from_layer_to_layer() {
+    let chart: Chart = "cylinder:axis=z,radius=20,seam=70".parse().unwrap();
+    let start = |slice: &Slice| {
+        let ring = &slice.islands[0].outer;
+        let sheet = chart.sheet(slice.z - 1.0);
+        let first = ring.points().iter().copied().min_by(|a, b| a.x.total_cmp(&b.x)).unwrap();
+        let at = sheet.at(first.extend(slice.z - 1.0)).place;
+        at.y.atan2(at.x)
+    };
+    let cuts: Vec<f64> = slices(&chart, &shaft(), 2.0).iter().map(start).collect();
+    for (k, cut) in cuts.iter().enumerate() {
+        let apart = |other: &f64| ((cut - other) / TAU - ((cut - other) / TAU).round()).abs() * 360.0;
+        assert!(cuts[k.saturating_sub(4)..k].iter().all(|other| apart(other) > 30.0), "layer {k}: {cuts:?}");
+    }
+}
+
 /// Where the chart is turned about its axis, the seam lies elsewhere, and bosses are the same islands; none is cut by it.
 #[test]
 fn bosses_are_whole_wherever_the_seam_lies() {
