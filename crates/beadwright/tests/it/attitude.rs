@@ -3,7 +3,10 @@
 
 use crate::common;
 use crate::readers;
+use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
+use beadwright::model::{Mesh, solid::Solid};
+use beadwright::task::Task;
 
 use beadwright::dialect;
 use beadwright::dialect::krl::{KrlArc, KrlMotion};
@@ -12,7 +15,7 @@ use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::program::{Instruction, Weave};
 use common::{planned, profile, with_all_dialects};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use readers::cnc::Control;
 use readers::{Motion, Weld, distance};
 use std::collections::BTreeMap;
@@ -164,7 +167,9 @@ fn wanted(layers: &[Layer], profile: &Profile, woven: bool) -> Vec<Vec<(DVec3, D
 
 /// Degrees between two tools, of which either may be the other's negative.
 fn turned(a: DQuat, b: DQuat) -> f64 {
-    a.angle_between(b).min(a.angle_between(-b)).to_degrees()
+    // Exact for small angles, whatever the digits of a program leave of the length.
+    let between = a.conjugate() * b;
+    (2.0 * between.xyz().length().atan2(between.w.abs())).to_degrees()
 }
 
 /// Along every arc the torch is held as at its ends: as the plan wants it, within 0.05°, and it turns nowhere faster than
@@ -248,6 +253,49 @@ fn every_dialect_holds_the_torch_along_arcs_and_the_path_on_the_part() {
         [0, 0, 3, 0, 0, 3, 3, 3]
     );
     assert_eq!(["Linuxcnc", "Cnc(Fanuc", "Cnc(Siemens", "Cnc(TwinCat"].map(refusals), [6, 6, 6, 9]);
+}
+
+/// Around an axis, every robot's program lies on the layers of the part and holds the torch along their normals; no other
+/// machine gets one.
+#[test]
+fn every_robot_follows_layers_around_an_axis() {
+    const RADIUS: f64 = 25.0;
+    for axis in ["z", "-0.2/1/0.4"] {
+        let chart: Chart = format!("cylinder:axis={axis},radius={RADIUS}").parse().unwrap();
+        // A pipe along the axis.
+        let along = chart.sheet(0.0).at(DVec3::new(0.0, 1.0, -RADIUS)).place.normalize();
+        let ends = [[RADIUS, 0.0], [RADIUS + 3.0, 0.0], [RADIUS + 3.0, 20.0], [RADIUS, 20.0]];
+        let Solid { mut vertices, triangles } = Solid::revolve(&ends.map(DVec2::from_array), 90);
+        let turn = DQuat::from_rotation_arc(DVec3::Z, along);
+        vertices.iter_mut().for_each(|p| *p = turn * *p);
+        let pipe = Mesh::from_triangles(vertices, triangles).0;
+        let mut profile = profile("cmt-steel-robots");
+        profile.layers.chart = chart;
+        let layers = beadwright::plan("demo", &pipe, &profile, &Task::new()).unwrap().layers;
+        for way in WAYS {
+            let case = format!("{way:?} {axis}");
+            let mut profile = way.profile();
+            profile.layers.chart = chart;
+            let files = dialect::write(way.post(), &layers, &profile.job("demo"));
+            if !way.has_wrist() {
+                assert!(files.unwrap_err().to_string().contains("layers.chart"), "{case}");
+                continue;
+            }
+            let motion = way.read(&files.unwrap(), None);
+            let wanted = wanted(&layers, &profile, false);
+            assert_eq!(motion.welds.len(), wanted.len(), "{case}");
+            motion.welds.iter().zip(&wanted).for_each(|(weld, wanted)| held(&case, weld, wanted));
+            let tops: Vec<f64> = layers.iter().map(|layer| RADIUS + layer.z).collect();
+            for (point, tool) in motion.welds.iter().flat_map(|weld| weld.points.iter().zip(&weld.tools)) {
+                let at = DVec3::from_array(*point);
+                let outward = at - along * at.dot(along);
+                let off = tops.iter().map(|top| (outward.length() - top).abs()).fold(f64::INFINITY, f64::min);
+                assert!(off < 0.01, "{case}: {at} lies {off} mm off the layers");
+                let wire = (*tool * DVec3::Z).angle_between(-outward).to_degrees();
+                assert!(wire < 0.05, "{case}: the wire is {wire:.3}° off at {at}");
+            }
+        }
+    }
 }
 
 /// Adds half a millimetre to the second layer, in each program's own way.
