@@ -175,9 +175,7 @@ pub fn grown<L: Borrow<Layer>>(
     settings: DepositSettings,
     task: &Task,
 ) -> Result<Grown, Cancelled> {
-    // Around an axis layers do not lie over one another as they are unrolled.
-    let bounds = extent(layers).filter(|_| !profile.layers.chart.goes_around());
-    let Some(bounds) = bounds else { return Ok(Grown::default()) };
+    let Some(bounds) = extent(layers).filter(|_| settings.over_one_another) else { return Ok(Grown::default()) };
     let mut stack = Stack::new(&bounds, settings);
     for layer in layers.iter().map(L::borrow).filter(|layer| is_finite(layer)) {
         task.check()?;

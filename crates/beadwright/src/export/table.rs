@@ -28,11 +28,8 @@ pub(super) fn measures(beads: &Beads<'_>) -> Vec<&'static Column> {
 
 const TEMPERATURE: Column = measure("temperature (°C)", |p| p.temperature);
 
-const NORMALS: [Column; 3] = [
-    measure("normal x", |p| p.normal.x),
-    measure("normal y", |p| p.normal.y),
-    measure("normal z", |p| p.normal.z),
-];
+const NORMALS: [Column; 3] =
+    [measure("normal x", |p| p.normal.x), measure("normal y", |p| p.normal.y), measure("normal z", |p| p.normal.z)];
 
 const MEASURES: [Column; 13] = [
     place("x0 (mm)", |p| p.from.x),

@@ -23,7 +23,8 @@ pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
     let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
-    DepositSettings::new(nominal, profile.fill.machining_allowance)
+    let over_one_another = !profile.layers.chart.goes_around();
+    DepositSettings { over_one_another, ..DepositSettings::new(nominal, profile.fill.machining_allowance) }
 }
 
 /// Like [`deposit_settings`], with a grid fitted to a part: its lowest and its highest place, mm.

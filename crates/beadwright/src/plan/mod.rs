@@ -328,12 +328,9 @@ fn run<S: Sink + Send>(
         helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
         no_turn: None,
         support: Support::default(),
-        // Around an axis layers do not lie over one another as they are unrolled.
-        grown: (profile.is_level() && !profile.layers.chart.goes_around()).then(|| {
-            let (low, high) = (extent.low, extent.high);
-            let bounds = Bounds { min: low.truncate(), max: high.truncate() };
-            Stack::new(&bounds, deposit_settings_over(profile, (low, high)))
-        }),
+        grown: Some(deposit_settings_over(profile, (extent.low, extent.high)))
+            .filter(|settings| profile.is_level() && settings.over_one_another)
+            .map(|settings| Stack::new(&extent.seen_from_above(), settings)),
         below: Vec::new(),
         below_middle: 0.0,
         built: 0.0,

@@ -63,12 +63,14 @@ pub struct DepositSettings {
     pub machining_allowance: f64,
     /// Distance between grid points, mm.
     pub step: f64,
+    /// Whether layers lie over one another as they are given; around an axis each is unrolled by itself.
+    pub over_one_another: bool,
 }
 
 impl DepositSettings {
     /// With the default grid of a twentieth of a bead.
     pub fn new(nominal: Nominal, machining_allowance: f64) -> Self {
-        Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS }
+        Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS, over_one_another: true }
     }
 
     /// With a grid for a part of `layers` layers: up to twice as coarse where all layers together would have more than
@@ -130,9 +132,9 @@ impl Judge {
         self
     }
 
-    /// Also lays the layers on top of each other, to see how the part grows; `bounds` holds all layers.
+    /// Also lays the layers on top of each other, if they lie so, to see how the part grows; `bounds` holds all layers.
     pub fn with_stack(mut self, bounds: &Bounds) -> Self {
-        self.stack = Some(Stack::new(bounds, self.settings));
+        self.stack = self.settings.over_one_another.then(|| Stack::new(bounds, self.settings));
         self
     }
 
