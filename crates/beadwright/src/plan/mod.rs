@@ -241,12 +241,16 @@ pub fn slabs<'a>(
     task: &Task,
 ) -> Result<Vec<Slab>, PlanError<Infallible>> {
     let part = part.into();
-    let warmth = warm::predicted(part, profile, task)?;
+    slabs_of(&warm::predicted(part, profile, task)?, part, profile, task)
+}
+
+/// Where the layers of a part with this warmth lie.
+fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     match part {
-        PartRef::Mesh { mesh, .. } => slabs_at(&warmth, mesh, profile, task),
+        PartRef::Mesh { mesh, .. } => slabs_at(warmth, mesh, profile, task),
         PartRef::Curves(curves, height) => {
             let curves = centre_lines(curves, profile)?;
-            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, &warmth))
+            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, warmth))
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::families;
 use beadwright::example;
 use beadwright::glam::{DQuat, DVec2, DVec3};
 use beadwright::model::solid::Solid;
-use beadwright::model::{Import, Mesh, Part, import};
-use beadwright::plan::{self, stock::Stocked};
+use beadwright::model::{Import, Mesh, Part, PartRef, import};
+use beadwright::plan::{self, Collect, stock::Stocked};
 use beadwright::planar::{Join, Polygon, Region, Ring};
 use beadwright::preform::faces::{self, Face};
 use beadwright::preform::figures::Figures;
@@ -247,7 +247,13 @@ fn metal_lies_wherever_the_milled_part_will_be() {
     let milled = &mut preform.milled.as_mut().unwrap().mesh;
     // 3 mm beyond the stock of 1.5 mm on one side, from 5.5 to 25.5 mm above the plate: in eleven layers of 2 mm.
     milled.vertices.iter_mut().filter(|v| v.x > 50.0).for_each(|v| v.x += 1.5 + 3.0);
-    near(undersize(&Part::Mesh(preform), &profile), 3.0 * 40.0 * 11.0, 0.05);
+    let preform = Part::Mesh(preform);
+    near(undersize(&preform, &profile), 3.0 * 40.0 * 11.0, 0.05);
+    // So is it where the parts of a build are welded one after another.
+    let parts = [("first".to_owned(), PartRef::from(&preform))];
+    let one_by_one = plan::parts_into("build", &parts, &profile, &Task::new(), &mut Collect::default()).unwrap();
+    let one_by_one = one_by_one.warnings.summaries().find(|w| w.kind == WarningKind::Undersize).unwrap();
+    near(one_by_one.total, 3.0 * 40.0 * 11.0, 0.05);
 }
 
 #[test]
