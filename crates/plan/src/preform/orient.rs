@@ -27,6 +27,8 @@ const ROUNDS: [Round; 3] = [
     Round { count: 6, steps: 20.0, turns: &[6.0, 3.0] },
     Round { count: 3, steps: STEPS, turns: &[2.0, 1.0, 0.5] },
 ];
+/// A part of fewer triangles is looked at from twice as many directions.
+const LARGE: usize = 40_000;
 /// Steps in the height of a part whose score counts.
 const STEPS: f64 = 40.0;
 /// Directions nearer to each other than this are alike: 8°.
@@ -60,9 +62,10 @@ pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task)
     let mut ways: Vec<DVec3> = scored.into_iter().map(|(_, down)| down).collect();
     let search = Search { mesh, settings, rates, task };
     let mut found = Vec::new();
+    let more = if mesh.triangles.len() < LARGE { 2 } else { 1 };
     for Round { count, steps, turns } in ROUNDS {
         let refined = |down: &DVec3| search.refined(search.at(*down, steps)?, steps, turns);
-        found = apart(&ways, count).par_iter().map(refined).collect::<Result<Vec<_>, _>>()?;
+        found = apart(&ways, more * count).par_iter().map(refined).collect::<Result<Vec<_>, _>>()?;
         found.sort_by(Oriented::by_score);
         ways = found.iter().map(|one| one.down).collect();
     }
