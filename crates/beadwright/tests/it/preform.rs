@@ -384,6 +384,20 @@ fn no_other_direction_is_much_better_than_the_one_found() {
     }
 }
 
+/// On its side, an open box has no closed contours: it would weigh and cost nothing.
+#[test]
+fn an_open_skin_stays_as_it_lies() {
+    let block = mesh(Solid::extrude(&rectangle(DVec2::new(80.0, 50.0)), 0.0, 60.0));
+    let top = |t: &&[u32; 3]| t.iter().all(|&corner| block.vertices[corner as usize].z == 60.0);
+    let sides = block.triangles.iter().filter(|t| !top(t)).copied().collect();
+    let (open, _) = Mesh::from_triangles(block.vertices.clone(), sides);
+    let profile = profile_by("cmt-al2319-kuka", "loop");
+    let (settings, rates) = (profile.preform_settings(), profile.preform_rates());
+    let found = orient::best(&open, &settings, &rates, &Task::new()).unwrap()[0];
+    assert!(found.figures.preform_kg > 0.9 * 80.0 * 50.0 * 60.0 * 1e-6 * rates.density, "{found:?}");
+    assert_eq!(found.down, DVec3::NEG_Z);
+}
+
 #[test]
 fn figures_add_up() {
     let block = mesh(Solid::extrude(&rectangle(DVec2::new(80.0, 50.0)), 0.0, 20.0));

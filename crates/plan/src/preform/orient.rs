@@ -8,7 +8,7 @@
 
 use super::figures::{Figures, Rates};
 use super::{Preform, PreformSettings};
-use bead_part::model::{Mesh, stand};
+use bead_part::model::{Mesh, holes, stand};
 use bead_part::slice::{Slab, SliceOptions, Slicer};
 use bead_part::task::{Cancelled, Task};
 use glam::{DMat3, DQuat, DVec3, UVec3};
@@ -46,11 +46,15 @@ pub struct Oriented {
     pub figures: Figures,
 }
 
-/// The best ways up, no two alike, the best one first.
+/// The best ways up, no two alike, the best one first; for a surface with an opening wider than a bead, as it lies.
 ///
 /// # Errors
 /// [`Cancelled`] when the task was.
 pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Vec<Oriented>, Cancelled> {
+    // An open skin of a solid loses metal where its contours do not close; as it lies, they were meant to.
+    if holes::openings(mesh).iter().any(|opening| opening.width > settings.bead_width) {
+        return Ok(vec![Oriented::of(mesh, DVec3::NEG_Z, settings, rates, task)?]);
+    }
     let Some(cells) = Cells::of(mesh, settings, task)? else { return Ok(Vec::new()) };
     let directions: Vec<DVec3> = directions(mesh);
     let rough = |down: &DVec3| -> Result<(f64, DVec3), Cancelled> {
