@@ -239,7 +239,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let planned = match arguments.several.order {
         Order::Layers => plan::plan_into(&part, &model, &profile, &task, &mut files),
         Order::Parts => {
-            let solids: Vec<_> = lowest_first.iter().map(|(name, import)| (name.clone(), &import.mesh)).collect();
+            let solids: Vec<_> = lowest_first.iter().map(|(name, import)| (name.clone(), import.into())).collect();
             plan::parts_into(&part, &solids, &profile, &task, &mut files)
         }
     };

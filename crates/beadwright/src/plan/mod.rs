@@ -249,12 +249,16 @@ pub fn slabs<'a>(
     let given = part.into();
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
-    let warmth = warm::predicted(part, profile, task)?;
+    slabs_of(&warm::predicted(part, profile, task)?, part, profile, task)
+}
+
+/// Where the layers of a part with this warmth lie.
+fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     match part {
-        PartRef::Mesh { mesh, .. } => slabs_at(&warmth, mesh, profile, task),
+        PartRef::Mesh { mesh, .. } => slabs_at(warmth, mesh, profile, task),
         PartRef::Curves(curves, height) => {
             let curves = centre_lines(curves, profile)?;
-            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, &warmth))
+            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, warmth))
         }
     }
 }

@@ -2,16 +2,16 @@
 
 use super::clearance::{Clearance, Close, Watch};
 use super::warm::Warmth;
-use super::{Header, PlanError, Sink, Summary, plan_at, slabs_at, warm};
+use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
-use crate::model::Mesh;
+use crate::model::PartRef;
 use crate::process::TorchShape;
 use crate::profile::Profile;
 use crate::task::Task;
 use crate::warning::Warnings;
 
-/// Plans solids next to each other on z = 0, each from its first layer to its last before the next one begins, and hands all
+/// Plans parts next to each other on z = 0, each from its first layer to its last before the next one begins, and hands all
 /// layers to `sink`, numbered consecutively. Travels to another part pass over everything already built. Where the torch
 /// (`[torch]`) would hit a finished part, [`Summary::forbidden`] says so.
 ///
@@ -19,7 +19,7 @@ use crate::warning::Warnings;
 /// [`PlanError`], including where the profile lacks `[torch]`, or has values for some layers only.
 pub fn parts_into<S: Sink + Send>(
     name: &str,
-    parts: &[(String, &Mesh)],
+    parts: &[(String, PartRef)],
     profile: &Profile,
     task: &Task,
     sink: &mut S,
@@ -33,14 +33,14 @@ pub fn parts_into<S: Sink + Send>(
             "process.layers: layers are numbered separately for each part, so it is not clear which are meant",
         ));
     }
-    let predicted = |(_, mesh): &(String, &Mesh)| -> Result<(Warmth, usize), PlanError<S::Error>> {
-        let warmth = warm::predicted((*mesh).into(), profile, task)?;
-        let count = slabs_at(&warmth, mesh, profile, task)?.len();
+    let predicted = |(_, part): &(String, PartRef)| -> Result<(Warmth, usize), PlanError<S::Error>> {
+        let warmth = warm::predicted(*part, profile, task)?;
+        let count = slabs_of(&warmth, *part, profile, task)?.len();
         Ok((warmth, count))
     };
     let predicted = parts.iter().map(predicted).collect::<Result<Vec<_>, _>>()?;
     let (warmths, counts): (Vec<Warmth>, Vec<usize>) = predicted.into_iter().unzip();
-    let bounds = parts.iter().map(|(_, mesh)| mesh.bounds());
+    let bounds = parts.iter().map(|(_, part)| part.bounds());
     let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
     let extent = Extent { layers: counts.iter().sum(), low, high };
     let strategy = profile.fill.strategy.to_string();
@@ -50,11 +50,11 @@ pub fn parts_into<S: Sink + Send>(
     let mut row = Row { first: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
     let mut told = Told::of(profile);
     let mut volume = Some(0.0);
-    for (((part, mesh), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
-        clearance.begin(part);
+    for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
+        clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(warmth, part, (*mesh).into(), profile, task, &mut watch)?;
-        told.add(part, &own);
+        let own = plan_at(warmth, name, *part, profile, task, &mut watch)?;
+        told.add(name, &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
     }
@@ -77,9 +77,9 @@ pub fn torch_of<E>(profile: &Profile) -> Result<TorchShape, PlanError<E>> {
 }
 
 /// Which layers belong to which part.
-fn sentence(parts: &[(String, &Mesh)], counts: &[usize]) -> String {
+fn sentence(parts: &[(String, PartRef)], counts: &[usize]) -> String {
     let mut first = 1;
-    let range = |((name, _), count): (&(String, &Mesh), &usize)| {
+    let range = |((name, _), count): (&(String, PartRef), &usize)| {
         let text = format!("{name} (layers {first} to {})", first + count - 1);
         first += count;
         text

@@ -108,6 +108,12 @@ fn prisms_have_the_volume_of_their_formula() {
 }
 
 #[test]
+fn bracket_has_the_volume_of_its_formula() {
+    let plates = 14.0 * 60.0 * 90.0 + 86.0 * 60.0 * 14.0;
+    assert_close(volume("bracket"), plates + 12.0 * 50.0 * 50.0 / 2.0 - 4.0 * disc(7.0) * 14.0, 1e-6);
+}
+
+#[test]
 fn plate_has_the_volume_of_its_formula() {
     let holes: f64 = [30.0, 22.0, 16.0, 12.0, 10.0].iter().map(|d| disc(d / 2.0)).sum();
     let rim = 120.0 * 80.0 - 4.0 * 12.0 * 12.0 + disc(12.0);

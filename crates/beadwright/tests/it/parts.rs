@@ -27,7 +27,7 @@ fn block(size: DVec3, at: DVec3) -> Import {
 }
 
 fn planned(parts: &[(String, Import)], profile: &Profile) -> (Collect, Summary) {
-    let meshes: Vec<_> = parts.iter().map(|(name, import)| (name.clone(), &import.mesh)).collect();
+    let meshes: Vec<_> = parts.iter().map(|(name, import)| (name.clone(), import.into())).collect();
     let mut collect = Collect::default();
     let summary = plan::parts_into("build", &meshes, profile, &Task::new(), &mut collect).unwrap();
     (collect, summary)
@@ -149,7 +149,7 @@ fn the_torch_has_room_or_the_plan_is_forbidden() {
 #[test]
 fn what_is_not_known_is_asked_for() {
     let parts = blocks(&[10.0, 10.0], 30.0);
-    let meshes: Vec<_> = parts.iter().map(|(name, import)| (name.clone(), &import.mesh)).collect();
+    let meshes: Vec<_> = parts.iter().map(|(name, import)| (name.clone(), import.into())).collect();
     let mut profile = profile();
     profile.torch = None;
     let refused = plan::parts_into("build", &meshes, &profile, &Task::new(), &mut Collect::default()).unwrap_err();

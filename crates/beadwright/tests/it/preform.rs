@@ -6,8 +6,8 @@ use crate::families;
 use beadwright::example;
 use beadwright::glam::{DQuat, DVec2, DVec3};
 use beadwright::model::solid::Solid;
-use beadwright::model::{Import, Mesh, Part, import};
-use beadwright::plan::{self, stock::Stocked};
+use beadwright::model::{Import, Mesh, Part, PartRef, import};
+use beadwright::plan::{self, Collect, stock::Stocked};
 use beadwright::planar::{Join, Polygon, Region, Ring};
 use beadwright::preform::faces::{self, Face};
 use beadwright::preform::figures::Figures;
@@ -247,7 +247,13 @@ fn metal_lies_wherever_the_milled_part_will_be() {
     let milled = &mut preform.milled.as_mut().unwrap().mesh;
     // 3 mm beyond the stock of 1.5 mm on one side, from 5.5 to 25.5 mm above the plate: in eleven layers of 2 mm.
     milled.vertices.iter_mut().filter(|v| v.x > 50.0).for_each(|v| v.x += 1.5 + 3.0);
-    near(undersize(&Part::Mesh(preform), &profile), 3.0 * 40.0 * 11.0, 0.05);
+    let preform = Part::Mesh(preform);
+    near(undersize(&preform, &profile), 3.0 * 40.0 * 11.0, 0.05);
+    // So is it where the parts of a build are welded one after another.
+    let parts = [("first".to_owned(), PartRef::from(&preform))];
+    let one_by_one = plan::parts_into("build", &parts, &profile, &Task::new(), &mut Collect::default()).unwrap();
+    let one_by_one = one_by_one.warnings.summaries().find(|w| w.kind == WarningKind::Undersize).unwrap();
+    near(one_by_one.total, 3.0 * 40.0 * 11.0, 0.05);
 }
 
 #[test]
@@ -376,6 +382,20 @@ fn no_other_direction_is_much_better_than_the_one_found() {
             assert!(best <= 1.01 * other, "{name}: {best} against {other} for {down}");
         }
     }
+}
+
+/// On its side, an open box has no closed contours: it would weigh and cost nothing.
+#[test]
+fn an_open_skin_stays_as_it_lies() {
+    let block = mesh(Solid::extrude(&rectangle(DVec2::new(80.0, 50.0)), 0.0, 60.0));
+    let top = |t: &&[u32; 3]| t.iter().all(|&corner| block.vertices[corner as usize].z == 60.0);
+    let sides = block.triangles.iter().filter(|t| !top(t)).copied().collect();
+    let (open, _) = Mesh::from_triangles(block.vertices.clone(), sides);
+    let profile = profile_by("cmt-al2319-kuka", "loop");
+    let (settings, rates) = (profile.preform_settings(), profile.preform_rates());
+    let found = orient::best(&open, &settings, &rates, &Task::new()).unwrap()[0];
+    assert!(found.figures.preform_kg > 0.9 * 80.0 * 50.0 * 60.0 * 1e-6 * rates.density, "{found:?}");
+    assert_eq!(found.down, DVec3::NEG_Z);
 }
 
 #[test]

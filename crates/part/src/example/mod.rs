@@ -2,12 +2,13 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
+//! | `bracket`, `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | `hub`, `shaft` | one part each that is welded in layers around its axis |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
 pub mod blade;
+mod bracket;
 mod cross;
 mod gear;
 mod gourd;
@@ -47,6 +48,13 @@ pub const ALL: &[Example] = &[
         about: "blade, an arched 3.5 mm wall that turns by 25° on its way up, 92.5 × 28.4 × 100 mm",
         build: blade::build,
         curves: Some(blade::curves),
+        chart: None,
+    },
+    Example {
+        name: "bracket",
+        about: "bracket, an arm with a gusset on an upright 14 mm plate, to be welded as its preform, 100 × 60 × 90 mm",
+        build: bracket::build,
+        curves: None,
         chart: None,
     },
     Example {

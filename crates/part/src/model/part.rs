@@ -93,12 +93,29 @@ pub enum PartRef<'a> {
     Curves(&'a WallCurves, f64),
 }
 
+impl PartRef<'_> {
+    /// Lowest and highest coordinates, mm.
+    pub fn bounds(self) -> (DVec3, DVec3) {
+        match self {
+            Self::Mesh { mesh, .. } => mesh.bounds(),
+            Self::Curves(curves, height) => {
+                let bounds = curve_bounds(curves, height);
+                (bounds.min.extend(0.0), bounds.max.extend(height))
+            }
+        }
+    }
+}
+
+impl<'a> From<&'a Import> for PartRef<'a> {
+    fn from(import: &'a Import) -> Self {
+        Self::Mesh { mesh: &import.mesh, milled: import.milled.as_ref().map(|milled| &milled.mesh) }
+    }
+}
+
 impl<'a> From<&'a Part> for PartRef<'a> {
     fn from(part: &'a Part) -> Self {
         match part {
-            Part::Mesh(import) => {
-                Self::Mesh { mesh: &import.mesh, milled: import.milled.as_ref().map(|milled| &milled.mesh) }
-            }
+            Part::Mesh(import) => import.into(),
             Part::Curves { curves, height, .. } => Self::Curves(curves, *height),
         }
     }
@@ -311,13 +328,7 @@ impl Placement {
 impl Part {
     /// Lowest and highest coordinates, mm.
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        match self {
-            Self::Mesh(import) => import.mesh.bounds(),
-            Self::Curves { curves, height, .. } => {
-                let bounds = curve_bounds(curves, *height);
-                (bounds.min.extend(0.0), bounds.max.extend(*height))
-            }
-        }
+        PartRef::from(self).bounds()
     }
 
     /// What lies above the height `z` (mm), set onto z = 0.

@@ -3,6 +3,8 @@
 use super::{Plate, Preform};
 use bead_part::model::{Mesh, NO_NEIGHBOUR};
 use glam::DVec3;
+use planar::Region;
+use planar::boxes::Boxes;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -32,7 +34,12 @@ pub fn stock(part: &Mesh, preform: &Preform, plate: Plate) -> Vec<f64> {
         Plate::Sawn { cut } => cut,
         Plate::Kept { thickness } => -thickness,
     };
-    let is_metal = |p: DVec3| p.z >= floor && preform.at(p.z.max(0.0)).is_some_and(|step| step.contains(p.truncate()));
+    // Each step is asked about many points.
+    let steps: Vec<(Boxes, usize)> = preform.steps.par_iter().map(edges).collect();
+    let is_metal = |p: DVec3| {
+        let step = steps.get((p.z.max(0.0) / preform.step) as usize);
+        p.z >= floor && step.is_some_and(|(edges, count)| edges.inside(p.truncate(), *count))
+    };
     let probe = PROBE * preform.step;
     let over = |triangle: &[u32; 3]| {
         let (middle, normal) = middle_and_normal(part, triangle);
@@ -51,6 +58,13 @@ pub fn stock(part: &Mesh, preform: &Preform, plate: Plate) -> Vec<f64> {
         near
     };
     part.triangles.par_iter().map(over).collect()
+}
+
+/// The edges of a step, and how many there are.
+fn edges(step: &Region) -> (Boxes, usize) {
+    let edges: Vec<_> = step.rings().flat_map(|ring| ring.edges()).map(|(a, b)| [a, b]).collect();
+    let count = edges.len();
+    (Boxes::new(edges), count)
 }
 
 /// The faces of a part, the largest first; `stock` as [`stock`] gives it.

@@ -25,6 +25,7 @@ pub mod wide;
 use bead_part::model::Mesh;
 use bead_part::slice::{Slab, SliceOptions, Slicer};
 use bead_part::task::{Cancelled, Task};
+use planar::offset::ARC_TOLERANCE_MM;
 use planar::{Join, Region};
 use rayon::prelude::*;
 
@@ -81,6 +82,11 @@ impl PreformSettings {
         }
     }
 
+    /// Arcs are twice as exact as the part's outlines.
+    fn join(&self) -> Join {
+        Join::Round((self.simplify / 2.0).max(ARC_TOLERANCE_MM))
+    }
+
     /// How far a step may hang beyond the one below, mm.
     fn overhang(&self) -> f64 {
         self.step * self.reach.tan()
@@ -129,10 +135,11 @@ impl Preform {
             let step = if same && above.0 == above.1 {
                 above.0.clone()
             } else {
-                let held = above.0.offset(-settings.overhang(), Join::ROUND);
+                let held = above.0.offset(-settings.overhang(), settings.join());
                 let held = grown.union(&held);
                 let wide = if settings.bead_width > 0.0 { wide::widened(&held, bare, settings) } else { held };
-                closed(&wide, settings.fill_holes)
+                let step = closed(&wide, settings.fill_holes, settings.join());
+                if settings.bead_width > 0.0 { step } else { step.simplified(settings.simplify) }
             };
             above = (step.clone(), std::mem::replace(&mut above.0, step.clone()));
             steps.push(step);
@@ -156,9 +163,9 @@ impl Preform {
 }
 
 /// A region without what is narrower than `width` (mm) around it: holes, slots and grooves.
-fn closed(region: &Region, width: f64) -> Region {
+fn closed(region: &Region, width: f64, join: Join) -> Region {
     let by = width / 2.0;
-    region.offset(by, Join::ROUND).offset(-by, Join::ROUND).union(region)
+    region.offset(by, join).offset(-by, join).union(region)
 }
 
 /// What a part needs in each step.
@@ -193,7 +200,7 @@ impl Sections {
             };
             let bare = united(k * CELLS, (k + 1) * CELLS);
             let stock = united((k * CELLS).saturating_sub(up), ((k + 1) * CELLS + down).max(foot + 1));
-            Ok((bare, stock.offset(settings.side, Join::ROUND)))
+            Ok((bare, stock.offset(settings.side, settings.join())))
         };
         let steps = (0..count).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
         let (bare, grown) = steps.into_iter().unzip();

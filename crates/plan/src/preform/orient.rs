@@ -3,32 +3,36 @@
 //! 1. The part becomes a grid of cells, looked at from directions all over the sphere, from all flat faces and axes. For each
 //!    direction, layers of bits are laid from the top down as the preform's steps are: the part, and the layer above shrunk by
 //!    what may hang.
-//! 2. The best of them, no two alike, are scored by their steps themselves ([`Figures::score`]).
-//! 3. The best of these are turned by smaller and smaller angles as long as that helps.
+//! 2. The best of them, no two alike, are scored by thick steps ([`Figures::score`]), and the best of these by thinner ones.
+//! 3. The best that are left are turned by smaller and smaller angles as long as that helps.
 
 use super::figures::{Figures, Rates};
 use super::{Preform, PreformSettings};
-use bead_part::model::{Mesh, stand};
+use bead_part::model::{Mesh, holes, stand};
 use bead_part::slice::{Slab, SliceOptions, Slicer};
 use bead_part::task::{Cancelled, Task};
 use glam::{DMat3, DQuat, DVec3, UVec3};
 use planar::Region;
 use rayon::prelude::*;
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 
 /// Directions all over the sphere.
 const DIRECTIONS: usize = 1200;
 /// Cells along the longest side of the part.
 const CELLS: f64 = 56.0;
-/// Directions scored by their steps, and those of them that are turned further.
-const SCORED: usize = 24;
-const REFINED: usize = 4;
+/// Rounds in which ever fewer directions, no two alike, are scored ever more exactly and turned ever less.
+const ROUNDS: [Round; 3] = [
+    Round { count: 48, steps: 20.0, turns: &[] },
+    Round { count: 6, steps: 20.0, turns: &[6.0, 3.0] },
+    Round { count: 3, steps: STEPS, turns: &[2.0, 1.0, 0.5] },
+];
+/// A part of fewer triangles is looked at from twice as many directions.
+const LARGE: usize = 40_000;
+/// Steps in the height of a part whose score counts.
+const STEPS: f64 = 40.0;
 /// Directions nearer to each other than this are alike: 8°.
 const ALIKE: f64 = 0.9903;
-/// Angles of further turns, degrees.
-const TURNS: [f64; 4] = [8.0, 4.0, 2.0, 1.0];
-/// Steps in the height of a part that is scored.
-const STEPS: f64 = 40.0;
 
 /// Outlines of a part that is scored are simplified by this much, in steps.
 const ROUGH: f64 = 0.05;
@@ -42,11 +46,15 @@ pub struct Oriented {
     pub figures: Figures,
 }
 
-/// The best ways up, no two alike, the best one first.
+/// The best ways up, no two alike, the best one first; for a surface with an opening wider than a bead, as it lies.
 ///
 /// # Errors
 /// [`Cancelled`] when the task was.
 pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Vec<Oriented>, Cancelled> {
+    // An open skin of a solid loses metal where its contours do not close; as it lies, they were meant to.
+    if holes::openings(mesh).iter().any(|opening| opening.width > settings.bead_width) {
+        return Ok(vec![Oriented::of(mesh, DVec3::NEG_Z, settings, rates, task)?]);
+    }
     let Some(cells) = Cells::of(mesh, settings, task)? else { return Ok(Vec::new()) };
     let directions: Vec<DVec3> = directions(mesh);
     let rough = |down: &DVec3| -> Result<(f64, DVec3), Cancelled> {
@@ -55,20 +63,75 @@ pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task)
     };
     let mut scored = directions.par_iter().map(rough).collect::<Result<Vec<_>, _>>()?;
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ways: Vec<DVec3> = scored.into_iter().map(|(_, down)| down).collect();
+    let search = Search { mesh, settings, rates, task };
+    let mut found = Vec::new();
+    let more = if mesh.triangles.len() < LARGE { 2 } else { 1 };
+    for Round { count, steps, turns } in ROUNDS {
+        let refined = |down: &DVec3| search.refined(search.at(*down, steps)?, steps, turns);
+        found = apart(&ways, more * count).par_iter().map(refined).collect::<Result<Vec<_>, _>>()?;
+        found.sort_by(Oriented::by_score);
+        ways = found.iter().map(|one| one.down).collect();
+    }
+    Ok(found)
+}
+
+/// A round of the search.
+struct Round {
+    /// Directions.
+    count: usize,
+    /// Steps in the height of the part.
+    steps: f64,
+    /// Angles by which each is turned as long as that helps, degrees.
+    turns: &'static [f64],
+}
+
+/// The first directions that are not alike.
+fn apart(directions: &[DVec3], count: usize) -> Vec<DVec3> {
     let mut few: Vec<DVec3> = Vec::new();
-    for (_, down) in scored {
-        if few.len() < SCORED && few.iter().all(|other| other.dot(down) < ALIKE) {
-            few.push(down);
+    for down in directions {
+        if few.len() < count && few.iter().all(|other| other.dot(*down) < ALIKE) {
+            few.push(*down);
         }
     }
-    let exact = |down: DVec3| Oriented::of(mesh, down, settings, rates, task);
-    let mut found = few.into_par_iter().map(exact).collect::<Result<Vec<_>, _>>()?;
-    found.sort_by(|a, b| a.figures.score().total_cmp(&b.figures.score()));
-    found.truncate(REFINED);
-    let mut refined =
-        found.into_par_iter().map(|one| one.refined(mesh, settings, rates, task)).collect::<Result<Vec<_>, _>>()?;
-    refined.sort_by(|a, b| a.figures.score().total_cmp(&b.figures.score()));
-    Ok(refined)
+    few
+}
+
+/// What directions are scored for.
+struct Search<'a> {
+    mesh: &'a Mesh,
+    settings: &'a PreformSettings,
+    rates: &'a Rates,
+    task: &'a Task,
+}
+
+impl Search<'_> {
+    /// A direction with the figures of the preform that stands so, of about so many steps in the height of the part.
+    fn at(&self, down: DVec3, steps: f64) -> Result<Oriented, Cancelled> {
+        let Self { settings, rates, .. } = self;
+        let turned = standing(self.mesh, down);
+        let step = settings.step.max(turned.size().z / steps);
+        // Otherwise a flat part would be scored as up to a step too high, and better a little askew.
+        let whole = settings.lift() + turned.size().z + settings.top;
+        let step = whole / (whole / step).floor().max(1.0);
+        let simplify = settings.simplify.max(ROUGH * step);
+        let coarse = PreformSettings { bead_width: 0.0, step, simplify, ..**settings };
+        let preform = Preform::of(&turned, &coarse, self.task)?;
+        Ok(Oriented { down, figures: Figures::of(&turned, &preform, &coarse, rates) })
+    }
+
+    /// The best direction that is found from one by turning it.
+    fn refined(&self, mut best: Oriented, steps: f64, turns: &[f64]) -> Result<Oriented, Cancelled> {
+        for degrees in turns {
+            let across = best.down.any_orthonormal_vector();
+            let axes = [across, -across, best.down.cross(across), across.cross(best.down)];
+            let turned = |axis: &DVec3| DQuat::from_axis_angle(*axis, degrees.to_radians()) * best.down;
+            let tried: Vec<Oriented> =
+                axes.par_iter().map(|axis| self.at(turned(axis), steps)).collect::<Result<_, _>>()?;
+            best = tried.into_iter().fold(best, |best, one| if one.by_score(&best).is_lt() { one } else { best });
+        }
+        Ok(best)
+    }
 }
 
 impl Oriented {
@@ -83,28 +146,11 @@ impl Oriented {
         rates: &Rates,
         task: &Task,
     ) -> Result<Self, Cancelled> {
-        let turned = standing(mesh, down);
-        let step = settings.step.max(turned.size().z / STEPS);
-        let simplify = settings.simplify.max(ROUGH * step);
-        let coarse = PreformSettings { bead_width: 0.0, step, simplify, ..*settings };
-        let preform = Preform::of(&turned, &coarse, task)?;
-        Ok(Self { down, figures: Figures::of(&turned, &preform, &coarse, rates) })
+        Search { mesh, settings, rates, task }.at(down, STEPS)
     }
 
-    fn refined(self, mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Self, Cancelled> {
-        let mut best = self;
-        for degrees in TURNS {
-            let across = best.down.any_orthonormal_vector();
-            let ways = [across, -across, best.down.cross(across), across.cross(best.down)];
-            for axis in ways {
-                let down = DQuat::from_axis_angle(axis, degrees.to_radians()) * best.down;
-                let tried = Self::of(mesh, down, settings, rates, task)?;
-                if tried.figures.score() < best.figures.score() {
-                    best = tried;
-                }
-            }
-        }
-        Ok(best)
+    fn by_score(&self, other: &Self) -> Ordering {
+        self.figures.score().total_cmp(&other.figures.score())
     }
 }
 
