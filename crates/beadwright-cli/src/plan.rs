@@ -166,6 +166,9 @@ impl Arguments {
             let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
             let part = model.part_placed(profile, use_as, self.height, task)?;
             let part = match self.from_z {
+                Some(_) if !profile.layers.chart.is_level() => {
+                    anyhow::bail!("--from-z cuts level layers: leave layers.chart out, or cut the model")
+                }
                 Some(z) => part.above(z).with_context(|| format!("--from-z {z}"))?,
                 None => part,
             };

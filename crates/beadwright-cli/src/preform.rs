@@ -134,7 +134,7 @@ fn rows(figures: &Figures, profile: &Profile) -> Vec<(&'static str, String)> {
 
 /// What a preform would add to a part that was refused; `None` for a surface that is not closed.
 pub(crate) fn remedy(part: &Mesh, profile: &Profile, task: &Task) -> anyhow::Result<Option<String>> {
-    if is_closed(part, profile).is_err() {
+    if is_closed::<std::convert::Infallible>(part, profile).is_err() {
         return Ok(None);
     }
     let settings = profile.preform_settings();

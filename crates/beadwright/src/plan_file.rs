@@ -1,4 +1,4 @@
-//! plan.json, version 2: the plan as text, written layer by layer, and read back. It carries the whole profile that it was
+//! plan.json, versions 2 and 3: the plan as text, written layer by layer, and read back. It carries the whole profile that it was
 //! made with. Lengths are in mm, paces in mm/s.
 //!
 //! Version 3, for plans whose layers are not level (the profile's `layers.chart`), gives points in the part's space, close enough
@@ -162,6 +162,12 @@ pub enum PlanFileError {
         "this plan.json has version {0}; versions 1 to {NEWEST} are read. Make the plan again with `beadwright plan`."
     )]
     Version(u32),
+    /// Whether layers are level depends on the version.
+    #[error(
+        "this plan.json has version {0}, which does not go with layers.chart of its profile: layers that are not level are in version \
+         {NEWEST}. Make the plan again with `beadwright plan`."
+    )]
+    Chart(u32),
     /// Not in millimetres.
     #[error("this plan.json is in \"{0}\"; plans are in \"mm\". Make the plan again with `beadwright plan`.")]
     Units(String),

@@ -49,7 +49,7 @@ pub struct Finding {
     pub layer: Option<usize>,
     /// Index of the pass in its layer, from 0.
     pub pass: Option<usize>,
-    /// Where, mm.
+    /// Where, mm; on a layer that is not level, as it is unrolled.
     pub place: Option<DVec3>,
     /// How large, in the unit that the sentence names.
     pub size: Option<f64>,

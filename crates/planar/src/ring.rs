@@ -172,6 +172,12 @@ impl Ring {
 }
 
 impl Polygon {
+    /// Its points moved.
+    pub fn moved(&self, to: impl Fn(DVec2) -> DVec2) -> Self {
+        let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| to(*p)).collect());
+        Self { outer: ring(&self.outer), holes: self.holes.iter().map(ring).collect() }
+    }
+
     /// A polygon without holes; the ring is turned counter-clockwise.
     pub fn simple(outer: Ring) -> Self {
         let outer = if outer.area() < 0.0 { outer.reversed() } else { outer };

@@ -193,8 +193,13 @@ impl Beads<'_> {
     fn in_space(&self, run: walk::Run<'_>) -> Vec<Piece> {
         let mut pieces = run.pieces;
         if let Some(sheet) = self.profile.layers.sheet(run.layer) {
-            let place = |p: &mut DVec3| *p = sheet.at(*p).place;
-            pieces.iter_mut().flat_map(|piece| [&mut piece.from, &mut piece.to]).for_each(place);
+            for piece in &mut pieces {
+                let on_layer = piece.from.distance(piece.to);
+                (piece.from, piece.to) = (sheet.at(piece.from).place, sheet.at(piece.to).place);
+                // The time stays.
+                let longer = piece.from.distance(piece.to) / on_layer;
+                piece.speed *= if longer.is_finite() { longer } else { 1.0 };
+            }
         }
         pieces
     }

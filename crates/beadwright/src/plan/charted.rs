@@ -1,14 +1,14 @@
 //! Parts whose layers are not level: planned from their mesh in the coordinates of the profile's chart, in which layers are level.
 
-use super::PlanError;
-use crate::chart::{At, Chart, Sheet, warp};
+use super::{PlanError, stock};
+use crate::chart::{At, Chart, Cylinder, Sheet, Side, warp};
 use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass};
 use crate::profile::Profile;
 use crate::task::{Cancelled, Task};
 use glam::{DVec2, DVec3};
-use planar::{Polygon, Ring};
+use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
 
 /// The edges of a mesh in the coordinates of a chart lie this close to the true ones, mm.
@@ -21,6 +21,41 @@ const TOLERANCE: f64 = 0.02;
 pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, Cancelled> {
     let chart = &profile.layers.chart;
     Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
+}
+
+/// Parts whose middle lies farther than this part of their size from the axis of their layers may have been placed elsewhere.
+const ASIDE: f64 = 0.1;
+
+/// What people should know about the chart of a part, as sentences. `placed` is the part as it stands on the table.
+pub(super) fn notes(placed: &Mesh, profile: &Profile) -> Vec<String> {
+    let chart = &profile.layers.chart;
+    let (low, high) = placed.bounds();
+    let (middle, size) = (low.midpoint(high), (high - low).length());
+    let aside = chart.off_axis(middle).filter(|aside| *aside > ASIDE * size).map(|aside| {
+        format!(
+            "The axis of layers.chart passes {aside:.1} mm beside the middle of the part (x {:.1} y {:.1} z {:.1} mm as it stands on \
+             the table): check through and axis.",
+            middle.x, middle.y, middle.z
+        )
+    });
+    let inside = matches!(chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })).then(|| {
+        "The first move goes straight to the first layer inside the bore: bring the torch in along the axis before it starts, and out \
+         after it ends."
+            .to_owned()
+    });
+    aside.into_iter().chain(inside).collect()
+}
+
+/// Why the programs of a part inside a bore should not be started: the torch would travel through the axis into the other side.
+pub(super) fn too_narrow(top: f64, profile: &Profile) -> Option<String> {
+    let Chart::Cylinder(Cylinder { side: Side::Inner, radius, .. }) = profile.layers.chart else { return None };
+    let above = profile.travel.clearance + profile.start_stop.dwell_height;
+    (top + above >= radius).then(|| {
+        format!(
+            "Inside a bore of {radius} mm radius there is no room for travels {above} mm above layers {top:.1} mm high \
+             (travel.clearance, start_stop.dwell_height)."
+        )
+    })
 }
 
 /// A solid in the coordinates in which its layers are level.
@@ -37,6 +72,7 @@ impl<'a> Unrolled<'a> {
             return Ok(None);
         }
         let PartRef::Mesh { mesh, milled } = part else { return Err(PlanError::ChartOfCurves) };
+        stock::is_closed(mesh, profile)?;
         let own = unrolled(mesh, profile, task)?;
         if own.triangles.is_empty() {
             return Err(PlanError::Empty(format!(
@@ -89,11 +125,8 @@ impl<'a> Across<'a> {
     }
 
     pub(crate) fn islands(&self, islands: &[Polygon]) -> Vec<Polygon> {
-        let moved = |island: &Polygon, turns: f64| {
-            let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| self.place(*p, turns)).collect());
-            Polygon { outer: ring(&island.outer), holes: island.holes.iter().map(ring).collect() }
-        };
-        islands.iter().flat_map(|island| TURNS.map(|turns| moved(island, turns))).collect()
+        let turned = |island: &Polygon| TURNS.map(|turns| island.moved(|p| self.place(p, turns)));
+        islands.iter().flat_map(turned).collect()
     }
 
     pub(crate) fn passes(&self, passes: &[Pass]) -> Vec<Pass> {
@@ -141,9 +174,12 @@ pub(crate) fn in_space(pass: &Pass, sheet: &Sheet<'_>) -> (Pass, Vec<DVec3>) {
 pub(crate) fn on_layer(pass: Pass, sheet: &Sheet<'_>, islands: &[Polygon]) -> Pass {
     let Some(first) = pass.points.first() else { return pass };
     let start = sheet.coordinates(*first, DVec2::ZERO).truncate();
-    let turned = [0.0, 1.0, -1.0].into_iter().filter_map(|turns| sheet.turned(start, turns));
+    let points = islands.iter().flat_map(Polygon::rings).flat_map(Ring::points).copied();
+    let turns = Bounds::of(points).map_or([0.0; 2], |b| [b.min, b.max].map(|end| sheet.turns_to(start, end)));
+    let [least, most] = [turns[0].min(turns[1]), turns[0].max(turns[1])].map(|turns| turns.round() as i32);
+    let turned = (least..=most).filter_map(|turns| sheet.turned(start, f64::from(turns)));
     let inside = |p: &DVec2| islands.iter().any(|island| island.contains(*p));
-    let mut near = turned.clone().find(inside).unwrap_or(start);
+    let mut near = turned.into_iter().find(inside).unwrap_or(start);
     let place = |p: &DVec3| {
         let on_it = sheet.coordinates(*p, near);
         near = on_it.truncate();

@@ -9,6 +9,7 @@ use crate::bead::wall::WallBead;
 use crate::model::Mesh;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::plan::MAX_LAYERS;
+use crate::plan::charted::Across;
 use crate::plan::choice::is_wall_surface;
 use crate::plan::warm::Warmth;
 use crate::profile::Profile;
@@ -47,11 +48,18 @@ pub(super) fn of_mesh(
         } else {
             slicer.batch(batch, task)?.iter().map(of_outlines).collect()
         };
+        let first = slice::BATCH * batch - usize::from(below.is_some());
         let layers: Vec<_> = below.take().into_iter().chain(lines).collect();
-        rises.par_extend(layers.par_windows(2).map(|pair| {
+        rises.par_extend(layers.par_windows(2).enumerate().map(|(k, pair)| {
+            let middle = |k: usize| (k as f64 + 0.5) * step;
+            let across = Across::new(&profile.layers.chart, middle(first + k), middle(first + k + 1));
             let edges = |line: &Vec<DVec2>| line.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
             let upper: Vec<(DVec2, DVec2)> = pair[1].iter().flat_map(edges).collect();
-            let lean = |p: DVec2| (to_nearest(p, &upper) / step).atan();
+            let beside = |p: DVec2| match across {
+                None => to_nearest(p, &upper),
+                Some(across) => across.places(p).map(|p| to_nearest(p, &upper)).fold(f64::INFINITY, f64::min),
+            };
+            let lean = |p: DVec2| (beside(p) / step).atan();
             rise(wall, pair[0].iter().flat_map(|line| evenly(line)).map(lean))
         }));
         below = layers.into_iter().last();

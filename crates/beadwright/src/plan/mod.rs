@@ -134,7 +134,12 @@ pub fn plan_into<'a, S: Sink + Send>(
     let given = part.into();
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
-    plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)
+    let mut summary = plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)?;
+    if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
+        summary.notes.extend(charted::notes(placed, profile));
+        summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
+    }
+    Ok(summary)
 }
 
 /// Plans a part whose layers follow a known warmth.
@@ -182,7 +187,8 @@ fn plan_mesh<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let opening = holes::openings(mesh).into_iter().next();
     let wide = opening.filter(|opening| opening.width > profile.bead.width);
-    let unsaid = profile.slice.surface.is_none();
+    // Around an axis the part itself was looked at.
+    let unsaid = profile.slice.surface.is_none() && profile.layers.chart.is_level();
     if let Some(Opening { width, place, .. }) = wide.filter(|_| unsaid) {
         return Err(PlanError::Open { width, place });
     }

@@ -102,6 +102,11 @@ pub enum PlanError<E> {
     /// Curves where a solid is needed.
     #[error("only solids have a preform, and this part is given by curves. Give its solid.")]
     NoSolid,
+    /// A preform for layers that are not level.
+    #[error(
+        "a preform holds metal below what hangs over level layers. Leave layers.chart out, or plan the part without a preform."
+    )]
+    PreformOfChart,
     /// Curves with layers that are not level.
     #[error("walls given by curves have level layers. Leave layers.chart out, or give the wall as a solid.")]
     ChartOfCurves,

@@ -40,10 +40,13 @@ impl Stocked {
     /// ```
     ///
     /// # Errors
-    /// [`PlanError::NoSolid`] for curves, [`PlanError::Open`] for a surface that is not closed, unless the profile says that it
+    /// [`PlanError::NoSolid`] for curves, [`PlanError::PreformOfChart`] for layers that are not level, [`PlanError::Open`] for a surface that is not closed, unless the profile says that it
     /// is the skin of a solid, and [`PlanError::Cancelled`].
     pub fn of(part: Part, profile: &Profile, task: &Task) -> Result<Self, PlanError<Infallible>> {
         let Part::Mesh(mut import) = part else { return Err(PlanError::NoSolid) };
+        if !profile.layers.chart.is_level() {
+            return Err(PlanError::PreformOfChart);
+        }
         is_closed(&import.mesh, profile)?;
         let settings = profile.preform_settings();
         let preform = Preform::of(&import.mesh, &settings, task)?;
@@ -59,7 +62,7 @@ impl Stocked {
 ///
 /// # Errors
 /// [`PlanError::Open`].
-pub fn is_closed(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<Infallible>> {
+pub fn is_closed<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
     let opening = holes::openings(mesh).into_iter().next();
     match opening.filter(|opening| opening.width > profile.bead.width) {
         Some(Opening { width, place, .. }) if profile.slice.surface != Some(Surface::Solid) => {

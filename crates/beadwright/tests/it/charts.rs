@@ -3,9 +3,11 @@
 use crate::common;
 
 use beadwright::chart::Chart;
-use beadwright::model::Mesh;
+use beadwright::fill::StrategyName;
+use beadwright::model::{Mesh, solid::Solid};
 use beadwright::pass::Pass;
 use beadwright::plan::{self, Plan};
+use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use beadwright::{dialect, example, plan_file};
@@ -228,6 +230,49 @@ fn blades_on_a_hub_are_supported_wherever_the_seam_lies() {
         let volume = plan.summary.metrics.part_volume_mm3;
         assert!((plan.summary.metrics.mesh_volume_mm3.unwrap() / volume - 1.0).abs() < 0.01, "seam {seam}");
     }
+}
+
+/// A wall that stands out from a shaft has the same layers at every angle.
+#[test]
+fn walls_rise_alike_at_every_angle() {
+    let mut profile = charted("cylinder:radius=20");
+    profile.fill.strategy = StrategyName::Wall;
+    let plans: Vec<Plan> = [0.0_f64, 60.0, 170.0, 250.0]
+        .into_iter()
+        .map(|angle| {
+            let base = [[18.0, -3.0], [60.0, -3.0], [60.0, 3.0], [18.0, 3.0]].map(DVec2::from_array);
+            let Solid { vertices, triangles } = Solid::extrude(&Polygon::simple(Ring::new(base.to_vec())), 0.0, 60.0);
+            let turn = DQuat::from_rotation_z(angle.to_radians());
+            planned(&Mesh::from_triangles(vertices.iter().map(|p| turn * *p).collect(), triangles).0, &profile)
+        })
+        .collect();
+    for plan in &plans {
+        assert_eq!(plan.layers.len(), plans[0].layers.len());
+        let length = plan.summary.metrics.deposited_length_mm / plans[0].summary.metrics.deposited_length_mm;
+        assert!((length - 1.0).abs() < 0.01, "{length}");
+    }
+}
+
+/// What would move the part otherwise than along the normals of its layers is refused by name.
+#[test]
+fn what_does_not_go_with_a_chart_is_refused() {
+    let shaft = example::find("shaft").unwrap();
+    let plain = charted("cylinder:radius=25");
+    let layers = planned(&shaft.mesh(), &plain).layers;
+    let refused = |change: fn(&mut Profile)| {
+        let mut profile = plain.clone();
+        change(&mut profile);
+        dialect::write("krl", &layers, &profile.job("part")).unwrap_err().to_string()
+    };
+    assert!(refused(|p| p.program.table_side = Some(0.0)).contains("program.table_side"));
+    assert!(refused(|p| p.program.layer_offsets = true).contains("program.layer_offsets"));
+    assert!(refused(|p| p.program.follow_wall = 0.5).contains("program.follow_wall"));
+    // A bore without room for travels.
+    let bore = charted("cylinder:radius=12,side=inner");
+    let ends = [[8.0, 0.0], [30.0, 0.0], [30.0, 40.0], [8.0, 40.0]].map(DVec2::from_array);
+    let Solid { vertices, triangles } = Solid::revolve(&ends, 90);
+    let plan = planned(&Mesh::from_triangles(vertices, triangles).0, &bore);
+    assert!(plan.summary.forbidden.iter().any(|reason| reason.contains("no room for travels")), "{:?}", plan.summary);
 }
 
 #[test]

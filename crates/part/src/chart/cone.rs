@@ -34,6 +34,10 @@ impl Polar for Cone {
         Around { angle, along: radius / sin, height: radius * cos - from.dot(self.axis) * sin }
     }
 
+    fn off_axis(&self, p: DVec3) -> f64 {
+        self.axes().polar(p - self.tip).1
+    }
+
     fn at(&self, angle: f64, along: f64, height: f64) -> At {
         let [outward, around] = self.axes().outward_and_around(angle);
         let (sin, cos) = self.half_angle.to_radians().sin_cos();

@@ -57,6 +57,10 @@ impl Polar for Cylinder {
         Around { angle, along: from.dot(self.axis), height: self.side.sign() * (radius - self.radius) }
     }
 
+    fn off_axis(&self, p: DVec3) -> f64 {
+        self.axes().polar(p - self.through).1
+    }
+
     fn at(&self, angle: f64, along: f64, height: f64) -> At {
         let [outward, around] = self.axes().outward_and_around(angle);
         let sign = self.side.sign();

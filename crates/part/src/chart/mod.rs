@@ -118,6 +118,11 @@ impl Chart {
         }
     }
 
+    /// Distance of a point from the axis, mm; `None` where layers are planes.
+    pub fn off_axis(&self, p: DVec3) -> Option<f64> {
+        self.polar().map(|polar| polar.off_axis(p))
+    }
+
     /// How layers around an axis are unrolled; none where they are planes.
     fn polar(&self) -> Option<&dyn Polar> {
         match self {
@@ -169,9 +174,21 @@ impl Sheet<'_> {
         polar.unrolled(angle, along, self.middle)
     }
 
-    /// The same place some turns further around the axis; `None` where layers do not go around one.
+    /// Whether a layer goes on turn after turn as it is unrolled. On a cone a second turn would lie over the first.
+    fn goes_on(&self) -> bool {
+        matches!(self.chart, Chart::Cylinder(_))
+    }
+
+    /// How many turns after a place another comes; 0 where layers do not go on turn after turn.
+    pub fn turns_to(&self, p: DVec2, to: DVec2) -> f64 {
+        let angle = |polar: &dyn Polar, p: DVec2| polar.rolled(p, self.middle).0;
+        let polar = self.chart.polar().filter(|_| self.goes_on());
+        polar.map_or(0.0, |polar| (angle(polar, to) - angle(polar, p)) / TAU)
+    }
+
+    /// The same place some turns further around the axis; `None` where layers do not go on turn after turn.
     pub fn turned(&self, p: DVec2, turns: f64) -> Option<DVec2> {
-        let polar = self.chart.polar()?;
+        let polar = self.chart.polar().filter(|_| self.goes_on())?;
         let (angle, along) = polar.rolled(p, self.middle);
         Some(polar.unrolled(angle + turns * TAU, along, self.middle))
     }
@@ -216,11 +233,13 @@ impl Sheet<'_> {
     }
 
     fn pieces(&self, from: DVec3, to: DVec3, tolerance: f64, angle: f64) -> usize {
-        let mut count = 1;
+        let turn = self.chart.polar().map_or(0.0, |polar| {
+            polar.rolled(to.truncate(), self.middle).0 - polar.rolled(from.truncate(), self.middle).0
+        });
+        let mut count = ((turn.abs() / angle).ceil() as usize).clamp(1, MOST_PIECES);
         let fits = |count: usize| {
             let end = |k: usize| self.at(from.lerp(to, k as f64 / count as f64));
-            // On the layers of these charts the bend of a straight line changes steadily along it: its ends are the worst.
-            [0, count - 1].into_iter().all(|k| {
+            (0..count).all(|k| {
                 let (a, b) = (end(k), end(k + 1));
                 let middle = self.at(from.lerp(to, (k as f64 + 0.5) / count as f64)).place;
                 a.normal.angle_between(b.normal) <= angle && middle.distance(a.place.midpoint(b.place)) <= tolerance

@@ -21,6 +21,9 @@ pub(super) trait Polar: Sync {
     /// A point of space.
     fn around(&self, p: DVec3) -> Around;
 
+    /// Distance of a point from the axis, mm.
+    fn off_axis(&self, p: DVec3) -> f64;
+
     /// A point given by angle (rad), place along its layer's straight line and height (mm).
     fn at(&self, angle: f64, along: f64, height: f64) -> At;
 

@@ -1,8 +1,10 @@
 //! Islands that cross the seam, where a layer around an axis is unrolled: their halves are put together again, and each island is
-//! kept once. What goes all around stays cut open, each layer elsewhere, so that no cut lies over another.
+//! kept once. What goes all around stays cut open, each layer elsewhere, so that no cut lies over another. On a cone, where a
+//! second turn would lie over the first, islands end at the seam.
 
 use super::Sheet;
 use planar::{DVec2, Polygon, Region, Ring};
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Points this close to the seam lie on it, mm.
@@ -19,46 +21,43 @@ const ON: f64 = 0.618_034;
 /// sheet on which the mesh was cut.
 pub fn joined(islands: Vec<Polygon>, number: usize, cut: &Sheet<'_>, layer: &Sheet<'_>) -> Vec<Polygon> {
     let islands = together(islands, TAU * (ON * number as f64).fract(), cut);
-    if cut == layer { islands } else { islands.iter().map(|island| moved(island, |p| layer.across(p, cut))).collect() }
+    if cut == layer { islands } else { islands.iter().map(|island| island.moved(|p| layer.across(p, cut))).collect() }
 }
 
 /// What goes all around is cut open `later` (rad) than at the seam.
 fn together(islands: Vec<Polygon>, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
+    if !sheet.goes_on() {
+        return islands;
+    }
     let ends: Vec<[Vec<[f64; 2]>; 2]> =
         islands.iter().map(|island| [1.0, -1.0].map(|side| on_seam(island, side, sheet))).collect();
     let meeting = meeting(&ends);
     if meeting.is_empty() {
         return islands;
     }
-    let turns = turns(islands.len(), &meeting);
-    let mut joined: Vec<Polygon> = Vec::new();
-    let mut groups: Vec<(usize, Vec<usize>)> = Vec::new();
-    for (i, (group, _)) in turns.iter().enumerate() {
-        match groups.iter_mut().find(|(known, _)| known == group) {
-            Some((_, members)) => members.push(i),
-            None => groups.push((*group, vec![i])),
-        }
+    let mut groups: BTreeMap<usize, Vec<(usize, Option<i32>)>> = BTreeMap::new();
+    for (i, (group, turn)) in turns(islands.len(), &meeting).into_iter().enumerate() {
+        groups.entry(group).or_default().push((i, turn));
     }
-    for (_, members) in groups {
-        let around = members.iter().any(|&i| turns[i].1.is_none());
-        match &members[..] {
-            _ if around => {
-                let all = Region::from_normalised(members.iter().map(|&i| islands[i].clone()).collect());
-                joined.extend(cut_later(&all, later, sheet));
-            }
-            [alone] => joined.push(islands[*alone].clone()),
-            _ => {
-                let first = members.iter().filter_map(|&i| turns[i].1).min().unwrap_or(0);
-                let united = members.iter().fold(Region::default(), |all, &i| {
-                    let turn = f64::from(turns[i].1.unwrap_or(0) - first);
-                    let further = moved(&islands[i], |p| sheet.over_seam(p, turn, ON_SEAM, OVERLAP));
-                    all.union(&Region::from(further))
-                });
-                joined.extend(united.simplified(OVERLAP).into_polygons());
-            }
+    let of_group = |members: &Vec<(usize, Option<i32>)>| match members[..] {
+        _ if members.iter().any(|(_, turn)| turn.is_none()) => {
+            let all = members.iter().map(|(i, _)| islands[*i].clone()).collect();
+            cut_later(&Region::from_normalised(all), later, sheet)
         }
-    }
-    joined
+        [(alone, _)] => vec![islands[alone].clone()],
+        _ => united(members.iter().map(|(i, turn)| (&islands[*i], turn.unwrap_or(0))), sheet),
+    };
+    groups.values().flat_map(of_group).collect()
+}
+
+/// Islands as one that begins within the first turn, each some turns further on.
+fn united<'a>(members: impl Iterator<Item = (&'a Polygon, i32)> + Clone, sheet: &Sheet<'_>) -> Vec<Polygon> {
+    let first = members.clone().map(|(_, turn)| turn).min().unwrap_or(0);
+    let further = |(island, turn): (&Polygon, i32)| {
+        let turns = f64::from(turn - first);
+        Region::from(island.moved(|p| sheet.over_seam(p, turns, ON_SEAM, OVERLAP)))
+    };
+    members.map(further).fold(Region::default(), |all, part| all.union(&part)).simplified(OVERLAP).into_polygons()
 }
 
 /// A region that goes all around, cut open at another angle: what lies before it comes a turn later.
@@ -68,15 +67,10 @@ fn cut_later(region: &Region, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
     };
     let part = |from: f64, to: f64| region.intersection(&Region::from(sheet.sector([from, to], reach)));
     let (before, after) = (part(-PI, later - PI), part(later - PI, PI));
-    let further = |island: &Polygon| Region::from(moved(island, |p| sheet.over_seam(p, 1.0, ON_SEAM, OVERLAP)));
-    let own = |island: &Polygon| Region::from(moved(island, |p| sheet.over_seam(p, 0.0, ON_SEAM, OVERLAP)));
+    let further = |island: &Polygon| Region::from(island.moved(|p| sheet.over_seam(p, 1.0, ON_SEAM, OVERLAP)));
+    let own = |island: &Polygon| Region::from(island.moved(|p| sheet.over_seam(p, 0.0, ON_SEAM, OVERLAP)));
     let pieces = before.polygons().iter().map(further).chain(after.polygons().iter().map(own));
     pieces.fold(Region::default(), |all, piece| all.union(&piece)).simplified(OVERLAP).into_polygons()
-}
-
-fn moved(island: &Polygon, to: impl Fn(DVec2) -> DVec2) -> Polygon {
-    let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| to(*p)).collect());
-    Polygon { outer: ring(&island.outer), holes: island.holes.iter().map(ring).collect() }
 }
 
 /// The stretches of the seam at the end (side 1) or the beginning (-1) of a turn along which an island lies, from and to, mm.

@@ -86,6 +86,67 @@ impl Face {
     }
 }
 
+/// Triangles at a plane.
+struct Clip<'a> {
+    face: Face,
+    vertices: &'a mut Vec<DVec3>,
+    /// The vertex on each edge that the plane cuts, by the edge's ends.
+    crossings: HashMap<[u32; 2], u32>,
+    /// How often each edge of what closes the cut runs from its lower end to its higher one, less how often back: where two faces
+    /// leave along one edge, nothing is open.
+    rim: BTreeMap<[u32; 2], i32>,
+}
+
+impl Clip<'_> {
+    /// What of a triangle is kept. What closes the cut takes the place of one that lies in the plane.
+    fn kept(&mut self, triangle: &[u32; 3]) -> Vec<[u32; 3]> {
+        let edges = [0, 1, 2].map(|k| [triangle[k], triangle[(k + 1) % 3]]);
+        if triangle.iter().all(|corner| self.vertices[*corner as usize][self.face.axis] == self.face.at) {
+            edges.into_iter().for_each(|edge| self.open(edge));
+            return Vec::new();
+        }
+        let (mut corners, mut leaves, mut enters) = (Vec::with_capacity(4), None, None);
+        for ends in edges {
+            let inside = ends.map(|end| self.face.keeps(self.vertices[end as usize]));
+            if inside[0] {
+                corners.push(ends[0]);
+            }
+            if inside[0] != inside[1] {
+                let crossing = self.crossing(ends);
+                corners.push(crossing);
+                *if inside[0] { &mut leaves } else { &mut enters } = Some(crossing);
+            }
+        }
+        corners.dedup();
+        if corners.first() == corners.last() {
+            corners.pop();
+        }
+        if let (Some(leaves), Some(enters)) = (leaves, enters)
+            && leaves != enters
+        {
+            self.open([enters, leaves]);
+        }
+        (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]).collect()
+    }
+
+    fn crossing(&mut self, [a, b]: [u32; 2]) -> u32 {
+        let ends = [a.min(b), a.max(b)];
+        let places = ends.map(|end| self.vertices[end as usize]);
+        if let Some(on_it) = places.iter().position(|p| p[self.face.axis] == self.face.at) {
+            return ends[on_it];
+        }
+        *self.crossings.entry(ends).or_insert_with(|| {
+            self.vertices.push(self.face.crossing(places[0], places[1]));
+            self.vertices.len() as u32 - 1
+        })
+    }
+
+    /// Takes note of an edge of what closes the cut.
+    fn open(&mut self, [from, to]: [u32; 2]) {
+        *self.rim.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+    }
+}
+
 /// Triangles that are cut.
 #[derive(Default)]
 struct Cut {
@@ -103,52 +164,14 @@ impl Cut {
     /// again, but its area is right.
     fn clip(&mut self, face: Face, mut apex: DVec3) {
         apex[face.axis] = face.at;
-        let (vertices, mut crossings) = (&mut self.vertices, HashMap::new());
-        let kept: Vec<bool> = vertices.iter().map(|p| face.keeps(*p)).collect();
-        if kept.iter().all(|kept| *kept) {
+        if self.vertices.iter().all(|p| face.keeps(*p)) {
             return;
         }
-        let mut rim: BTreeMap<[u32; 2], i32> = BTreeMap::new();
-        let mut triangles = Vec::with_capacity(self.triangles.len());
-        for triangle in &self.triangles {
-            let (mut corners, mut leaves, mut enters) = (Vec::with_capacity(4), None, None);
-            for k in 0..3 {
-                let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
-                let inside = [kept[a as usize], kept[b as usize]];
-                if inside[0] {
-                    corners.push(a);
-                }
-                if inside[0] != inside[1] {
-                    let ends = [a.min(b), a.max(b)];
-                    let crossing = *crossings.entry(ends).or_insert_with(|| {
-                        let places = ends.map(|end| vertices[end as usize]);
-                        match places.iter().position(|p| p[face.axis] == face.at) {
-                            Some(on_it) => ends[on_it],
-                            None => {
-                                vertices.push(face.crossing(places[0], places[1]));
-                                vertices.len() as u32 - 1
-                            }
-                        }
-                    });
-                    corners.push(crossing);
-                    *if inside[0] { &mut leaves } else { &mut enters } = Some(crossing);
-                }
-            }
-            corners.dedup();
-            if corners.first() == corners.last() {
-                corners.pop();
-            }
-            triangles.extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
-            if let (Some(leaves), Some(enters)) = (leaves, enters)
-                && leaves != enters
-            {
-                // Where two faces leave along one edge, nothing is open.
-                let ends = [leaves.min(enters), leaves.max(enters)];
-                *rim.entry(ends).or_default() += if leaves == ends[0] { -1 } else { 1 };
-            }
-        }
-        let tip = vertices.len() as u32;
-        vertices.push(apex);
+        let mut clip = Clip { face, vertices: &mut self.vertices, crossings: HashMap::new(), rim: BTreeMap::new() };
+        let mut triangles: Vec<[u32; 3]> = self.triangles.iter().flat_map(|triangle| clip.kept(triangle)).collect();
+        let rim = clip.rim;
+        let tip = self.vertices.len() as u32;
+        self.vertices.push(apex);
         for ([a, b], count) in rim {
             let closing = if count > 0 { [a, b, tip] } else { [b, a, tip] };
             triangles.extend((0..count.abs()).map(|_| closing));
@@ -243,7 +266,7 @@ fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
     let length = a.distance(b);
     let [first, last] = [a, b].map(|p| polar.around(p));
     // Heights change by no more than the distance.
-    if length < tolerance || first.height + last.height + length < 0.0 {
+    if length < tolerance || first.height + last.height + length < -4.0 * ON_IT {
         return false;
     }
     let angle = |around: Around| near(around.angle, first.angle);

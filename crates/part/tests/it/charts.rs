@@ -7,7 +7,7 @@ use bead_part::slice::{Slice, SliceOptions, Slicer};
 use bead_part::task::Task;
 use glam::{DQuat, DVec3};
 use planar::{DVec2, Polygon, Ring};
-use std::f64::consts::{FRAC_PI_6, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 fn charts() -> Vec<Chart> {
     let texts = [
@@ -78,6 +78,15 @@ fn divided_lines_stay_within_the_tolerance() {
         let [a, b] = [ends[0], ends[1]].map(|p| sheet.at(p));
         let middle = sheet.at(ends[0].midpoint(ends[1])).place;
         assert!(middle.distance(a.place.midpoint(b.place)) <= 0.01 && a.normal.angle_between(b.normal) <= 0.2);
+    }
+    // On a cone a line bends most where it passes the tip.
+    let cone: Chart = "cone:axis=-z,angle=30".parse().unwrap();
+    let (sheet, from, to) = (cone.sheet(1.0), DVec3::new(-80.0, 6.0, 1.0), DVec3::new(80.0, 6.0, 1.0));
+    let line: Vec<DVec3> = std::iter::once(from).chain(sheet.divided(from, to, 0.01, 0.2)).collect();
+    for ends in line.windows(2) {
+        let middle = sheet.at(ends[0].midpoint(ends[1])).place;
+        let [a, b] = [ends[0], ends[1]].map(|p| sheet.at(p).place);
+        assert!(middle.distance(a.midpoint(b)) <= 0.01);
     }
     // A chord that turns by an angle a lies r (1 - cos(a / 2)) within: less than twice as many pieces as needed.
     let needed = 110.0 / 21.0 / (2.0 * (1.0 - 0.01 / 22.0_f64).acos());
@@ -165,23 +174,44 @@ fn bosses_are_whole_wherever_the_seam_lies() {
     }
 }
 
-/// A shell between two cones of the same angle has layers whose area is that of the cones between.
+/// A shell between two cones of the same angle has layers whose area is that of the cones between, and whose points lie within
+/// one turn of the axis: nothing lies on anything else.
 #[test]
 fn cone_shells_unroll_to_sectors() {
-    let (angle, thick): (f64, f64) = (FRAC_PI_6, 6.0);
-    // Over the cone with its tip at z = 90: the outer cone's tip lies farther up.
-    let radius = |z: f64, over: f64| (90.0 + over / angle.sin() - z) * angle.tan();
-    let profile =
-        [[radius(0.0, 0.0), 0.0], [radius(0.0, thick), 0.0], [radius(60.0, thick), 60.0], [radius(60.0, 0.0), 60.0]];
-    let shell = mesh(Solid::revolve(&profile.map(DVec2::from_array), 720));
-    let chart: Chart = "cone:axis=-z,tip=0/0/90,angle=30".parse().unwrap();
-    let slices = slices(&chart, &shell, 2.0);
-    assert_eq!(slices.len(), 3);
-    for slice in slices {
-        let over = slice.z - 1.0;
-        let [low, high] = [0.0, 60.0].map(|z| radius(z, over) / angle.sin());
-        let area = PI * angle.sin() * (low * low - high * high);
-        assert!((slice.area() / area - 1.0).abs() < 1e-3, "{} instead of {area}", slice.area());
+    for degrees in [20.0_f64, 30.0, 45.0, 75.0] {
+        let (angle, thick) = (degrees.to_radians(), 6.0);
+        // Over the cone with its tip at z = 90: the outer cone's tip lies farther up.
+        let radius = |z: f64, over: f64| (90.0 + over / angle.sin() - z) * angle.tan();
+        let corner = |z: f64, over: f64| DVec2::new(radius(z, over), z);
+        let profile = [corner(0.0, 0.0), corner(0.0, thick), corner(60.0, thick), corner(60.0, 0.0)];
+        let shell = mesh(Solid::revolve(&profile, 720));
+        let chart: Chart = format!("cone:axis=-z,tip=0/0/90,angle={degrees}").parse().unwrap();
+        let slices = slices(&chart, &shell, 2.0);
+        assert_eq!(slices.len(), 3, "{degrees}°");
+        for slice in slices {
+            let over = slice.z - 1.0;
+            let [low, high] = [0.0, 60.0].map(|z| radius(z, over) / angle.sin());
+            let area = PI * angle.sin() * (low * low - high * high);
+            assert!((slice.area() / area - 1.0).abs() < 1e-3, "{degrees}°: {} instead of {area}", slice.area());
+            let sheet = chart.sheet(over);
+            let islands = slice.islands.iter().flat_map(Polygon::rings).flat_map(Ring::points);
+            for p in islands {
+                let again = sheet.coordinates(sheet.at(p.extend(over)).place, *p).truncate();
+                assert!(again.distance(*p) < 1e-6, "{degrees}°: {p} {again}");
+            }
+        }
+    }
+}
+
+/// A bar of the radius on which the build begins is cut off exactly at its skin, wherever the seam lies.
+#[test]
+fn bars_of_the_first_radius_are_cut_off_at_their_skin() {
+    for seam in [3, 23, 77, 143, 165, 203, 219, 300] {
+        let chart: Chart = format!("cylinder:radius=20,seam={seam}").parse().unwrap();
+        let unrolled = warp::warped(&chart, &shaft(), 0.01, &Task::new()).unwrap();
+        assert!(unrolled.neighbours.iter().flatten().all(|across| *across != u32::MAX), "seam {seam}");
+        let volume = PI * ((46.0_f64.powi(2) - 400.0) * 20.0 + (32.0_f64.powi(2) - 400.0) * 30.0);
+        assert!((unrolled.volume() / volume - 1.0).abs() < 2e-3, "seam {seam}: {} of {volume}", unrolled.volume());
     }
 }
 

@@ -7,13 +7,10 @@ use crate::motion::Motion;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop};
 use bead_part::chart::Chart;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Waits are multiples of this, s; they are rounded up, never down.
 const WAIT_STEP: f64 = 0.01;
-
-/// A pass is at most this many turns longer than one.
-const TURNS: [f64; 5] = [0.0, -1.0, 1.0, -2.0, 2.0];
 
 /// Where the torch is, and how long the layer has taken.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -227,10 +224,8 @@ impl Torch {
     pub fn turn_towards(&mut self, to: DVec3) {
         let Some(at) = self.at.filter(|_| self.chart.goes_around()) else { return };
         let sheet = self.chart.sheet(self.middle);
-        let turned = TURNS.into_iter().filter_map(|turns| sheet.turned(at.truncate(), turns));
-        let distance = |p: &DVec2| p.distance(to.truncate());
-        let nearest = turned.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        self.at = nearest.map(|p| p.extend(at.z));
+        let turns = sheet.turns_to(at.truncate(), to.truncate()).round();
+        self.at = Some(sheet.turned(at.truncate(), turns).map_or(at, |p| p.extend(at.z)));
     }
 
     /// The move up from the end of a pass: whatever comes between passes happens above the fresh bead.

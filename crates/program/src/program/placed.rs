@@ -12,7 +12,8 @@ const TRAVELLING: (f64, f64) = (1.0, 0.175);
 
 /// Takes the instructions of a pass to space; `from` is where the torch comes from, in the chart.
 pub(super) fn placed(instructions: Vec<Instruction>, sheet: &Sheet<'_>, from: Option<DVec3>) -> Vec<Instruction> {
-    let mut placing = Placing { sheet, at: from, out: Vec::with_capacity(instructions.len()) };
+    let mut placing =
+        Placing { sheet, at: from, start: Attitude::default(), out: Vec::with_capacity(instructions.len()) };
     instructions.into_iter().for_each(|instruction| placing.add(instruction));
     placing.out
 }
@@ -21,6 +22,8 @@ struct Placing<'a> {
     sheet: &'a Sheet<'a>,
     /// In the chart.
     at: Option<DVec3>,
+    /// Lean and table at the start of the pass.
+    start: Attitude,
     out: Vec<Instruction>,
 }
 
@@ -40,6 +43,7 @@ impl Placing<'_> {
                 self.out.push(Instruction::Retract { to: self.point(to) });
             }
             Instruction::PassStart { pass, above, attitude } => {
+                self.start = attitude;
                 let (above, attitude) = (self.point(above), self.turned(attitude, above));
                 self.out.push(Instruction::PassStart { pass, above, attitude });
             }
@@ -74,7 +78,7 @@ impl Placing<'_> {
     fn travel(&mut self, from: DVec3, to: DVec3) {
         let (tolerance, angle) = TRAVELLING;
         for p in self.sheet.divided(from, to, tolerance, angle) {
-            let attitude = self.turned(Attitude::default(), p);
+            let attitude = self.turned(self.start, p);
             self.out.extend([Instruction::Turn { attitude }, Instruction::Travel { to: self.point(p) }]);
         }
         self.at = Some(to);

@@ -57,8 +57,34 @@ impl Extra {
     }
 }
 
+/// What cannot be written together with layers that are not level, and what to do.
+fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
+    let (chart, program) = (&job.weld.chart, job.program);
+    let pairs = [
+        (
+            program.has_table(),
+            "layers.chart together with program.table_angle or program.table_side",
+            "The table would turn by angles on the unrolled layers: leave it out.",
+        ),
+        (
+            program.layer_offsets,
+            "layers.chart together with program.layer_offsets",
+            "An offset moves a layer along z, and not along its normal: leave it out.",
+        ),
+        (
+            chart.goes_around() && program.follow_wall != 0.0,
+            "layers.chart together with program.follow_wall",
+            "The torch already stands along the layer's normal: set program.follow_wall = 0.",
+        ),
+    ];
+    pairs.into_iter().find(|(is_asked, ..)| *is_asked && !chart.is_level()).map(|(_, what, remedy)| (what, remedy))
+}
+
 /// Refuses a job that asks for more than the dialect of a section can write.
 pub(super) fn check(dialect: &'static str, section: &dyn Section, job: &Job<'_>) -> Result<(), DialectError> {
+    if let Some((what, remedy)) = beside_chart(job) {
+        return Err(DialectError::Cannot { dialect, what, remedy });
+    }
     let missing = Extra::ALL.into_iter().find(|extra| extra.is_asked(job) && !section.supports(*extra));
     missing.map_or(Ok(()), |extra| {
         let (what, remedy) = extra.told();
