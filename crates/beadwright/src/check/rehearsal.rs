@@ -1,6 +1,7 @@
 //! A small program written with a profile in each of its dialects and read back, so that dangerous lines of its templates and
 //! settings are seen before anything is planned.
 
+use crate::chart::Chart;
 use crate::dialect::reading::{self, Fault};
 use crate::dialect::{self, own};
 use crate::layer::Layer;
@@ -19,6 +20,10 @@ const MOVES: usize = 72;
 /// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs, and dialects of your
 /// own, are not read for them; what a profile cannot write at all is refused elsewhere.
 pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
+    // What is rehearsed are the lines of the profile; the two layers lie anywhere.
+    let mut profile = profile.clone();
+    profile.layers.chart = Chart::default();
+    let profile = &profile;
     let posts = profile.posts.iter().filter(|post| !own::is_folder(post) && *post != "marlin");
     posts.flat_map(|post| faults(profile, post).into_iter().map(|fault| (post.clone(), fault))).collect()
 }
