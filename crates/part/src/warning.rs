@@ -129,7 +129,7 @@ pub struct WarningSummary {
     /// Top of its layer, mm.
     pub z: f64,
     /// Where it lies in space, mm, if its layer is not level.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub at: Option<DVec3>,
     /// Sum of the sizes, in the unit of the kind.
     pub total: f64,

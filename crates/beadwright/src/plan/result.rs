@@ -7,7 +7,7 @@ use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::Sides;
 use crate::task::Cancelled;
-use crate::warning::Warnings;
+use crate::warning::{WarningSummary, Warnings};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
@@ -52,7 +52,14 @@ pub struct Summary {
 impl Summary {
     /// The totals, warnings and notes, and what the deposit model says: the content of `metrics.json`.
     pub fn json(&self, figures: Option<&Figures>) -> serde_json::Value {
-        let warnings: Vec<_> = self.warnings.summaries().collect();
+        let named = |summary: &WarningSummary| {
+            let mut value = serde_json::json!(summary);
+            if let (None, Some(fields)) = (summary.at, value.as_object_mut()) {
+                fields.remove("at");
+            }
+            value
+        };
+        let warnings: Vec<_> = self.warnings.summaries().map(named).collect();
         let mut value = serde_json::json!(self.metrics);
         value["coverage"] = self.metrics.coverage().into();
         value["warnings"] = serde_json::json!(warnings);
