@@ -197,7 +197,7 @@ impl Edges {
     }
 }
 
-/// Places on an edge are told apart from this distance on, mm: rounding moves the place of a crossing by some 1e-11 mm where
+/// Places on an edge count as different from this distance on, mm: rounding moves the place of a crossing by some 1e-11 mm where
 /// coordinates are largest. In the wrong order, crossings would join curves that have nothing to do with each other.
 const APART: f64 = 1e-9;
 

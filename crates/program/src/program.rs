@@ -23,7 +23,6 @@ use weave::Swing;
 pub use weave::Weave;
 
 use crate::number;
-use bead_part::chart::Chart;
 use bead_plan::layer::Layer;
 use bead_plan::pass::{Pass, PassKind};
 use bead_plan::process::Follow;
@@ -194,9 +193,8 @@ pub struct LayerProgram {
 #[derive(Debug, Clone)]
 pub struct Programmer {
     torch: Torch,
-    /// How layers lie in space, and the height of the current one's middle, mm.
-    chart: Chart,
-    middle: f64,
+    /// Whether instructions are taken from the layer's chart to space.
+    placed: bool,
     fit: Option<Fit>,
     speed_tolerance: f64,
     /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
@@ -218,8 +216,7 @@ impl Programmer {
         let torch = Torch::new(clearance);
         Self {
             torch,
-            chart: Chart::default(),
-            middle: 0.0,
+            placed: true,
             fit: None,
             speed_tolerance: 0.0,
             feed: None,
@@ -239,9 +236,7 @@ impl Programmer {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let (tilt, table) = (Tilt::new(program), Follower::new(program));
-        let chart = weld.chart;
-        let programmer =
-            Self { torch, chart, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
+        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
         programmer.with_fit(program)
     }
 
@@ -252,7 +247,7 @@ impl Programmer {
 
     /// The same programmer, but it stays in the coordinates in which layers are level.
     pub fn unplaced(self) -> Self {
-        Self { chart: Chart::default(), ..self }
+        Self { placed: false, ..self }
     }
 
     /// The same programmer, but it keeps every point of the passes.
@@ -271,7 +266,7 @@ impl Programmer {
         self.speed_tolerance = program.speed_tolerance;
         self.fit = (tolerance > 0.0).then_some(Fit {
             tolerance,
-            arcs: program.arcs && self.chart.is_level(),
+            arcs: program.arcs && self.torch.sheet().is_none(),
             grid: RESOLUTION_MM,
         });
         self
@@ -300,7 +295,6 @@ impl Programmer {
     pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         self.pass_over(layer);
-        self.middle = layer.middle();
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
         let mut pause = (!layer.passes.is_empty())
@@ -393,9 +387,9 @@ impl Programmer {
             out.extend(self.torch.retract().legs.into_iter().map(|to| Instruction::Retract { to }));
             out.push(Instruction::PassEnd);
         }
-        if !self.chart.is_level() {
+        if let Some(sheet) = self.torch.sheet().filter(|_| self.placed) {
             let of_chart = out.split_off(own);
-            out.extend(placed::placed(of_chart, &self.chart.sheet(self.middle), before));
+            out.extend(placed::placed(of_chart, &sheet, before));
         }
     }
 

@@ -40,8 +40,8 @@ impl Stocked {
     /// ```
     ///
     /// # Errors
-    /// [`PlanError::NoSolid`] for curves, [`PlanError::PreformOfChart`] for layers that are not level, [`PlanError::Open`] for a surface that is not closed, unless the profile says that it
-    /// is the skin of a solid, and [`PlanError::Cancelled`].
+    /// [`PlanError::NoSolid`] for curves, [`PlanError::PreformOfChart`] for layers that are not level, [`PlanError::Open`] for a
+    /// surface that is not closed, unless the profile says that it is the skin of a solid, and [`PlanError::Cancelled`].
     pub fn of(part: Part, profile: &Profile, task: &Task) -> Result<Self, PlanError<Infallible>> {
         let Part::Mesh(mut import) = part else { return Err(PlanError::NoSolid) };
         if !profile.layers.chart.is_level() {

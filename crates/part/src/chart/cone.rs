@@ -57,11 +57,6 @@ impl Polar for Cone {
         (p.x.atan2(p.y) / self.half_angle.to_radians().sin(), p.length())
     }
 
-    /// At the tip, or so near to it that no bead is laid there.
-    fn nearest(&self, reach: f64) -> f64 {
-        1e-3 * reach
-    }
-
     fn risen(&self, angle: f64, along: f64, rise: f64) -> (f64, f64) {
         (angle, along + rise / self.half_angle.to_radians().tan())
     }

@@ -77,10 +77,6 @@ impl Polar for Cylinder {
         (self.side.sign() * p.x / self.radius_at(middle), p.y)
     }
 
-    fn nearest(&self, reach: f64) -> f64 {
-        -reach
-    }
-
     fn risen(&self, angle: f64, along: f64, _rise: f64) -> (f64, f64) {
         (angle, along)
     }

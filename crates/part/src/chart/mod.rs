@@ -194,13 +194,14 @@ impl Sheet<'_> {
         Some(polar.unrolled(angle + turns * TAU, along, self.middle))
     }
 
-    /// The part of the layer between two angles (rad), as far as `reach` (mm) along its straight lines to both sides.
+    /// The part of a layer that goes on turn after turn between two angles (rad), as far as `reach` (mm) along its straight lines to
+    /// both sides.
     fn sector(&self, [from, to]: [f64; 2], reach: f64) -> Polygon {
         let Some(polar) = self.chart.polar() else { return Polygon::default() };
         let count = ((to - from) / SECTOR_STEP).ceil().max(1.0) as usize;
         let at =
             |k: usize, along: f64| polar.unrolled(from + (to - from) * k as f64 / count as f64, along, self.middle);
-        let near = (0..=count).map(|k| at(k, polar.nearest(reach)));
+        let near = (0..=count).map(|k| at(k, -reach));
         let far = (0..=count).rev().map(|k| at(k, reach));
         Polygon::simple(Ring::new(near.chain(far).collect()))
     }

@@ -33,9 +33,6 @@ pub(super) trait Polar: Sync {
     /// Back from [`Self::unrolled`]: angle and place along the straight line.
     fn rolled(&self, p: DVec2, middle: f64) -> (f64, f64);
 
-    /// Where the straight lines of a layer begin that is to reach as far as `reach` (mm).
-    fn nearest(&self, reach: f64) -> f64;
-
     /// Angle and place along the straight line after `rise` mm along the normal.
     fn risen(&self, angle: f64, along: f64, rise: f64) -> (f64, f64);
 }

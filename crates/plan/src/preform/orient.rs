@@ -106,7 +106,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// A direction with the figures of the preform that stands so, of about so many steps in the height of the part.
+    /// A direction with the figures of the preform that stands so, with about this number of steps in the height of the
+    /// part.
     fn at(&self, down: DVec3, steps: f64) -> Result<Oriented, Cancelled> {
         let Self { settings, rates, .. } = self;
         let turned = standing(self.mesh, down);

@@ -6,7 +6,7 @@ use crate::layer::Lit;
 use crate::motion::Motion;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop};
-use bead_part::chart::Chart;
+use bead_part::chart::{Chart, Sheet};
 use glam::DVec3;
 
 /// Waits are multiples of this, s; they are rounded up, never down.
@@ -131,6 +131,11 @@ impl Torch {
     /// Whether the arc burns before and after the pass of the current layer.
     pub fn lit(&self) -> Lit {
         self.lit
+    }
+
+    /// How the current layer lies in space; `None` where it is level.
+    pub fn sheet(&self) -> Option<Sheet<'_>> {
+        (!self.chart.is_level()).then(|| self.chart.sheet(self.middle))
     }
 
     /// Where it is; `None` before the first pass.

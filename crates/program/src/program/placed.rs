@@ -31,10 +31,9 @@ impl Placing<'_> {
     fn add(&mut self, instruction: Instruction) {
         match instruction {
             Instruction::Approach { to } => {
-                self.travel(to, to);
-                if let Some(Instruction::Travel { to }) = self.out.pop() {
-                    self.out.push(Instruction::Approach { to });
-                }
+                self.turn(to);
+                self.out.push(Instruction::Approach { to: self.point(to) });
+                self.at = Some(to);
             }
             Instruction::Travel { to } => self.travel(self.at.unwrap_or(to), to),
             // Along the normal.
@@ -75,11 +74,16 @@ impl Placing<'_> {
         Attitude { layer: frame(&self.sheet.at(at)), ..attitude }
     }
 
+    /// Turns the torch to how it stands at a place.
+    fn turn(&mut self, p: DVec3) {
+        self.out.push(Instruction::Turn { attitude: self.turned(self.start, p) });
+    }
+
     fn travel(&mut self, from: DVec3, to: DVec3) {
         let (tolerance, angle) = TRAVELLING;
         for p in self.sheet.divided(from, to, tolerance, angle) {
-            let attitude = self.turned(self.start, p);
-            self.out.extend([Instruction::Turn { attitude }, Instruction::Travel { to: self.point(p) }]);
+            self.turn(p);
+            self.out.push(Instruction::Travel { to: self.point(p) });
         }
         self.at = Some(to);
     }
