@@ -14,6 +14,7 @@ mod deviation;
 mod example;
 mod export;
 mod file;
+mod guide;
 mod heat;
 mod inspect;
 mod memory;
@@ -59,6 +60,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Make the preform of a model: the part with what is milled off again, with its weights, hours and prices.
     Preform(preform::Arguments),
+    /// Print the curve to which the layers of a bent part are square, for plan --chart.
+    Guide(guide::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
     /// Plan many models, with many profiles, strategies and values: one table.
@@ -106,6 +109,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Plan(arguments) => parts::run(&arguments),
         Command::Preform(arguments) => preform::run(&arguments),
+        Command::Guide(arguments) => guide::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -439,7 +439,7 @@ impl Sink for Files<'_> {
             index + 1,
             layer.passes.len()
         );
-        let welded = plan::welded(&layer, self.profile);
+        let welded = plan::welded_alone(&layer, self.profile);
         let judgement = self.judge.as_mut().map(|judge| judge.layer(&welded));
         if let Some(files) = &mut self.files {
             self.folder.extend(files.layer(&layer, judgement.as_ref()))?;

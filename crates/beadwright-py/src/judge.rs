@@ -137,7 +137,7 @@ pub(crate) fn judge<'py>(
 ) -> PyResult<Judged> {
     let planned = &plan.0;
     let layers: Vec<Layer> =
-        planned.layers.iter().map(|layer| plan::welded(layer, &planned.profile)).map(Cow::into_owned).collect();
+        planned.layers.iter().map(|layer| plan::welded_alone(layer, &planned.profile)).map(Cow::into_owned).collect();
     let settings = fitted(grid, plan::deposit_settings(&planned.profile), &extent(&layers), layers.len())?;
     let mut metrics = Metrics::new(&planned.profile);
     planned.layers.iter().for_each(|layer| metrics.add(layer));
@@ -168,7 +168,7 @@ pub(crate) fn height_field(
     };
     let bounds = extent(std::slice::from_ref(layer));
     let settings = fitted(grid, plan::deposit_settings(&planned.profile), &bounds, 1)?;
-    let welded = plan::welded(layer, &planned.profile);
+    let welded = plan::welded_alone(layer, &planned.profile);
     let strokes: Vec<_> = welded.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
     let grid = Grid::covering(&bounds, settings.nominal.bead.width, settings.step);
     let heights = Running::new(None, None)

@@ -51,7 +51,7 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
     folder.extend(chunks)?;
     for (done, layer) in planned.layers.iter().enumerate() {
         task.step(Stage::Deposit, done as f64 / planned.layers.len() as f64)?;
-        let judgement = judge.as_mut().map(|judge| judge.layer(&plan::welded(layer, profile)));
+        let judgement = judge.as_mut().map(|judge| judge.layer(&plan::welded_alone(layer, profile)));
         folder.extend(files.layer(layer, judgement.as_ref()))?;
     }
     let mut summary = planned.summary.clone();

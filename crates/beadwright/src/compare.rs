@@ -140,7 +140,7 @@ impl Sink for Planned<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.entry.take(&plan::welded(&layer, self.profile));
+        self.entry.take(&plan::welded_alone(&layer, self.profile));
         Ok(())
     }
 }

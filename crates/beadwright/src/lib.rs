@@ -45,7 +45,7 @@ pub use bead_part::{curve, deviation, finding, task, text, warning};
 use bead_plan::random;
 pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]
-pub use bead_plan::{layer, limit, motion, order, pass, process, weld};
+pub use bead_plan::{layer, limit, motion, order, pass, process, wedge, weld};
 pub use bead_program::{dialect, program};
 #[doc(hidden)]
 pub use bead_program::{number, template};

@@ -3,7 +3,8 @@
 use crate::bead::wire_area;
 use crate::layer::Layer;
 use crate::process::Cost;
-use crate::profile::Profile;
+use crate::profile::{LayersSection, Profile};
+use crate::slice::Half;
 use crate::weld::{Pause, Torch, path};
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +61,9 @@ pub struct Metrics {
     rates: Rates,
     #[serde(skip)]
     torch: Torch,
+    /// Volume of the layer below, mm³.
+    #[serde(skip)]
+    below: f64,
 }
 
 /// What the totals need from the profile.
@@ -73,6 +77,8 @@ struct Rates {
     gas: f64,
     gas_idle: f64,
     cost: Cost,
+    /// How layers lie where they are not the same thickness everywhere.
+    layers: Option<LayersSection>,
 }
 
 impl Metrics {
@@ -87,6 +93,7 @@ impl Metrics {
             // It flows before and after every pass.
             gas_idle: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
             cost: profile.cost.clone(),
+            layers: profile.layers.chart.has_wedges().then(|| profile.layers.clone()),
         };
         Self {
             layers: 0,
@@ -114,6 +121,7 @@ impl Metrics {
             deposited_volume_mm3: 0.0,
             rates,
             torch: Torch::of(&profile.weld_settings()),
+            below: 0.0,
         }
     }
 
@@ -136,7 +144,7 @@ impl Metrics {
         self.layers += usize::from(!layer.passes.is_empty());
         self.slice_area_mm2 += layer.slice_area;
         self.planned_area_mm2 += layer.planned_area;
-        self.part_volume_mm3 += layer.slice_area * layer.height;
+        self.part_volume_mm3 += self.volume(layer);
         if let Some(pause) =
             (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle())).flatten()
         {
@@ -169,6 +177,14 @@ impl Metrics {
             self.gas_m3 += (welded.moving + welded.crater + idle) * self.rates.gas;
         }
         self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
+    }
+
+    /// Volume that a layer adds, mm³: the upper of two fills what the lower one leaves.
+    fn volume(&mut self, layer: &Layer) -> f64 {
+        let wedge = self.rates.layers.as_ref().and_then(|layers| layers.wedge(layer));
+        let whole = wedge.map_or(layer.slice_area * layer.height, |wedge| wedge.volume(&layer.islands));
+        let below = std::mem::replace(&mut self.below, whole);
+        if layer.half == Some(Half::Upper) { whole - below } else { whole }
     }
 
     fn pause(&mut self, pause: Pause) {

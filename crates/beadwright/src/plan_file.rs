@@ -17,6 +17,7 @@ use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
 use crate::plan::{self, Header, charted};
 use crate::profile::{Profile, ProfileError};
+use crate::slice::Half;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;
@@ -52,6 +53,9 @@ pub fn layer(layer: &Layer, sheet: Option<&Sheet<'_>>) -> String {
     push_fixed(&mut text, layer.height, DECIMALS);
     if layer.lit.after {
         text.push_str(",\"goes_on\":true");
+    }
+    if let Some(half) = layer.half {
+        text.push_str(&format!(",\"half\":\"{}\"", half.name()));
     }
     text.push_str(",\"islands\":");
     list(&mut text, &layer.islands, |text, island| {
@@ -235,7 +239,7 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
         }
         FileProfile::Name(name) => (name, None, file.bead.map(|b| b.settings(file.machining_allowance)).transpose()?),
     };
-    let chart = profile.as_ref().map(|profile| profile.layers.chart).unwrap_or_default();
+    let chart = profile.as_ref().map(|profile| profile.layers.chart.clone()).unwrap_or_default();
     let mut layers = file
         .layers
         .into_iter()
@@ -306,6 +310,8 @@ struct FileLayer {
     z: f64,
     height: f64,
     #[serde(default)]
+    half: Option<Half>,
+    #[serde(default)]
     goes_on: bool,
     islands: Vec<FileIsland>,
     passes: Vec<FilePass>,
@@ -360,7 +366,7 @@ const MAX_MEASURE: f64 = 2000.0;
 
 impl FileLayer {
     fn layer((number, layer): (usize, Self), chart: &Chart) -> Result<Layer, PlanFileError> {
-        let Self { index, z, height, goes_on, islands, passes } = layer;
+        let Self { index, z, height, half, goes_on, islands, passes } = layer;
         let wrong = |reason| Err(PlanFileError::Layer { layer: number + 1, reason });
         if index != number {
             return wrong("its index is not its place in the list, counted from 0");
@@ -379,7 +385,7 @@ impl FileLayer {
         }
         let slice_area = islands.iter().map(Polygon::area).sum();
         let lit = Lit { before: false, after: goes_on };
-        Ok(Layer { index, z, height, islands, passes, lit, slice_area, ..Layer::default() })
+        Ok(Layer { index, z, height, half, islands, passes, lit, slice_area, ..Layer::default() })
     }
 }
 

@@ -45,6 +45,8 @@ pub enum WarningKind {
     InTheAir,
     /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
+    /// A layer is thinner or thicker than its window allows; the size is by how much, mm.
+    LayerThickness,
     /// Part of a layer reaches farther than check.max_overhang beyond the one below; the size is its area, mm².
     Overhang,
     /// A pass is over before its arc is steady; the size is its length, mm.
@@ -75,7 +77,7 @@ pub const SLIVER_MM: f64 = 0.05;
 impl WarningKind {
     /// Whether a program with this fault is only written if somebody insists.
     pub fn forbids(self) -> bool {
-        matches!(self, Self::Unsound | Self::HighStart | Self::NothingBelow | Self::InTheAir)
+        matches!(self, Self::Unsound | Self::HighStart | Self::NothingBelow | Self::InTheAir | Self::LayerThickness)
     }
 
     /// How much a warning of this kind matters.
@@ -246,6 +248,10 @@ impl WarningSummary {
             WarningKind::HangingIsland => format!(
                 "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
                 times("small place", "small places")
+            ),
+            WarningKind::LayerThickness => format!(
+                "{layers}: where the guide bends, layers are thinner than layers.min_height or thicker than layers.max_height, by up \
+                 to {size:.2} mm {place}."
             ),
             WarningKind::Overhang => format!(
                 "{layers}: places that reach farther beyond the layer below than check.max_overhang, {total:.1} mm² in all, \

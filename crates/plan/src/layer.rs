@@ -1,6 +1,7 @@
 //! A layer: the outlines of a slice, and the passes that fill it.
 
 use crate::pass::Pass;
+use bead_part::slice::Half;
 use bead_part::warning::Warning;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Join, Polygon, Region};
@@ -59,6 +60,8 @@ pub struct Layer {
     pub z: f64,
     /// Thickness, mm.
     pub height: f64,
+    /// Which of two layers with the same underside it is.
+    pub half: Option<Half>,
     /// Outlines of the slice.
     pub islands: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.

@@ -7,6 +7,7 @@
 //! | [`process`] | wire, arc, speeds, gas, starts and stops |
 //! | [`motion`] | how long a path takes, with acceleration |
 //! | [`pass`], [`layer`] | a path in space with width and pace along it; a layer's slice and passes |
+//! | [`wedge`] | layers that are thicker at some places than at others |
 //! | [`fill`] | an island becomes paths: one file per strategy |
 //! | [`order`] | the paths of a layer in sequence, with their start points |
 //! | [`deposit`] | layers become a height field, with its voids and humps |
@@ -28,4 +29,5 @@ pub mod pass;
 pub mod preform;
 pub mod process;
 pub mod random;
+pub mod wedge;
 pub mod weld;

@@ -100,7 +100,7 @@ impl Sink for Kept<'_> {
             self.picture = Some(report::svg::layer(&layer, &title));
         }
         if let Some(judge) = &mut self.judge {
-            judge.layer(&plan::welded(&layer, self.profile));
+            judge.layer(&plan::welded_alone(&layer, self.profile));
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Layers that do not lie on each other.
 
 use super::{Check, Finding, Subject};
+use crate::slice::Half;
 
 pub(super) const CHECK: Check = Check {
     name: "layers",
@@ -16,13 +17,15 @@ const TOLERANCE: f64 = 0.25;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut below = 0.0;
+    // Underside and top of the layer below.
+    let (mut underside, mut below) = (0.0, 0.0);
     // A tip too thin for a bead ends the part.
     let end = subject.layers.iter().rposition(|layer| !layer.passes.is_empty()).map_or(0, |last| last + 1);
     for layer in &subject.layers[..end] {
         let bottom = layer.z - layer.height;
         // Another part may begin on the plate.
-        let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - below };
+        let on = if layer.half == Some(Half::Upper) { underside } else { below };
+        let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - on };
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {
             let way = if gap < 0.0 { "inside" } else { "above" };
             let text = format!("it begins {:.2} mm {way} the top of the layer below.", gap.abs());
@@ -31,7 +34,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         if layer.passes.is_empty() {
             findings.push(CHECK.of_layer(layer, None, "nothing is welded here.".to_owned()));
         }
-        below = layer.z;
+        (underside, below) = (bottom, layer.z);
     }
     findings
 }

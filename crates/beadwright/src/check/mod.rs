@@ -38,6 +38,7 @@ use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::plan::{self, Summary};
 use crate::profile::Profile;
+use crate::slice::Half;
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
@@ -157,7 +158,7 @@ pub fn judge_layers<L: Borrow<Layer>>(
     let mut figures = Vec::with_capacity(layers.len());
     for (i, layer) in layers.iter().map(L::borrow).enumerate() {
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
-        let judgement = is_finite(layer).then(|| judge.layer(&plan::welded(layer, profile)));
+        let judgement = is_finite(layer).then(|| judge.layer(&plan::welded_alone(layer, profile)));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
@@ -299,6 +300,13 @@ impl Subject<'_> {
     /// Every pass with its layer and its index in it.
     fn passes(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
+    }
+
+    /// What a layer stands on: the one below it, and where it is the upper of two, the one below that, too.
+    fn below(&self, layer: &Layer) -> &[&Layer] {
+        let at = self.layers.partition_point(|other| other.index < layer.index);
+        let count = if layer.half == Some(Half::Upper) { 2 } else { 1 };
+        &self.layers[at.saturating_sub(count)..at]
     }
 
     /// A finding that says where it is: its place is on the layer, the sentence names that in space.

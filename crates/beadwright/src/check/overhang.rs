@@ -3,6 +3,7 @@
 use super::{Check, Finding, Subject};
 use crate::layer::{Layer, overhang};
 use crate::plan::charted::Across;
+use planar::Polygon;
 
 pub(super) const CHECK: Check = Check {
     name: "overhang",
@@ -16,13 +17,15 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
-    let hanging = |pair: &[&Layer]| {
-        let across = Across::layers(subject.profile, pair[0], pair[1]);
-        let below = across.map(|across| across.islands(&pair[0].islands));
-        let below = below.as_deref().unwrap_or(&pair[0].islands);
-        let (area, place) = overhang(below, &pair[1].islands, reach, width)?;
-        let text = format!("{area:.1} mm² overhang the layer below by more than {reach:.1} mm.");
-        Some(CHECK.of_layer(pair[1], Some(place.extend(pair[1].z)), text))
+    let islands = |below: &Layer, layer: &Layer| match Across::layers(subject.profile, below, layer) {
+        Some(across) => across.islands(&below.islands),
+        None => below.islands.clone(),
     };
-    subject.layers.windows(2).filter_map(hanging).collect()
+    let hanging = |layer: &&Layer| {
+        let below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
+        let (area, place) = overhang(&below, &layer.islands, reach, width)?;
+        let text = format!("{area:.1} mm² overhang the layer below by more than {reach:.1} mm.");
+        Some(CHECK.of_layer(layer, Some(place.extend(layer.z)), text))
+    };
+    subject.layers.iter().skip(1).filter_map(hanging).collect()
 }

@@ -30,12 +30,16 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         };
         // Where a helix begins and ends, it fills less than a layer.
         let most = if layer.lit.is_turn() { 1.0 / Lit::LEAST } else { 1.0 };
+        let wedge = profile.layers.wedge(layer);
+        let thicker =
+            |s: &Segment| wedge.as_ref().map_or(1.0, |wedge| wedge.thicker(s, profile.usual_height(layer.height)));
         let off = |s: &Segment| {
-            let ratio = s.pace / fitting(s.width);
+            let ratio = s.pace * thicker(s) / fitting(s.width);
             ratio < 1.0 - MassBalance::TOLERANCE || ratio > most * (1.0 + MassBalance::TOLERANCE)
         };
-        let s = pass.segments().find(off)?;
-        let (width, fitting) = (s.width, fitting(s.width));
+        let on_edge = |s: &Segment| wedge.as_ref().is_some_and(|wedge| wedge.is_on_edge(s));
+        let s = pass.segments().find(|s| off(s) && !on_edge(s))?;
+        let (width, fitting) = (s.width, fitting(s.width) / thicker(&s));
         let text = match process.follow {
             Follow::Speed => {
                 let speed = process.speed_at(s.pace);

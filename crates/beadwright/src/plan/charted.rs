@@ -1,12 +1,13 @@
 //! Parts whose layers are not level: planned from their mesh in the coordinates of the profile's chart, in which layers are level.
 
 use super::{PlanError, stock};
-use crate::chart::{At, Chart, Cylinder, Sheet, Side, warp};
+use crate::chart::warp::{self, WarpError};
+use crate::chart::{At, Chart, Cylinder, Sheet, Side};
 use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass};
 use crate::profile::Profile;
-use crate::task::{Cancelled, Task};
+use crate::task::Task;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
@@ -17,8 +18,8 @@ const TOLERANCE: f64 = 0.02;
 /// A mesh in the coordinates in which its layers are level.
 ///
 /// # Errors
-/// [`Cancelled`] when the task was.
-pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, Cancelled> {
+/// [`WarpError`].
+pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, WarpError> {
     let chart = &profile.layers.chart;
     Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
 }

@@ -1,6 +1,7 @@
 //! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
 
 use super::charted;
+use crate::chart::warp::WarpError;
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, StrategyName, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
@@ -40,8 +41,13 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
         Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if !kept && profile.fill.strategy == StrategyName::Loop => {
-            let mesh = &*charted::unrolled(&import.mesh, &profile, task)?;
-            if let Some(walls) = walls(mesh, &profile, task)? {
+            let mesh = match charted::unrolled(&import.mesh, &profile, task) {
+                Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
+                // The plan says why.
+                Err(WarpError::Torn(_)) => return Ok(Choice { profile, note }),
+                Ok(mesh) => mesh,
+            };
+            if let Some(walls) = walls(&mesh, &profile, task)? {
                 profile.fill.strategy = StrategyName::Wall;
                 if walls == Walls::Thick && profile.layers.predict == Predict::Auto {
                     profile.layers.predict = Predict::Never;

@@ -17,7 +17,7 @@ use crate::metrics::Metrics;
 use crate::order;
 use crate::pass::{Pass, PassKind};
 use crate::profile::Profile;
-use crate::slice::Slice;
+use crate::slice::{Half, Slice};
 use crate::warning::{Warning, WarningKind, Warnings};
 use glam::DVec2;
 use planar::Polygon;
@@ -38,7 +38,9 @@ pub(super) struct Emitter<'a, S> {
     pub(super) grown: Option<Stack>,
     /// Outlines of the layer below, of the islands that are welded.
     pub(super) below: Vec<Polygon>,
-    /// Height of its middle, mm.
+    /// Those of the layer below that one.
+    pub(super) before: Vec<Polygon>,
+    /// Height of the middle of the layer below, mm.
     pub(super) below_middle: f64,
     /// Top of the highest layer with beads, mm.
     pub(super) built: f64,
@@ -54,7 +56,7 @@ impl<S: Sink> Emitter<'_, S> {
     /// Whatever the sink fails with.
     pub(super) fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
         let Filled { slice, fills, planned_area, reaches, milled, shared, .. } = filled;
-        let Slice { index, z, height, islands, mut warnings } = slice;
+        let Slice { index, z, height, half, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
         let laid: Vec<Polygon> = islands.iter().enumerate().filter(laid).map(|(_, island)| island.clone()).collect();
@@ -65,9 +67,17 @@ impl<S: Sink> Emitter<'_, S> {
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
         let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
         let mut layer =
-            Layer { index, z, height, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
+            Layer { index, z, height, half, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
+        if half == Some(Half::Upper) {
+            self.below.append(&mut self.before);
+        }
+        let wedge = self.profile.layers.wedge(&layer);
+        if let Some(wedge) = &wedge {
+            wedge.paired(&mut layer.passes, self.profile.usual_height(height));
+            layer.warnings.extend(wedge.doubt(&layer));
+        }
         if self.profile.is_level() {
-            level_layers::share(&mut layer, self.grown.as_ref(), self.profile);
+            level_layers::share(&mut layer, self.grown.as_ref(), wedge.as_ref(), self.profile);
         }
         if !reaches.is_empty() {
             let cover = Cover::of_layer(&layer, &reaches, self.profile);
@@ -83,9 +93,13 @@ impl<S: Sink> Emitter<'_, S> {
         }
         relight::relight(&mut layer, self.profile);
         self.support.judge(&mut layer, self.profile);
+        if let Some(wedge) = &wedge {
+            wedge.laid(&mut layer.passes);
+        }
         self.warm(&mut layer);
         self.doubts(&mut layer);
-        self.below = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
+        let laid = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
+        self.before = std::mem::replace(&mut self.below, laid);
         self.below_middle = layer.middle();
         let sheet = self.profile.layers.sheet(&layer);
         for warning in &layer.warnings {

@@ -2,15 +2,38 @@
 
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
+use crate::pass::Pass;
 use crate::profile::Profile;
+use crate::wedge::Wedge;
 use crate::weld;
 use glam::DVec3;
 use planar::Bounds;
 use std::borrow::Cow;
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
-/// profile has them.
+/// profile has them. Where it is a wedge, its metal is that of a layer of even thickness, as the chart shows it.
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let even = |wedge: &Wedge<'_>, passes: &mut Vec<Pass>| wedge.even(passes);
+    changed(layer, profile, even)
+}
+
+/// The same for a judgement of the layer alone, which knows one height of beads only: the two layers of a pair are judged as if
+/// each were of that.
+pub fn welded_alone<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    changed(layer, profile, |wedge, passes| {
+        wedge.even(passes);
+        wedge.single(passes, profile.usual_height(layer.height));
+    })
+}
+
+fn changed<'a>(layer: &'a Layer, profile: &Profile, change: impl Fn(&Wedge<'_>, &mut Vec<Pass>)) -> Cow<'a, Layer> {
+    let Some(wedge) = profile.layers.wedge(layer) else { return as_welded(layer, profile) };
+    let mut even = layer.clone();
+    change(&wedge, &mut even.passes);
+    Cow::Owned(as_welded(&even, profile).into_owned())
+}
+
+fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let ends = weld::lit_ends(&profile.start_stop, layer.lit);
     if !ends.changes_passes() {
         return Cow::Borrowed(layer);

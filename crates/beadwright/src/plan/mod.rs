@@ -27,6 +27,7 @@
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
 //! | [`stock`] | a part becomes its preform, which is planned in its place |
 //! | `support` | whether passes lie on the metal below |
+//! | `wedges` | where layers lie that are thicker at some places than at others |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 mod candidates;
@@ -52,9 +53,10 @@ mod scan_lines;
 pub mod stock;
 mod support;
 pub mod warm;
+mod wedges;
 
 pub use expected::{Expected, expected};
-pub use judged::{deposit_settings, deposit_settings_over, grid_over, welded};
+pub use judged::{deposit_settings, deposit_settings_over, grid_over, welded, welded_alone};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
@@ -199,7 +201,9 @@ fn plan_mesh<S: Sink + Send>(
     let heat = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
     let milled_volume = milled.map(Mesh::volume);
     let milled = milled.map(|part| Milled::new(part, &slabs, profile, task)).transpose()?;
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
+    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?
+        .on(&profile.layers.chart)
+        .no_thicker_than(profile.layers.window().1);
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         if is_wall {
@@ -218,9 +222,10 @@ fn plan_mesh<S: Sink + Send>(
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
-    summary.metrics.mesh_volume_mm3 = Some(mesh.volume()).filter(|volume| opening.is_none() && *volume > 0.0);
+    let volume = profile.layers.chart.volume(mesh);
+    summary.metrics.mesh_volume_mm3 = Some(volume).filter(|volume| opening.is_none() && *volume > 0.0);
     summary.metrics.milled_part_volume_mm3 = milled_volume;
-    let volumes = if is_wall { None } else { other_volume(&summary, mesh.volume(), left.is_some()) };
+    let volumes = if is_wall { None } else { other_volume(&summary, volume, left.is_some()) };
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
     if unsaid {
         let torn = |w: &&WarningSummary| {
@@ -272,11 +277,12 @@ fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -
 /// Where the layers of a mesh with this warmth lie.
 fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
-    Ok(match profile.wall_bead()? {
+    let slabs = match profile.wall_bead()? {
         Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
         None if profile.is_level() => level_layers::slabs(mesh, profile.fill.strategy.strategy(), profile, task)?,
         None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
-    })
+    };
+    Ok(wedges::slabs(slabs, mesh, profile, task)?)
 }
 
 /// Plans a wall one bead thick along curves, up to `height` (mm).
@@ -342,6 +348,7 @@ fn run<S: Sink + Send>(
             .filter(|settings| profile.is_level() && settings.over_one_another)
             .map(|settings| Stack::new(&extent.seen_from_above(), settings)),
         below: Vec::new(),
+        before: Vec::new(),
         below_middle: 0.0,
         built: 0.0,
         points: 0,

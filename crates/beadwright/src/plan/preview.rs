@@ -53,6 +53,7 @@ pub fn preview(
         support: Support::default(),
         grown: None,
         below: Vec::new(),
+        before: Vec::new(),
         below_middle: 0.0,
         built,
         points: 0,
@@ -67,8 +68,9 @@ fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<
     let (strategy, slabs) = (profile.fill.strategy.strategy(), slabs_at(&Warmth::default(), mesh, profile, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
     let window = window(&slabs, index, profile);
-    let slicer =
-        Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?.on(&profile.layers.chart);
+    let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?
+        .on(&profile.layers.chart)
+        .no_thicker_than(profile.layers.window().1);
     // Slices are numbered in the window; a sparse infill looks at its neighbours there.
     let planned = scan_lines::planned(0, &slicer, strategy, profile, task)?;
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
@@ -86,7 +88,8 @@ struct Window<'a> {
 
 /// The layers that a layer's fill depends on. They begin at an even layer, since best angles are chosen for pairs.
 fn window<'a>(slabs: &'a [Slab], index: usize, profile: &Profile) -> Window<'a> {
-    let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best);
+    // A part layer lies in the next one.
+    let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best || profile.layers.chart.has_wedges());
     let solid = if profile.fill.infill_density < 1.0 { profile.fill.solid_layers as usize } else { 0 };
     let reach = solid.min(BATCH / 2 - 1);
     let first = index.saturating_sub(reach) & !1;

@@ -2,6 +2,7 @@
 
 use super::MAX_LAYERS;
 use crate::bead::wall::WallError;
+use crate::chart::warp::WarpError;
 use crate::deposit::Figures;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
@@ -90,6 +91,9 @@ pub enum PlanError<E> {
         /// Thickness of a layer, mm.
         layer_height: f64,
     },
+    /// A part that has no place in its chart.
+    #[error(transparent)]
+    Chart(WarpError),
     /// The bead gives no wall.
     #[error(transparent)]
     Wall(#[from] WallError),
@@ -154,6 +158,15 @@ pub enum PlanError<E> {
     /// The sink failed.
     #[error(transparent)]
     Sink(E),
+}
+
+impl<E> From<WarpError> for PlanError<E> {
+    fn from(error: WarpError) -> Self {
+        match error {
+            WarpError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            torn @ WarpError::Torn(_) => Self::Chart(torn),
+        }
+    }
 }
 
 /// Receives the layers of a plan in deposition order.

@@ -5,6 +5,7 @@ use crate::fill::line_index::LineIndex;
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::profile::Profile;
+use crate::slice::Half;
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::polyline::distance_squared_to_segment;
@@ -34,6 +35,8 @@ pub(super) struct Support {
     /// Its outlines, and those of them that were left out because they hang.
     islands: Vec<Polygon>,
     left_out: Vec<Polygon>,
+    /// Passes and outlines of the layer below that one.
+    before: (Vec<Pass>, Vec<Polygon>),
     /// Height of its middle, mm.
     middle: f64,
 }
@@ -47,13 +50,18 @@ struct Metal {
 
 impl Support {
     /// Warns of passes that lie in the air, takes out small islands that hang, and remembers the layer for the next one.
-    /// Sparse layers support the next as if they were filled, and printed beads bridge gaps.
+    /// Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper of two layers stands on
+    /// the lower one and on what lies below that.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
         let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
         if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
             self.passes = across.passes(&self.passes);
             self.islands = across.islands(&self.islands);
             self.left_out = across.islands(&self.left_out);
+        }
+        if layer.half == Some(Half::Upper) {
+            self.passes.append(&mut self.before.0);
+            self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
         if !self.passes.is_empty() && !alike {
@@ -71,8 +79,8 @@ impl Support {
         } else if !alike {
             self.left_out.clear();
         }
-        self.passes.clone_from(&layer.passes);
-        self.islands.clone_from(&layer.islands);
+        let passes = std::mem::replace(&mut self.passes, layer.passes.clone());
+        self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
         self.middle = layer.middle();
     }
 

@@ -4,6 +4,7 @@ use crate::chart::{Chart, Sheet};
 use crate::layer::Layer;
 use crate::limit::{Limit, limits};
 use crate::slice::LayerFit;
+use crate::wedge::Wedge;
 use serde::{Deserialize, Serialize};
 
 /// The layers.
@@ -31,8 +32,16 @@ pub struct LayersSection {
     /// bead), `always` or `never`; default auto.
     #[serde(default, alias = "foretell")]
     pub predict: Predict,
-    /// How layers lie in space where they are not level: `plane:up=X/Y/Z`, `cylinder:axis=z,radius=MM` or
-    /// `cone:axis=-z,tip=X/Y/Z,angle=DEGREES`; optional.
+    /// The thinnest that a bead may be where a layer is not as thick everywhere (a bend of `guide`), mm; default 0.6 times the
+    /// height.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_height: Option<f64>,
+    /// The thickest that a bead may be there, mm; default 1.4 times the height. Where a bend would make a layer thicker on its
+    /// outer side, that side is welded in two layers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_height: Option<f64>,
+    /// How layers lie in space where they are not level: `plane:up=X/Y/Z`, `cylinder:axis=z,radius=MM`,
+    /// `cone:axis=-z,tip=X/Y/Z,angle=DEGREES` or `guide:points=X/Y/Z:X/Y/Z:X/Y/Z,radius=MM`; optional.
     #[serde(default, skip_serializing_if = "Chart::is_level")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub chart: Chart,
@@ -56,16 +65,33 @@ pub enum Predict {
     Never,
 }
 
+/// How thin and how thick beads may be if nothing else is said, in heights of a layer.
+const THIN: f64 = 0.6;
+const THICK: f64 = 1.4;
+
 impl LayersSection {
     /// How a layer lies in space; `None` where it is level.
     pub fn sheet(&self, layer: &Layer) -> Option<Sheet<'_>> {
         (!self.chart.is_level()).then(|| self.chart.sheet(layer.middle()))
     }
 
+    /// The wedge that a layer is; `None` where its thickness is the same everywhere.
+    pub fn wedge(&self, layer: &Layer) -> Option<Wedge<'_>> {
+        Wedge::of(layer, &self.chart, self.window())
+    }
+
+    /// How thin and how thick a bead may be where a layer is not as thick everywhere, mm.
+    pub fn window(&self) -> (f64, f64) {
+        let [thin, thick] = [THIN, THICK].map(|part| part * self.height);
+        (self.min_height.unwrap_or(thin), self.max_height.unwrap_or(thick))
+    }
+
     /// The limits of the numbers.
     pub(super) fn limits(&self) -> Vec<Limit> {
         limits! {
             "layers.height": self.height, 0.01, 50.0, "mm", "a layer can only be as high as its beads";
+            "layers.min_height": self.window().0, 0.01, 50.0, "mm", "a layer can only be as thin as its beads";
+            "layers.max_height": self.window().1, 0.01, 50.0, "mm", "a layer can only be as high as its beads";
         }
     }
 }

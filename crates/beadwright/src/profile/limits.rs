@@ -61,6 +61,12 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         (None, None) => return Some(Broken::text("fill.overlap", "free", "fill.stepover must then be given, mm.")),
         _ => {}
     }
+    if let (thin, thick) = p.layers.window()
+        && thin >= thick
+    {
+        let reason = format!("must be less than layers.max_height ({thick} mm).");
+        return Some(Broken { key: "layers.min_height".to_owned(), value: format!("{thin}"), reason });
+    }
     if let (Some(_), Err(lacks)) = (&p.bead.by_heat, p.heat_settings()) {
         let reason = lacks.to_string();
         return Some(Broken { key: "bead.by_heat".to_owned(), value: "a law".to_owned(), reason });

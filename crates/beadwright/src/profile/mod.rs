@@ -419,6 +419,12 @@ impl Profile {
         self.posts.iter().filter_map(|post| self.dialects.get(post)?.longest_pass(&self.program)).min()
     }
 
+    /// The height that the passes of a layer (`height`, mm) fill at their pace before metal is shared out, mm.
+    pub(crate) fn usual_height(&self, height: f64) -> f64 {
+        let paces = self.pace_settings();
+        if paces.filled.is_some() || paces.wall.is_some() { height } else { self.layers.height }
+    }
+
     /// How the passes of a layer are put in order.
     pub fn order_settings(&self, layer: usize) -> OrderSettings {
         let OrderSection { method, seam, alternate } = self.order;
@@ -429,7 +435,7 @@ impl Profile {
     pub fn weld_settings(&self) -> WeldSettings {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
         let (travel, motion) = (self.travel.clone(), self.motion);
-        let chart = self.layers.chart;
+        let chart = self.layers.chart.clone();
         let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0, chart };
         let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
         WeldSettings { arc_end_time, ..weld }

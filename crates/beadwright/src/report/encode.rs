@@ -194,6 +194,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::InTheAir => format!("{size:.1} mm of a pass over nothing"),
         WarningKind::HangingIsland => format!("hanging island of {size:.1} mm² left out"),
+        WarningKind::LayerThickness => format!("{size:.2} mm too thin or too thick"),
         WarningKind::Overhang => format!("{size:.1} mm² overhang the layer below"),
         WarningKind::ShortArc => format!("pass of {size:.1} mm ends before its arc is steady"),
         WarningKind::Relit => format!("pass longer than a program: arc struck again {size:.0} times"),

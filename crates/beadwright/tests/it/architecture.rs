@@ -26,6 +26,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["bead", "motion", "process"],
             &["pass"],
             &["layer"],
+            &["wedge"],
             &["deposit"],
             &["fill"],
             &["preform"],

@@ -270,12 +270,12 @@ fn every_robot_follows_layers_around_an_axis() {
         vertices.iter_mut().for_each(|p| *p = turn * *p);
         let pipe = Mesh::from_triangles(vertices, triangles).0;
         let mut profile = profile("cmt-steel-robots");
-        profile.layers.chart = chart;
+        profile.layers.chart = chart.clone();
         let layers = beadwright::plan("demo", &pipe, &profile, &Task::new()).unwrap().layers;
         for way in WAYS {
             let case = format!("{way:?} {axis}");
             let mut profile = way.profile();
-            profile.layers.chart = chart;
+            profile.layers.chart = chart.clone();
             let files = dialect::write(way.post(), &layers, &profile.job("demo"));
             if !way.has_wrist() {
                 assert!(files.unwrap_err().to_string().contains("layers.chart"), "{case}");

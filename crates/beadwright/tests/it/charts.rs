@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use beadwright::chart::{Chart, Guide};
 use beadwright::fill::StrategyName;
 use beadwright::model::{Mesh, solid::Solid};
 use beadwright::pass::Pass;
@@ -9,10 +10,11 @@ use beadwright::plan::{self, Plan};
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
-use beadwright::{dialect, example, plan_file};
+use beadwright::{Metrics, check, dialect, example, plan_file};
 use common::profile;
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 fn charted(chart: &str) -> Profile {
     let mut profile = profile("cmt-al2319-kuka");
@@ -102,7 +104,7 @@ fn a_part_bent_around_a_cylinder_has_the_passes_of_the_flat_one() {
     for text in ["cylinder:axis=z,radius=60", "cylinder:axis=1/2/3,through=4/5/6,radius=60,seam=10"] {
         let mut profile = charted(text);
         profile.layers.level = false;
-        let chart = profile.layers.chart;
+        let chart = profile.layers.chart.clone();
         let mut bent = cross.clone();
         bent.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
         let plan = planned(&bent, &profile);
@@ -290,4 +292,102 @@ fn torches_that_stand_overhead_are_found() {
     let found = beadwright::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
     let leaning: Vec<_> = found.iter().filter(|finding| finding.kind == "off-level").collect();
     assert!(leaning.len() == 1 && (leaning[0].size.unwrap() - 90.0).abs() < 1e-6, "{leaning:?}");
+}
+
+/// A thick pipe along a guide of one bend: 50 mm straight, the bend, 50 mm straight; and its chart.
+fn bent_pipe(radius: f64, degrees: f64, turn: DQuat) -> (Mesh, Chart) {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let leg = 50.0 + radius * (degrees.to_radians() / 2.0).tan();
+    let corner = turn * (DVec3::Z * leg);
+    let points = vec![DVec3::ZERO, corner, corner + turn * (DVec3::new(sin, 0.0, cos) * leg)];
+    let guide = Guide::new(points, vec![radius]).unwrap();
+    let levels: Vec<f64> = (0..=200).map(|k| guide.length() * f64::from(k) / 200.0).collect();
+    let chart = Chart::Guide(Arc::new(guide));
+    let ring =
+        |radius: f64| Ring::new((0..160).map(|k| DVec2::from_angle(TAU * f64::from(k) / 160.0) * radius).collect());
+    let section = Polygon { outer: ring(40.0), holes: vec![ring(20.0).reversed()] };
+    let solid = Solid::loft(&section, &levels, |p, _| p);
+    let mut mesh = Mesh::from_triangles(solid.vertices, solid.triangles).0;
+    mesh.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
+    (mesh, chart)
+}
+
+/// The metal of an elbow is its volume (Pappus), with one start on every layer, and each piece is as thick as the bend makes it:
+/// what a pass holds per length is its width times the distance of the layers there. Where the bend is tight, two layers on the
+/// outer side stand against one on the inner.
+#[test]
+fn elbows_are_laid_square_to_their_guide() {
+    for (radius, degrees, paired) in [(120.0, 90.0_f64, false), (110.0, 150.0, false), (75.0, 90.0, true)] {
+        let turn = DQuat::from_rotation_x(0.3);
+        let (mesh, chart) = bent_pipe(radius, degrees, turn);
+        let mut profile = profile("cmt-al2319-kuka");
+        profile.layers.chart = chart.clone();
+        let plan = planned(&mesh, &profile);
+        let metrics = &plan.summary.metrics;
+        let pappus = TAU / 2.0 * (40.0 * 40.0 - 20.0 * 20.0) * (100.0 + radius * degrees.to_radians());
+        assert!((metrics.part_volume_mm3 / pappus - 1.0).abs() < 2e-3, "{} {pappus}", metrics.part_volume_mm3);
+        assert!((metrics.mesh_volume_mm3.unwrap() / pappus - 1.0).abs() < 1e-3);
+        assert!(
+            (metrics.deposited_volume_mm3 / pappus - 1.0).abs() < 0.03,
+            "{} {pappus}",
+            metrics.deposited_volume_mm3
+        );
+        assert!(plan.layers.iter().all(|layer| layer.passes.len() == layer.islands.len()), "one start on every layer");
+        assert_eq!(plan.layers.iter().any(|layer| layer.half.is_some()), paired, "{radius}");
+        assert!(plan.summary.forbidden.is_empty(), "{:?}", plan.summary.forbidden);
+        let (thin, thick) = profile.layers.window();
+        let area = profile.bead().area() * profile.process.deposition_speed;
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for layer in &plan.layers {
+            let sheet = chart.sheet(layer.middle());
+            for piece in layer.passes.iter().flat_map(Pass::segments) {
+                let height = area / piece.pace / piece.width;
+                let rise = sheet.rise(piece.from.midpoint(piece.to).truncate());
+                (least, most) = (least.min(height / rise), most.max(height / rise));
+                assert!(
+                    height > 0.75 * thin && height < 1.25 * thick,
+                    "{height} of {thin} to {thick}, layer {}",
+                    layer.index
+                );
+            }
+        }
+        if !paired {
+            // Beads of one layer hold what beads of a level layer do, but for the bend.
+            assert!(least > 1.2 && most < 2.5, "{least} {most}");
+        }
+        let findings = check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
+        let known = ["off-level", "overfill"];
+        assert!(findings.iter().all(|finding| known.contains(&finding.kind)), "{findings:?}");
+    }
+}
+
+/// The file keeps which of two layers is which, and points lie on the plane square to the guide.
+#[test]
+fn plan_files_of_elbows_are_read_back() {
+    let (mesh, chart) = bent_pipe(75.0, 90.0, DQuat::IDENTITY);
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.layers.chart = chart;
+    let plan = planned(&mesh, &profile);
+    let again = plan_file::read(&text(&plan, &profile)).unwrap();
+    for (a, b) in plan.layers.iter().zip(&again.layers) {
+        assert_eq!((a.half, a.passes.len()), (b.half, b.passes.len()));
+        for (a, b) in a.passes.iter().zip(&b.passes) {
+            assert_eq!(a.points.len(), b.points.len());
+            assert!(a.points.iter().zip(&b.points).all(|(a, b)| a.distance(*b) < 5e-3));
+        }
+    }
+    let mut metrics = Metrics::new(&profile);
+    again.layers.iter().for_each(|layer| metrics.add(layer));
+    assert!((metrics.part_volume_mm3 / plan.summary.metrics.part_volume_mm3 - 1.0).abs() < 1e-4);
+}
+
+/// Metal that is as near to one stretch of a guide as to another is refused with the place.
+#[test]
+fn parts_between_two_stretches_of_a_guide_are_refused() {
+    let base = [[-20.0, -20.0], [220.0, -20.0], [220.0, 20.0], [-20.0, 20.0]].map(DVec2::from_array);
+    let solid = Solid::extrude(&Polygon::simple(Ring::new(base.to_vec())), 0.0, 60.0);
+    let mesh = Mesh::from_triangles(solid.vertices, solid.triangles).0;
+    let profile = charted("guide:points=0/0/0:0/0/200:200/0/200:200/0/0,radius=100");
+    let refused = plan::plan("part", &mesh, &profile, &Task::new()).unwrap_err().to_string();
+    assert!(refused.contains("as near to one stretch of the guide as to another"), "{refused}");
 }

@@ -6,9 +6,11 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
+//! | `middle_line` | the guide of a bent tube, from the middles of its sections |
 //! | `plane` | level layers, and layers square to any direction |
 //! | `cylinder` | layers around an axis, outwards or inwards |
 //! | `cone` | layers on a cone |
+//! | `guide` | layers square to a curve of lines and arcs |
 //! | `polar` | what layers around an axis have in common: angles, and where a turn ends |
 //! | [`warp`] | a mesh in the coordinates of a chart |
 //! | [`seam`] | islands that cross the line at which a layer is unrolled |
@@ -16,6 +18,8 @@
 
 mod cone;
 mod cylinder;
+mod guide;
+mod middle_line;
 mod plane;
 mod polar;
 pub mod seam;
@@ -24,17 +28,21 @@ pub mod warp;
 
 pub use cone::Cone;
 pub use cylinder::{Cylinder, Side};
+pub use guide::{Guide, GuideError};
+pub use middle_line::{NoMiddleLine, middle_line};
 pub use plane::Plane;
 pub use text::ChartError;
 
+use crate::model::Mesh;
 use glam::{DVec2, DVec3};
-use planar::{Polygon, Ring};
+use planar::{Bounds, Polygon, Ring};
 use polar::Polar;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// How the layers of a part lie in space. By default they are level. In files it is text, as people write it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Chart {
     /// Planes square to a direction.
@@ -43,6 +51,8 @@ pub enum Chart {
     Cylinder(Cylinder),
     /// Cones around an axis.
     Cone(Cone),
+    /// Planes square to a curve.
+    Guide(Arc<Guide>),
 }
 
 impl Default for Chart {
@@ -60,6 +70,13 @@ pub struct At {
     pub along: [DVec3; 2],
     /// Unit vector out of the layer, along which h grows.
     pub normal: DVec3,
+}
+
+/// How layers lie, by how it is computed.
+enum Lie<'a> {
+    Flat(&'a Plane),
+    Along(&'a Guide),
+    Around(&'a dyn Polar),
 }
 
 /// One layer of a chart. Lengths on it are true at its middle.
@@ -87,6 +104,7 @@ impl Chart {
             Self::Plane(_) => "plane",
             Self::Cylinder(_) => "cylinder",
             Self::Cone(_) => "cone",
+            Self::Guide(_) => "guide",
         }
     }
 
@@ -110,13 +128,27 @@ impl Chart {
     /// # Ok::<(), bead_part::chart::ChartError>(())
     /// ```
     pub fn coordinates(&self, p: DVec3) -> DVec3 {
-        match self.polar() {
-            None => self.plane().coordinates(p),
-            Some(polar) => {
+        match self.lie() {
+            Lie::Flat(plane) => plane.coordinates(p),
+            Lie::Along(guide) => guide.coordinates(p),
+            Lie::Around(polar) => {
                 let around = polar.around(p);
                 polar.unrolled(around.angle, around.along, around.height).extend(around.height)
             }
         }
+    }
+
+    /// Whether layers are thicker at some places than at others.
+    pub fn has_wedges(&self) -> bool {
+        matches!(self, Self::Guide(_))
+    }
+
+    /// The volume in space of a mesh that is given in the chart's coordinates, mm³.
+    pub fn volume(&self, mesh: &Mesh) -> f64 {
+        let Self::Guide(guide) = self else { return mesh.volume() };
+        let mut placed = mesh.clone();
+        placed.vertices.iter_mut().for_each(|p| *p = guide.place(*p));
+        placed.volume()
     }
 
     /// Distance of a point from the axis, mm; `None` where layers are planes.
@@ -127,16 +159,18 @@ impl Chart {
     /// How layers around an axis are unrolled; none where they are planes.
     fn polar(&self) -> Option<&dyn Polar> {
         match self {
-            Self::Plane(_) => None,
+            Self::Plane(_) | Self::Guide(_) => None,
             Self::Cylinder(cylinder) => Some(cylinder),
             Self::Cone(cone) => Some(cone),
         }
     }
 
-    fn plane(&self) -> Plane {
+    fn lie(&self) -> Lie<'_> {
         match self {
-            Self::Plane(plane) => *plane,
-            _ => Plane::default(),
+            Self::Plane(plane) => Lie::Flat(plane),
+            Self::Guide(guide) => Lie::Along(guide),
+            Self::Cylinder(cylinder) => Lie::Around(cylinder),
+            Self::Cone(cone) => Lie::Around(cone),
         }
     }
 }
@@ -144,9 +178,10 @@ impl Chart {
 impl Sheet<'_> {
     /// A point with these coordinates in space.
     pub fn at(&self, p: DVec3) -> At {
-        match self.chart.polar() {
-            None => self.chart.plane().at(p),
-            Some(polar) => {
+        match self.chart.lie() {
+            Lie::Flat(plane) => plane.at(p),
+            Lie::Along(guide) => guide.at(p, self.middle),
+            Lie::Around(polar) => {
                 let (angle, along) = polar.rolled(p.truncate(), self.middle);
                 let (angle, along) = polar.risen(angle, along, p.z - self.middle);
                 polar.at(angle, along, p.z)
@@ -156,15 +191,38 @@ impl Sheet<'_> {
 
     /// The coordinates of a point of space, within half a turn of `near`.
     pub fn coordinates(&self, p: DVec3, near: DVec2) -> DVec3 {
-        match self.chart.polar() {
-            None => self.chart.plane().coordinates(p),
-            Some(polar) => {
+        match self.chart.lie() {
+            Lie::Flat(plane) => plane.coordinates(p),
+            Lie::Along(guide) => guide.on_layer(p, self.middle),
+            Lie::Around(polar) => {
                 let around = polar.around(p);
                 let (nearest, _) = polar.rolled(near, self.middle);
                 let (angle, along) = polar.risen(around.angle, around.along, self.middle - around.height);
                 polar.unrolled(polar::near(angle, nearest), along, self.middle).extend(around.height)
             }
         }
+    }
+
+    /// How thick a millimetre of h is at a place: 1 but on a wedge.
+    pub fn rise(&self, p: DVec2) -> f64 {
+        match self.chart {
+            Chart::Guide(guide) => guide.rise(p, self.middle),
+            _ => 1.0,
+        }
+    }
+
+    /// The part of a layer within some bounds (mm) on which a millimetre of h is thicker than this; `None` where there is none.
+    pub fn rising(&self, more: f64, bounds: &Bounds) -> Option<Polygon> {
+        let Chart::Guide(guide) = self.chart else { return None };
+        let bend = guide.bend(self.middle);
+        let reach = bounds.min.length() + bounds.max.length() + bounds.size().length();
+        // On a straight line all of the layer is, or nothing.
+        let (outwards, from) = match bend.try_normalize() {
+            Some(inwards) => (-inwards, (more - 1.0) / bend.length()),
+            None => (DVec2::X, if more < 1.0 { -reach } else { reach }),
+        };
+        let (near, far, aside) = (outwards * from, outwards * reach, outwards.perp() * reach);
+        (from < reach).then(|| Polygon::simple(Ring::new(vec![near - aside, far - aside, far + aside, near + aside])))
     }
 
     /// Where a point of another layer lies over or under this one, along the normal.

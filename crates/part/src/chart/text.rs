@@ -1,16 +1,17 @@
 //! Charts as people write them: a name, then keys and values, such as `cylinder:axis=z,radius=36`.
 
-use super::{Chart, Cone, Cylinder, Plane, Side};
+use super::{Chart, Cone, Cylinder, Guide, GuideError, Plane, Side};
 use glam::DVec3;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// Why a chart cannot be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChartError {
     /// No such chart.
-    #[error("\"{0}\" is no kind of layers: write plane, cylinder or cone, such as cylinder:axis=z,radius=36")]
+    #[error("\"{0}\" is no kind of layers: write plane, cylinder, cone or guide, such as cylinder:axis=z,radius=36")]
     Kind(String),
     /// No such key.
     #[error("a {kind} has no \"{key}\": it takes {known}")]
@@ -35,6 +36,9 @@ pub enum ChartError {
         /// What may be written.
         expected: &'static str,
     },
+    /// Points and radii that give no guide.
+    #[error(transparent)]
+    Guide(#[from] GuideError),
     /// A value that must be given.
     #[error("a {kind} needs {key}: {why}")]
     Missing {
@@ -50,6 +54,7 @@ pub enum ChartError {
 const PLANE: &str = "up and through";
 const CYLINDER: &str = "axis, through, radius, side and seam";
 const CONE: &str = "axis, tip, angle and seam";
+const GUIDE: &str = "points and radius";
 
 impl FromStr for Chart {
     type Err = ChartError;
@@ -81,11 +86,17 @@ impl FromStr for Chart {
                 let seam = given.angle("seam", -360.0..=360.0)?.unwrap_or(SEAM);
                 Ok(Self::Cone(Cone { tip, axis, half_angle, seam }))
             }
+            "guide" => {
+                let given = Given::new("guide", GUIDE, values, &["points", "radius"])?;
+                Ok(Self::Guide(Arc::new(Guide::new(given.places("points")?, given.radii()?)?)))
+            }
             other => Err(ChartError::Kind(other.to_owned())),
         }
     }
 }
 
+/// Stands between the values of a list.
+const BETWEEN: &str = ":";
 /// Where layers are cut open if nothing is written, °: the angle 0 is that of x.
 const SEAM: f64 = 180.0;
 
@@ -101,6 +112,14 @@ impl fmt::Display for Chart {
             }
             Self::Cone(Cone { tip, axis, half_angle, seam }) => {
                 write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three(*axis), three(*tip))
+            }
+            Self::Guide(guide) => {
+                let joined = |values: Vec<String>| values.join(BETWEEN);
+                write!(f, "guide:points={}", joined(guide.points().iter().map(|p| three(*p)).collect()))?;
+                match guide.radii() {
+                    [] => Ok(()),
+                    radii => write!(f, ",radius={}", joined(radii.iter().map(f64::to_string).collect())),
+                }
             }
         }
     }
@@ -169,11 +188,25 @@ impl<'a> Given<'a> {
         three(value).ok_or_else(|| Self::wrong(key, value, "write x/y/z in mm, such as 0/0/25"))
     }
 
+    /// Points one after another, mm.
+    fn places(&self, key: &'static str) -> Result<Vec<DVec3>, ChartError> {
+        let why = "where the curve begins, its corners, and where it ends, mm";
+        let value = self.value(key).ok_or(ChartError::Missing { kind: self.kind, key, why })?;
+        let places = value.split(BETWEEN).map(three).collect::<Option<_>>();
+        places.ok_or_else(|| Self::wrong(key, value, "write points x/y/z in mm, such as 0/0/0:0/0/140:140/0/140"))
+    }
+
     fn radius(&self) -> Result<f64, ChartError> {
         let why = "that of what the build begins on, mm";
         let value = self.value("radius").ok_or(ChartError::Missing { kind: self.kind, key: "radius", why })?;
-        let radius = value.parse().ok().filter(|radius| (0.1..=20_000.0).contains(radius));
-        radius.ok_or_else(|| Self::wrong("radius", value, "write mm, 0.1 to 20000"))
+        radius(value).ok_or_else(|| Self::wrong("radius", value, "write mm, 0.1 to 20000"))
+    }
+
+    /// Those of a guide's bends, mm.
+    fn radii(&self) -> Result<Vec<f64>, ChartError> {
+        let Some(value) = self.value("radius") else { return Ok(Vec::new()) };
+        let radii = value.split(BETWEEN).map(radius).collect::<Option<_>>();
+        radii.ok_or_else(|| Self::wrong("radius", value, "write mm, 0.1 to 20000, one for all bends or such as 120:90"))
     }
 
     fn side(&self) -> Result<Side, ChartError> {
@@ -191,6 +224,11 @@ impl<'a> Given<'a> {
         let expected = if key == "seam" { "write degrees, -360 to 360" } else { "write degrees, 1 to 89" };
         degrees.map(Some).ok_or_else(|| Self::wrong(key, value, expected))
     }
+}
+
+/// mm
+fn radius(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|radius| (0.1..=20_000.0).contains(radius))
 }
 
 /// A unit vector stays as it is, so that what was written can be read again.

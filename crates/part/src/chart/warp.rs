@@ -1,11 +1,11 @@
 //! A mesh in the coordinates of a chart: its triangles are divided until their edges are straight there, too, what lies below
 //! the surface on which the build begins is cut off, and a mesh around an axis is cut open at the seam.
 //!
-//! Between a part and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's underside
+//! Between a part around an axis and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's underside
 //! are planes.
 
-use super::Chart;
 use super::polar::{Around, Polar, near};
+use super::{Chart, Guide, Lie};
 use crate::model::{Mesh, cut};
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
@@ -28,14 +28,46 @@ use std::f64::consts::{PI, TAU};
 /// ```
 ///
 /// # Errors
-/// [`Cancelled`] when the task was.
-pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, Cancelled> {
-    let Some(polar) = chart.polar() else {
-        let mut turned = mesh.clone();
-        turned.vertices.iter_mut().for_each(|vertex| *vertex = chart.coordinates(*vertex));
-        return Ok(above(turned, 0.0));
-    };
-    let divided = Divided::of(mesh, polar, tolerance, task)?;
+/// [`WarpError`].
+pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    match chart.lie() {
+        Lie::Flat(plane) => Ok(mapped(mesh.clone(), |p| plane.coordinates(p))),
+        Lie::Along(guide) => along(guide, mesh, tolerance, task),
+        Lie::Around(polar) => around(polar, mesh, tolerance, task),
+    }
+}
+
+/// Why a mesh has no place in a chart.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum WarpError {
+    /// Stopped by the caller.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Metal on both sides of a place that lies as near to one stretch of a guide as to another.
+    #[error(
+        "near x {:.1} y {:.1} z {:.1} mm the part lies as near to one stretch of the guide as to another, so it is not clear which \
+         layers it belongs to. Bend the guide less, or divide the part.",
+        .0.x, .0.y, .0.z
+    )]
+    Torn(DVec3),
+}
+
+fn mapped(mut mesh: Mesh, coordinates: impl Fn(DVec3) -> DVec3) -> Mesh {
+    mesh.vertices.iter_mut().for_each(|p| {
+        *p = coordinates(*p);
+        p.z = on_it(p.z);
+    });
+    above(mesh, 0.0)
+}
+
+fn along(guide: &Guide, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let divided = Divided::of(mesh, |a, b| is_bent_along(a, b, guide, tolerance), task)?;
+    let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
+    Ok(mapped(whole, |p| guide.coordinates(p)))
+}
+
+fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let divided = Divided::of(mesh, |a, b| Ok(is_bent(a, b, polar, tolerance)), task)?;
     let mut cut = Cut::opened(&divided, polar);
     let (low, high) = cut.bounds();
     let middle = low.midpoint(high);
@@ -55,6 +87,11 @@ const SPREAD: f64 = 100.0;
 const APEX: f64 = 0.734_209;
 /// Heights this small are those of a part that begins on the first layer's underside, mm.
 const ON_IT: f64 = 1e-6;
+
+/// A height, mm; those of a part that begins on the first layer's underside are 0.
+fn on_it(height: f64) -> f64 {
+    if height.abs() < ON_IT { 0.0 } else { height }
+}
 
 /// What lies above a height, mm; the heights stay as they are.
 fn above(mesh: Mesh, z: f64) -> Mesh {
@@ -196,8 +233,7 @@ impl Cut {
     /// Triangles with angle × [`SPREAD`], place along the straight lines and height as coordinates; those that cross the seam are
     /// there on both sides.
     fn opened(mesh: &Divided, polar: &dyn Polar) -> Self {
-        let snapped =
-            |around: Around| if around.height.abs() < ON_IT { Around { height: 0.0, ..around } } else { around };
+        let snapped = |around: Around| Around { height: on_it(around.height), ..around };
         let around: Vec<Around> = mesh.vertices.iter().map(|p| snapped(polar.around(*p))).collect();
         let (mut vertices, mut triangles, mut numbers) = (Vec::new(), Vec::new(), HashMap::new());
         for triangle in &mesh.triangles {
@@ -232,26 +268,38 @@ struct Divided {
 }
 
 impl Divided {
-    fn of(mesh: &Mesh, polar: &dyn Polar, tolerance: f64, task: &Task) -> Result<Self, Cancelled> {
+    /// Edges are halved as long as they are bent.
+    fn of(
+        mesh: &Mesh,
+        is_bent: impl Fn(DVec3, DVec3) -> Result<bool, WarpError>,
+        task: &Task,
+    ) -> Result<Self, WarpError> {
         let (mut vertices, mut open, mut done) = (mesh.vertices.clone(), mesh.triangles.clone(), Vec::new());
         let mut middles: HashMap<[u32; 2], Option<u32>> = HashMap::new();
+        let mut middle = |vertices: &mut Vec<DVec3>, ends: [u32; 2]| -> Result<Option<u32>, WarpError> {
+            if let Some(known) = middles.get(&ends) {
+                return Ok(*known);
+            }
+            let [a, b] = ends.map(|end| vertices[end as usize]);
+            let middle = is_bent(a, b)?.then(|| {
+                vertices.push(a.midpoint(b));
+                vertices.len() as u32 - 1
+            });
+            middles.insert(ends, middle);
+            Ok(middle)
+        };
         while !open.is_empty() {
             task.check()?;
             let mut next = Vec::new();
             for triangle in open {
-                let middle = [0, 1, 2].map(|k| {
+                let mut halves = [None; 3];
+                for (k, half) in halves.iter_mut().enumerate() {
                     let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
-                    *middles.entry([a.min(b), a.max(b)]).or_insert_with_key(|ends| {
-                        let [a, b] = ends.map(|end| vertices[end as usize]);
-                        is_bent(a, b, polar, tolerance).then(|| {
-                            vertices.push(a.midpoint(b));
-                            vertices.len() as u32 - 1
-                        })
-                    })
-                });
-                match middle {
+                    *half = middle(&mut vertices, [a.min(b), a.max(b)])?;
+                }
+                match halves {
                     [None, None, None] => done.push(triangle),
-                    _ => split(triangle, middle, &vertices, &mut next),
+                    _ => split(triangle, halves, &vertices, &mut next),
                 }
             }
             open = next;
@@ -281,6 +329,24 @@ fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
         place.distance(from.lerp(to, part)) > tolerance || place.distance(unrolled(even, on_it)) > tolerance
     })
 }
+
+/// Whether an edge bends along a guide by more than `tolerance` (mm).
+fn is_bent_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<bool, WarpError> {
+    let ([from, to], length) = ([a, b].map(|p| guide.coordinates(p)), a.distance(b));
+    if length < tolerance || from.z.max(to.z) < 0.0 {
+        return Ok(false);
+    }
+    if length < SHORT && from.distance(to) > JUMP * SHORT {
+        return Err(WarpError::Torn(a));
+    }
+    let off = |part: f64| guide.coordinates(a.lerp(b, part)).distance(from.lerp(to, part));
+    Ok([0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance))
+}
+
+/// An edge shorter than the first (mm) that is longer than so many times that in the chart leads from one stretch of a guide to
+/// another.
+const SHORT: f64 = 1.0;
+const JUMP: f64 = 20.0;
 
 /// The pieces of a triangle some of whose edges have a middle.
 fn split([a, b, c]: [u32; 3], middle: [Option<u32>; 3], vertices: &[DVec3], pieces: &mut Vec<[u32; 3]>) {

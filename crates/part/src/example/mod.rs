@@ -4,12 +4,14 @@
 //! | --- | --- |
 //! | `bracket`, `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | `hub`, `shaft` | one part each that is welded in layers around its axis |
+//! | `elbow` | a part that is welded in layers square to its middle line |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
 pub mod blade;
 mod bracket;
 mod cross;
+mod elbow;
 mod gear;
 mod gourd;
 mod hub;
@@ -63,6 +65,13 @@ pub const ALL: &[Example] = &[
         build: cross::build,
         curves: None,
         chart: None,
+    },
+    Example {
+        name: "elbow",
+        about: "quarter bend of a pipe with a 20 mm wall, welded square to its middle line, 190 × 90 × 190 mm",
+        build: elbow::build,
+        curves: None,
+        chart: Some(elbow::CHART),
     },
     Example {
         name: "gear",

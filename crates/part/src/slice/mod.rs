@@ -50,6 +50,8 @@ pub struct Slice {
     pub z: f64,
     /// Thickness, mm.
     pub height: f64,
+    /// Which of two layers with the same underside it is.
+    pub half: Option<Half>,
     /// Connected pieces with their holes.
     pub islands: Vec<Polygon>,
     /// What was closed, dropped or united here.
@@ -60,6 +62,26 @@ impl Slice {
     /// Area of the slice, mm².
     pub fn area(&self) -> f64 {
         self.islands.iter().map(Polygon::area).sum()
+    }
+}
+
+/// Of two layers with the same underside, the lower covers what of them is too thick for one bead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Half {
+    /// The lower one, half as thick.
+    Lower,
+    /// The upper one, half of which is filled where the lower one lies.
+    Upper,
+}
+
+impl Half {
+    /// The word in plan.json.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lower => "lower",
+            Self::Upper => "upper",
+        }
     }
 }
 
@@ -169,6 +191,8 @@ pub struct Slicer<'a> {
     mesh: &'a Mesh,
     /// The chart in whose coordinates the mesh is, where its layers are not planes.
     chart: Option<&'a Chart>,
+    /// Where the next layer has the same underside, only what of it is thicker than this is kept, mm.
+    thickest: f64,
     options: SliceOptions,
     slabs: Vec<Slab>,
     /// Height of each plane, mm.
@@ -226,12 +250,29 @@ impl<'a> Slicer<'a> {
             }
         }
         starts.pop();
-        Ok(Self { mesh, chart: None, options, slabs, planes, levels, starts, items, scratch: Mutex::default() })
+        Ok(Self {
+            mesh,
+            chart: None,
+            thickest: f64::INFINITY,
+            options,
+            slabs,
+            planes,
+            levels,
+            starts,
+            items,
+            scratch: Mutex::default(),
+        })
     }
 
     /// The same for a mesh in the coordinates of a chart ([`crate::chart::warp`]): islands are put together across the seam.
     pub fn on(self, chart: &'a Chart) -> Self {
-        Self { chart: chart.goes_around().then_some(chart), ..self }
+        Self { chart: (!chart.is_level()).then_some(chart), ..self }
+    }
+
+    /// Layers are no thicker than this (mm): one with the same underside as the next is a part layer, and lies only where that
+    /// one is thicker.
+    pub fn no_thicker_than(self, thickest: f64) -> Self {
+        Self { thickest, ..self }
     }
 
     /// Number of layers.
@@ -331,7 +372,7 @@ impl<'a> Slicer<'a> {
     fn cut(&self, index: usize, triangles: &[u32]) -> Slice {
         let (Slab { z, height }, simplify) = (self.slabs[index], self.options.simplify);
         let (Trace { rings, open }, warnings) = self.traced(index, triangles);
-        let mut layer = Slice { index, z, height, warnings, ..Slice::default() };
+        let mut layer = Slice { index, z, height, half: self.half(index), warnings, ..Slice::default() };
         let dropped = |line: &Vec<DVec2>| {
             let (kind, place, size) =
                 (WarningKind::OpenContourDropped, line[line.len() / 2], planar::polyline::length(line));
@@ -345,13 +386,36 @@ impl<'a> Slicer<'a> {
             None => region.into_polygons(),
             Some(chart) => {
                 let (cut, middle) = (chart.sheet(self.planes[index]), chart.sheet(z - height / 2.0));
-                seam::joined(region.into_polygons(), index, &cut, &middle)
+                seam::joined(self.halved(region, index, chart).into_polygons(), index, &cut, &middle)
             }
         };
         drop_slivers(&mut layer);
         layer
     }
+
+    fn half(&self, index: usize) -> Option<Half> {
+        let underside = |slab: &Slab| slab.z - slab.height;
+        let own = underside(&self.slabs[index]);
+        let is_same = |other: Option<&Slab>| other.is_some_and(|other| (underside(other) - own).abs() < SAME_MM);
+        if is_same(self.slabs.get(index + 1)) {
+            return Some(Half::Lower);
+        }
+        is_same(index.checked_sub(1).and_then(|below| self.slabs.get(below))).then_some(Half::Upper)
+    }
+
+    /// What a layer covers of its slice: the lower of two only where the upper one is too thick.
+    fn halved(&self, region: Region, index: usize, chart: &Chart) -> Region {
+        let upper = self.slabs.get(index + 1).filter(|_| self.half(index) == Some(Half::Lower));
+        let (Some(upper), Some(bounds)) = (upper, region.bounds()) else { return region };
+        match chart.sheet(upper.z - upper.height / 2.0).rising(self.thickest / upper.height, &bounds) {
+            Some(thick) => region.intersection(&Region::from(thick)),
+            None => Region::default(),
+        }
+    }
 }
+
+/// Undersides this close together are the same, mm.
+const SAME_MM: f64 = 1e-6;
 
 /// Slivers shorter than this are rounding.
 const WORTH_TELLING_MM: f64 = 1.0;

@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -30,6 +30,7 @@ impl WarningKind {
         Self::NothingBelow,
         Self::InTheAir,
         Self::HangingIsland,
+        Self::LayerThickness,
         Self::Overhang,
         Self::ShortArc,
         Self::Relit,
@@ -113,6 +114,12 @@ impl WarningKind {
                 "a small island begins in the air, and nothing is built on it, or a pass of two bead widths hangs in the air, so \
                  it is left out",
                 "turn the part, or add metal below that is machined off, if the island matters",
+            ),
+            Self::LayerThickness => (
+                "layer-thickness",
+                "the guide bends so tightly that the inner side of a layer is too thin for a bead, or half of its outer side too thick",
+                "bend the guide less, divide the part, or widen the window (layers.min_height, layers.max_height) if your beads bear \
+                 it",
             ),
             Self::Overhang => (
                 "overhang",

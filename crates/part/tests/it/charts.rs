@@ -1,13 +1,15 @@
 //! Charts: their closed forms, meshes in their coordinates, and slices of parts around an axis.
 
-use bead_part::chart::{Chart, warp};
+use bead_part::chart::warp::{self, WarpError};
+use bead_part::chart::{Chart, Guide, NoMiddleLine, middle_line};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
-use bead_part::slice::{Slice, SliceOptions, Slicer};
+use bead_part::slice::{Slab, Slice, SliceOptions, Slicer};
 use bead_part::task::Task;
 use glam::{DQuat, DVec3};
 use planar::{DVec2, Polygon, Ring};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn charts() -> Vec<Chart> {
     let texts = [
@@ -18,6 +20,8 @@ fn charts() -> Vec<Chart> {
         "cylinder:axis=x,radius=80,side=inner",
         "cone:axis=-z,tip=0/0/90,angle=30",
         "cone:axis=1/1/0.2,tip=3/4/5,angle=62,seam=-100",
+        "guide:points=0/0/0:0/0/140:140/0/140,radius=120",
+        "guide:points=5/4/-60:10/0/20:40/160/30:150/180/190,radius=70:110",
     ];
     texts.iter().map(|text| text.parse().unwrap()).collect()
 }
@@ -230,4 +234,121 @@ fn bad_charts_are_refused_with_the_key() {
         let error = text.parse::<Chart>().unwrap_err().to_string();
         assert!(error.contains(said), "{text}: {error}");
     }
+}
+
+/// A pipe along a bent guide: seen in the chart it is straight, its metal is that of Pappus, and its layers are alike.
+#[test]
+fn a_bent_pipe_is_straight_along_its_guide() {
+    for (corner, length) in [(90.0_f64, 400.0), (60.0, 300.0), (150.0, 500.0)] {
+        let leg = DVec3::new(0.3, -0.2, 0.9).normalize() * length;
+        let away = DQuat::from_axis_angle(leg.normalize().any_orthonormal_vector(), corner.to_radians()) * leg;
+        let points =
+            vec![DVec3::new(7.0, 8.0, 9.0), DVec3::new(7.0, 8.0, 9.0) + leg, DVec3::new(7.0, 8.0, 9.0) + leg + away];
+        let guide = Guide::new(points, vec![100.0]).unwrap();
+        let bend = 100.0 * corner.to_radians();
+        let straight = 2.0 * (length - 100.0 * (corner.to_radians() / 2.0).tan());
+        assert!((guide.length() - straight - bend).abs() < 1e-9, "{} {}", guide.length(), straight + bend);
+        let chart = Chart::Guide(Arc::new(guide.clone()));
+        let ring =
+            |radius: f64| Ring::new((0..200).map(|k| DVec2::from_angle(TAU * f64::from(k) / 200.0) * radius).collect());
+        let section = Polygon { outer: ring(40.0), holes: vec![ring(25.0).reversed()] };
+        let levels: Vec<f64> = (0..=300).map(|k| guide.length() * f64::from(k) / 300.0).collect();
+        let mut pipe = mesh(Solid::loft(&section, &levels, |p, _| p));
+        pipe.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
+        let unrolled = warp::warped(&chart, &pipe, 0.01, &Task::new()).unwrap();
+        let (low, high) = unrolled.bounds();
+        assert!(low.distance(DVec3::new(-40.0, -40.0, 0.0)) < 0.02, "{low}");
+        assert!(high.distance(DVec3::new(40.0, 40.0, guide.length())) < 0.02, "{high}");
+        let volume = section.area() * guide.length();
+        assert!((chart.volume(&unrolled) / pipe.volume() - 1.0).abs() < 1e-9);
+        assert!((pipe.volume() / volume - 1.0).abs() < 2e-4, "{} {volume}", pipe.volume());
+        for slice in slices(&chart, &pipe, 2.0) {
+            assert!((slice.area() / section.area() - 1.0).abs() < 1e-3, "{}: {}", slice.z, slice.area());
+        }
+    }
+}
+
+/// Of a layer that would be too thick on the outer side of a bend, the lower half lies there alone.
+#[test]
+fn part_layers_lie_where_layers_are_thick() {
+    let chart: Chart = "guide:points=0/0/0:0/0/200:200/0/200,radius=100".parse().unwrap();
+    let block = mesh(Solid::extrude(
+        &Polygon::simple(Ring::new(
+            [[-50.0, -20.0], [50.0, -20.0], [50.0, 20.0], [-50.0, 20.0]].map(DVec2::from_array).to_vec(),
+        )),
+        0.0,
+        250.0,
+    ));
+    // In the bend from 100 mm on, rise = 1 - x / 100: layers of 2 mm are thicker than 2.4 mm where x < -20.
+    let slabs = [(99.0, 2.0), (151.0, 1.0), (152.0, 2.0)].map(|(z, height)| Slab { z, height });
+    let options = SliceOptions { layer_height: 2.0, close_gap: 0.1, simplify: 0.01 };
+    let slicer = Slicer::of_slabs(&block, slabs.to_vec(), options, &Task::new()).unwrap();
+    let slices = slicer.on(&chart).no_thicker_than(2.4).all(&Task::new()).unwrap();
+    for (slice, area) in slices.iter().zip([4000.0, 30.0 * 40.0, 4000.0]) {
+        assert!((slice.area() - area).abs() < 1e-6, "{}: {}", slice.z, slice.area());
+    }
+    assert!(slices[1].islands[0].outer.points().iter().all(|p| p.x < -20.0 + 1e-9));
+}
+
+#[test]
+fn guides_that_cannot_be_are_refused() {
+    let said = |text: &str| text.parse::<Chart>().unwrap_err().to_string();
+    assert!(said("guide:points=0/0/0").contains("two points"));
+    assert!(said("guide:points=0/0/0:0/0/50:50/0/50,radius=60").contains("from point 1 to point 2 it is 50.000 mm"));
+    assert!(said("guide:points=0/0/0:0/0/50:0/0/10").contains("turns back"));
+    assert!(said("guide:points=0/0/0:0/0/50:50/0/50,radius=10:20").contains("2 radii are given for 1 corners"));
+    assert!(said("guide:radius=10").contains("needs points"));
+}
+
+/// Metal that is as near to one stretch of a guide as to another belongs to neither.
+#[test]
+fn parts_between_two_stretches_of_a_guide_are_refused() {
+    let chart: Chart = "guide:points=0/0/0:0/0/200:200/0/200:200/0/0,radius=100".parse().unwrap();
+    let base = [[-20.0, -20.0], [220.0, -20.0], [220.0, 20.0], [-20.0, 20.0]].map(DVec2::from_array);
+    let block = mesh(Solid::extrude(&Polygon::simple(Ring::new(base.to_vec())), 0.0, 60.0));
+    let Err(WarpError::Torn(at)) = warp::warped(&chart, &block, 0.02, &Task::new()) else { panic!() };
+    assert!((at.x - 100.0).abs() < 5.0, "{at}");
+}
+
+/// The guide that is found in a bent bar is the one it was made from, however it lies and however thick it is.
+#[test]
+fn middle_lines_of_bent_bars_are_found() {
+    for (text, radius) in [
+        ("guide:points=0/0/0:0/0/145:145/0/145,radius=120", 30.0),
+        ("guide:points=10/-20/0:10/-20/80:60/90/180:150/100/300,radius=90:70", 18.0),
+        ("guide:points=0/0/0:0/0/160:0/200/160:0/200/20,radius=100", 25.0),
+    ] {
+        let chart: Chart = text.parse().unwrap();
+        let Chart::Guide(guide) = &chart else { panic!() };
+        let ring = Ring::new((0..90).map(|k| DVec2::from_angle(TAU * f64::from(k) / 90.0) * radius).collect());
+        let levels: Vec<f64> = (0..=400).map(|k| guide.length() * f64::from(k) / 400.0).collect();
+        let mut bar = mesh(Solid::loft(&Polygon::simple(ring), &levels, |p, _| p));
+        bar.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
+        let found = middle_line(&bar, &Task::new()).unwrap();
+        assert!((found.length() - guide.length()).abs() < 0.01 * radius, "{} {}", found.length(), guide.length());
+        let found = Chart::Guide(Arc::new(found));
+        for k in 0..=200 {
+            let h = guide.length() * f64::from(k) / 200.0;
+            let on_it = found.coordinates(chart.sheet(h).at(DVec3::Z * h).place);
+            assert!(on_it.truncate().length() < 0.01 * radius, "{text}: {on_it} at {h}");
+            let [known, here] = [chart.sheet(h).at(DVec3::Z * h), found.sheet(h).at(DVec3::Z * h)];
+            assert!(known.normal.angle_between(here.normal) < 0.03, "{text} at {h}");
+        }
+    }
+}
+
+#[test]
+fn parts_without_a_middle_line_are_refused() {
+    let block = |x: f64| {
+        Polygon::simple(Ring::new(
+            [[x, 0.0], [x + 20.0, 0.0], [x + 20.0, 20.0], [x, 20.0]].map(DVec2::from_array).to_vec(),
+        ))
+    };
+    let flat = mesh(Solid::extrude(&block(0.0), 0.0, 10.0));
+    assert!(matches!(middle_line(&flat, &Task::new()), Err(NoMiddleLine::Short { .. })));
+    let (mut two, more) = (Solid::extrude(&block(0.0), 0.0, 100.0), Solid::extrude(&block(50.0), 0.0, 100.0));
+    let first = two.vertices.len() as u32;
+    two.vertices.extend(more.vertices);
+    two.triangles.extend(more.triangles.iter().map(|t| t.map(|i| i + first)));
+    assert_eq!(middle_line(&mesh(two), &Task::new()), Err(NoMiddleLine::Start(2)));
 }

@@ -100,7 +100,7 @@ fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
         layer.z = bottom + layer.height;
         layer.height = needed(&layer, &below, &region, profile)?;
         layer.z = bottom + layer.height;
-        share::share(&mut layer, Some(&below), profile);
+        share::share(&mut layer, Some(&below), None, profile);
         below.weld(&layer.passes);
     }
     Some(layer.height)
@@ -114,7 +114,7 @@ const FILLED: f64 = 0.35;
 /// lowest at which no more metal is laid than is needed, since a bead can hold no less than 1 / [`share::MOST`] of its own.
 /// If more is laid at the former, it is higher by as much as takes up the surplus.
 fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
-    let shares = share::shares(layer, Some(below), region, profile);
+    let shares = share::shares(layer, Some(below), None, region, profile);
     let mut pieces: Vec<(f64, f64)> =
         shares.iter().flat_map(|share| share.needs.iter().copied().zip(share.held.iter().copied())).collect();
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -7,6 +7,7 @@ use crate::fill::sound;
 use crate::layer::{self, Layer};
 use crate::pass::{Along, Pass, PassKind, Segment};
 use crate::profile::Profile;
+use crate::wedge::Wedge;
 use glam::DVec2;
 use planar::{Join, Region, polyline};
 
@@ -48,7 +49,13 @@ fn nominal(profile: &Profile) -> Nominal {
 }
 
 /// What the passes of a layer hold and need, on what lies below; without that, on a layer as planned.
-pub(super) fn shares(layer: &Layer, below: Option<&Stack>, region: &Region, profile: &Profile) -> Vec<Share> {
+pub(super) fn shares(
+    layer: &Layer,
+    below: Option<&Stack>,
+    wedge: Option<&Wedge<'_>>,
+    region: &Region,
+    profile: &Profile,
+) -> Vec<Share> {
     let nominal = nominal(profile);
     let width = nominal.bead.width;
     // A dot already holds what its place needs.
@@ -57,7 +64,8 @@ pub(super) fn shares(layer: &Layer, below: Option<&Stack>, region: &Region, prof
     // Where beads lie side by side, their metal makes layers.height, whatever the profile says of the bead.
     let wide = nominal.bead.rise(profile.stepover()) / profile.layers.height;
     let ground = |place| below?.height_at(place).map(|ground| ground / wide);
-    let strips = strips(layer, ground, region, pieces.iter().flatten(), width);
+    let own = |place| wedge.map_or(layer.height, |wedge| wedge.own(place));
+    let strips = strips(layer, own, ground, region, pieces.iter().flatten(), width);
     let mut strips = strips.into_iter();
     let share = |(pass, pieces): (&Pass, Vec<Segment>)| {
         let wanted: Vec<f64> = strips.by_ref().take(pieces.len()).collect();
@@ -85,9 +93,9 @@ pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
 
 /// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
 /// it, from what lies below, is as wide as the law of the bead says, and stays inside the outline.
-pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, profile: &Profile) {
+pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, wedge: Option<&Wedge<'_>>, profile: &Profile) {
     let (nominal, region) = (nominal(profile), region(layer, profile));
-    let (shares, rim) = (shares(layer, below, &region, profile), Rim::of(&region));
+    let (shares, rim) = (shares(layer, below, wedge, &region, profile), Rim::of(&region));
     let (narrowest, widest) = profile.fill_settings(layer.index).wall.width_limits;
     let laid = |(pass, share): (&Pass, &Share)| {
         let Share { pieces, held, needs } = share;
@@ -163,11 +171,12 @@ fn cut(pass: &Pass, longest: f64) -> Vec<Segment> {
     pass.segments().flat_map(parts).collect()
 }
 
-/// What fills the strip of the slice nearest to each piece, mm³: the height of the layer, more where the `ground` below (mm)
+/// What fills the strip of the slice nearest to each piece, mm³: its `own` height of the layer (mm), more where the `ground` below (mm)
 /// lies too low and less where it lies too high. Where no bead reaches, and at the rim, which no bead fills, it counts as
 /// planned.
 fn strips<'a>(
     layer: &Layer,
+    own: impl Fn(DVec2) -> f64,
     ground: impl Fn(DVec2) -> Option<f64>,
     region: &Region,
     pieces: impl Iterator<Item = &'a Segment>,
@@ -197,11 +206,11 @@ fn strips<'a>(
     let columns = |ends: &[f64]| grid.columns_between(ends[0], ends[1]);
     let (mut strips, mut inside) = (vec![0.0; halves.len()], 0.0);
     for (row, crossings) in rows(region).iter().enumerate() {
-        for at in crossings.chunks_exact(2).flat_map(columns).map(|column| row * grid.columns + column) {
-            let (distance, index) = nearest[at];
+        for column in crossings.chunks_exact(2).flat_map(columns) {
+            let (distance, index) = nearest[row * grid.columns + column];
             inside += 1.0;
             if distance <= reach * reach {
-                strips[index] += layer.height;
+                strips[index] += own(grid.place(column, row));
             }
         }
     }
@@ -210,10 +219,11 @@ fn strips<'a>(
         for column in crossings.chunks_exact(2).flat_map(columns) {
             let (distance, index) = nearest[row * grid.columns + column];
             let is_laid = halves.get(index).is_some_and(|half| distance <= half * half);
-            if let Some(ground) = ground(grid.place(column, row)).filter(|_| is_laid) {
-                let wanted = layer.height + GAIN * (layer.z - layer.height - ground);
-                strips[index] +=
-                    wanted.clamp(WANTED.start() * layer.height, WANTED.end() * layer.height) - layer.height;
+            let place = grid.place(column, row);
+            if let Some(ground) = ground(place).filter(|_| is_laid) {
+                let height = own(place);
+                let wanted = height + GAIN * (layer.z - height - ground);
+                strips[index] += wanted.clamp(WANTED.start() * height, WANTED.end() * height) - height;
             }
         }
     }

@@ -1,0 +1,88 @@
+//! `beadwright guide`: the curve to which the layers of a bent part are square, for `plan --chart`.
+
+use crate::{file, model, profile, progress, say};
+use anyhow::{Context, ensure};
+use beadwright::chart::{Chart, Guide, middle_line};
+use beadwright::glam::DVec3;
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// A bent tube or bar that stands on one end, in whose sections the curve is found; or the curve itself: IGES, or a table
+    /// (CSV) with the columns x, y, z in mm.
+    #[command(flatten)]
+    model: model::Model,
+    #[command(flatten)]
+    wanted: profile::Wanted,
+}
+
+/// The curve of a file is followed this closely, mm.
+const CHORD: f64 = 0.05;
+/// Points and lengths are printed with this many places, mm.
+const PLACES: f64 = 1e3;
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let path = &arguments.model.model;
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    let guide = match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("csv" | "txt") => rounded(&table(path)?)?,
+        Some("igs" | "iges") => match iges(path)? {
+            Some(points) => rounded(&points)?,
+            None => found(arguments)?,
+        },
+        _ => found(arguments)?,
+    };
+    let (length, radius) = (guide.length(), guide.tightest());
+    writeln!(std::io::stdout(), "{}", Chart::Guide(Arc::new(guide)))?;
+    let mut out = say::warnings();
+    match radius {
+        Some(radius) => writeln!(out, "{length:.1} mm long, bent at {radius:.1} mm radius where it is tightest")?,
+        None => writeln!(out, "{length:.1} mm long, straight")?,
+    }
+    Ok(())
+}
+
+/// From the sections of a part.
+fn found(arguments: &Arguments) -> anyhow::Result<Guide> {
+    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+    let profile = profile::load(name, &arguments.wanted.set)?;
+    let (task, bar) = progress::task()?;
+    let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
+    let guide = middle_line(&import.mesh, &task).with_context(|| arguments.model.model.display().to_string())?;
+    bar.finish_and_clear();
+    rounded(guide.points())
+}
+
+fn rounded(points: &[DVec3]) -> anyhow::Result<Guide> {
+    let mut points: Vec<DVec3> = points.iter().map(|p| (p * PLACES).round() / PLACES + DVec3::ZERO).collect();
+    points.dedup();
+    Ok(Guide::new(points, Vec::new())?)
+}
+
+/// The curve of an IGES file; none where it holds no curves but surfaces.
+fn iges(path: &Path) -> anyhow::Result<Option<Vec<DVec3>>> {
+    let Some(drawing) = model::read_iges(path, &file::model(path)?)? else { return Ok(None) };
+    let curves: Vec<_> = drawing.independent_curves().collect();
+    ensure!(curves.len() == 1, "{}: {} curves, and a guide is one: join them in CAD", path.display(), curves.len());
+    Ok(Some(curves.iter().flat_map(|curve| &curve.parts).flat_map(|part| part.points_by_chord(CHORD)).collect()))
+}
+
+/// The points of a table; a first line without numbers is its heading.
+fn table(path: &Path) -> anyhow::Result<Vec<DVec3>> {
+    let text = file::text(path)?;
+    let row = |line: &str| -> Option<DVec3> {
+        let numbers: Option<Vec<f64>> = line.split([',', ';', '\t']).map(|word| word.trim().parse().ok()).collect();
+        let point = DVec3::from_array(numbers?.try_into().ok()?);
+        point.is_finite().then_some(point)
+    };
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+    lines.next_if(|(_, line)| row(line).is_none());
+    let point = |(number, line): (usize, &str)| {
+        row(line).with_context(|| {
+            format!("{}, line {}: x, y and z in mm are expected, not \"{line}\"", path.display(), number + 1)
+        })
+    };
+    lines.map(point).collect()
+}
