@@ -6,12 +6,13 @@
 //! on the next. Two layers are planned, since scan lines alternate, and every plate is turned by 0 to 175° in steps of 5°:
 //! one layer of a well-placed plate shows whatever one likes.
 
+mod beside;
 mod plans;
 mod plate;
 mod turned;
 
 pub use plans::{ALIKE, COLUMNS, FIXED, LITERAL, Lines, Loops, OURS, Outcome, PLAIN, Plan, Raster, Saved, WHOLE};
-pub use plate::{Plate, plates};
+pub use plate::{Plate, Printed, plates};
 pub use turned::{Printer, Turned};
 
 use crate::{ReproduceError, Reproduced};
@@ -109,6 +110,9 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         "The paper counts one part at one rotation, the one it was drawn at. Where lines at 0° already run along the \
          plate (0° and 90°), the raster angle saves nothing, and only merging, order and start points are left.",
     );
+    beside::absolute(&mut page, &swept, &printer);
+    beside::colony(&mut page, &printer);
+    beside::corners(&mut page, &swept);
     for (plate, sweep) in &swept {
         tell(&mut page, plate, sweep, &printer);
     }
@@ -279,8 +283,8 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
         page.svg(&turned.sketch(&PLAIN, "plain").svg()).svg(&turned.sketch(&OURS, &lines).svg());
     }
     let curves = angle::curves(&Compound, std::slice::from_ref(&plate.polygon), &printer.profile.fill_settings(0));
-    let [turns, ..] = angles::plots(&curves, None);
-    page.svg(&turns.svg());
+    let [turns, _, corners] = angles::plots(&curves, None);
+    page.svg(&turns.svg()).svg(&corners.svg());
 }
 
 const STEP_HEAD: [&str; 9] = [
