@@ -96,6 +96,9 @@ pub struct Turned {
     pub overfill: [f64; 2],
 }
 
+/// The voids of a part with one kind of line ends.
+type Voids = fn(&Turned) -> &Vec<f64>;
+
 /// Runs the experiment.
 ///
 /// # Errors
@@ -155,8 +158,9 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          2.0 %. Shorter hooks leave wedges bare. The goal of 3 % came from figures for each mm of edge, read as percentages.",
     );
     page.table(&TURNED, &turned.iter().map(Turned::row).collect::<Vec<_>>());
-    page.svg(&over_angles(&turned, "plain", |t| &t.plain).svg());
-    page.svg(&over_angles(&turned, "hooked", |t| &t.hooked).svg());
+    let [plain, hooked] = [over_angles(&turned, "plain", |t| &t.plain), over_angles(&turned, "hooked", |t| &t.hooked)]
+        .map(|plot| plot.svg());
+    page.svg(&plain).svg(&hooked);
     page.heading("Figure 8: two larger parts");
     page.text(
         "The paper's second part is known only from a picture; a gear of the same size stands in for it. The paper welded \
@@ -175,7 +179,9 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         page.maps(&[size.to_owned()], &maps);
     }
     let lines = goals.iter().map(Goal::line).chain(specimens.iter().map(|(name, words, [e, _])| line(name, words, e)));
-    Ok(Reproduced { page, lines: lines.collect(), files: Vec::new() })
+    let lines = lines.collect();
+    let pictures = vec![("c-plain-ends.svg", plain), ("c-hooked-ends.svg", hooked)];
+    Ok(Reproduced { page, goals, pictures, lines, files: Vec::new() })
 }
 
 impl Case<'_> {
@@ -311,8 +317,8 @@ fn goals(specimens: &[(&str, &str, [Entry; 2])], sweeps: &[(&str, Vec<(f64, Entr
 
 /// What five parts at twelve angles are judged by: the paper's plain ends, then hooked ends.
 pub fn of_turned(turned: &[Turned]) -> Vec<Goal> {
-    let ends: [(&str, fn(&Turned) -> &Vec<f64>); 2] = [("plain", |t| &t.plain), ("hooked", |t| &t.hooked)];
-    let of = |(k, (ends, voids)): (usize, (&str, fn(&Turned) -> &Vec<f64>))| {
+    let ends: [(&str, Voids); 2] = [("plain", |t| &t.plain), ("hooked", |t| &t.hooked)];
+    let of = |(k, (ends, voids)): (usize, (&str, Voids))| {
         let ratio = median(turned.iter().flat_map(|t| t.ratios(voids(t))).collect());
         let void = turned.iter().flat_map(voids).copied().fold(0.0, f64::max);
         let overfill = turned.iter().map(|t| t.overfill[k]).fold(0.0, f64::max);
@@ -378,7 +384,7 @@ fn swept(sweeps: &[(&str, Vec<(f64, Entry)>)]) -> Plot {
 }
 
 /// The void of each part over the angle.
-fn over_angles(turned: &[Turned], ends: &str, voids: fn(&Turned) -> &Vec<f64>) -> Plot {
+fn over_angles(turned: &[Turned], ends: &str, voids: Voids) -> Plot {
     let curve = |of: &Turned| Curve {
         name: of.part.to_owned(),
         points: TURNS.iter().zip(voids(of)).map(|(&turn, &void)| DVec2::new(turn, void)).collect(),

@@ -176,17 +176,19 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let maps = frames.iter().map(|(name, frame)| ((*name).to_owned(), vec![frame.picture.as_ref()]));
     page.maps(&["layer 1".to_owned()], &maps.collect::<Vec<_>>());
     page.heading("Paths");
-    let mut files = Vec::new();
+    let (mut files, mut pictures) = (Vec::new(), Vec::new());
     for Built { plan, profile, .. } in &plain.built {
         let layer = &plan.layers[plan.layers.len() / 3];
         page.text(&format!("{}, layer {} at z {:.2} mm", plan.header.part, layer.index + 1, layer.z));
-        page.svg(&svg::layer(layer, &plan.header.part));
+        let drawn = svg::layer(layer, &plan.header.part);
+        page.svg(&drawn);
+        pictures.extend((plan.header.part == "tian").then_some(("d-frame.svg", drawn)));
         files.extend(dialect::write("rapid", &plan.layers, &profile.job(&plan.header.part)).map_err(wrong)?);
     }
     let mut lines: Vec<String> = goals.iter().map(Goal::line).collect();
     lines.extend([one, window]);
     lines.push("RAPID of the four parts next to the page".to_owned());
-    Ok(Reproduced { page, lines, files })
+    Ok(Reproduced { page, goals, pictures, lines, files })
 }
 
 fn wrong(error: impl std::fmt::Display) -> ReproduceError {

@@ -67,15 +67,19 @@ fn absolute_rows(plate: &Plate, sweep: &[At], printer: &Printer) -> [Row; 2] {
     ]
 }
 
-/// Figure 4: the mean and the shortest tour of the ants over the rounds.
-pub(super) fn colony(page: &mut Sheet, printer: &Printer) {
+/// Figure 4: the mean and the shortest tour of the ants over the rounds. Gives the picture of the first plate, which is figure 4's.
+pub(super) fn colony(page: &mut Sheet, printer: &Printer) -> Option<String> {
     page.heading("The ant colony (figure 4)");
     page.text(
         "50 ants, 200 rounds, as in the paper; α = 1, β = 5, ρ = 0.1 are ours. The colony begins with the tour of the \
          improved nearest neighbour and orders its start points, but never moves them: so the optimum over order and start \
-         points together, which the local search finds, stays out of its reach however long it runs. The mean does not come down to the shortest tour, since ants explore to the end.",
+         points together, which the local search finds, stays out of its reach however long it runs. The mean does \
+         not come down to the shortest tour, since ants explore to the end.",
     );
-    let rows: Vec<Row> = plates().iter().map(|plate| colony_row(page, plate, printer)).collect();
+    let (rows, pictures): (Vec<Row>, Vec<String>) = plates().iter().map(|plate| colony_row(plate, printer)).unzip();
+    pictures.iter().for_each(|svg| {
+        page.svg(svg);
+    });
     page.table(
         &[
             "plate",
@@ -88,9 +92,10 @@ pub(super) fn colony(page: &mut Sheet, printer: &Printer) {
         ],
         &rows,
     );
+    pictures.into_iter().next()
 }
 
-fn colony_row(page: &mut Sheet, plate: &Plate, printer: &Printer) -> Row {
+fn colony_row(plate: &Plate, printer: &Printer) -> (Row, String) {
     let turned = Turned::new(plate, 0.0, printer);
     let rounds = turned.convergence();
     let length = |method| tour::length(&turned.tour(super::Loops::By(method)), Ends::Closed);
@@ -111,7 +116,6 @@ fn colony_row(page: &mut Sheet, plate: &Plate, printer: &Printer) -> Row {
         floating: true,
         ..Plot::default()
     };
-    page.svg(&plot.svg());
     let shortest = rounds.last().map_or(first, |round| round.shortest);
     let found = match rounds.iter().position(|round| round.shortest <= shortest) {
         _ if shortest >= first => "none: it began with it".to_owned(),
@@ -119,7 +123,8 @@ fn colony_row(page: &mut Sheet, plate: &Plate, printer: &Printer) -> Row {
     };
     let mean = |k: usize| rounds.get(k).map_or(0.0, |round| round.mean);
     let means = [first, mean(0), mean(rounds.len().saturating_sub(1)), shortest].map(|mm| format!("{mm:.1}"));
-    plain([plate.name.to_owned()].into_iter().chain(means).chain([found, format!("{ours:.1}")]))
+    let row = plain([plate.name.to_owned()].into_iter().chain(means).chain([found, format!("{ours:.1}")]));
+    (row, plot.svg())
 }
 
 /// Eqs 10 and 11, and what tables 2 and 3 say of printed parts.
