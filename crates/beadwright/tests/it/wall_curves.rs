@@ -242,8 +242,7 @@ fn a_wall_between_two_rising_edges_is_cut_level() {
         let way = (b - a).normalize();
         for p in layer.passes[0].points.iter().map(|p| p.truncate()) {
             let off = way.perp_dot(p - a).abs();
-            // A fortieth of a bead.
-            assert!(off < 0.1 && (-0.1..=(b - a).length() + 0.1).contains(&way.dot(p - a)), "{}: {off}", layer.z);
+            assert!(off < 0.05 && (-0.05..=(b - a).length() + 0.05).contains(&way.dot(p - a)), "{}: {off}", layer.z);
         }
         let most = way.perp_dot(DVec2::new(-1.0 / 6.0, 0.4)).abs().atan();
         let whole = layer.index > 0 && layer.index + 1 < laid.len();

@@ -28,13 +28,26 @@ pub(crate) fn ruled(file: &IgesFile, place: &DAffine3) -> Option<(Mesh, RepairRe
     if lower.closed != upper.closed {
         return None;
     }
-    let count = [&lower, &upper].map(|curve| 4 * spatial(curve).len()).into_iter().max()?.clamp(POINTS.0, POINTS.1);
-    let (below, above) = (evenly(&lower, count)?, evenly(&upper, count)?);
-    let above = matched(&below, above, lower.closed);
+    let coarse = [&lower, &upper].map(|curve| 4 * spatial(curve).len()).into_iter().max()?.clamp(POINTS.0, POINTS.1);
+    let between = |count: usize| {
+        let (below, above) = (evenly(&lower, count)?, evenly(&upper, count)?);
+        let above = matched(&below, above, lower.closed);
+        Some((below, above))
+    };
+    let (below, above) = between(coarse)?;
+    let finer = twist(&below, &above) / CHORD_MM * coarse as f64;
+    let count = (finer.ceil() as usize).clamp(coarse, POINTS.1);
+    let (below, above) = between(count)?;
     let corners = |k: u32| [2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 3];
     let strip = (0..count as u32 - 1).map(corners).flat_map(|[a, b, c, d]| [[a, c, b], [b, c, d]]);
     let vertices = below.iter().zip(&above).flat_map(|(a, b)| [*a, *b]).collect();
     Some(Mesh::from_triangles(vertices, strip.collect()))
+}
+
+/// How far the diagonals of the strip lie off the surface, mm: a quarter of what corresponding steps differ by.
+fn twist(below: &[DVec3], above: &[DVec3]) -> f64 {
+    let steps = below.windows(2).zip(above.windows(2));
+    steps.map(|(a, b)| ((a[1] - a[0]) - (b[1] - b[0])).length() / 4.0).fold(0.0, f64::max)
 }
 
 /// A curve as a polyline in space.
