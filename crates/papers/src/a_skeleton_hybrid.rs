@@ -80,7 +80,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         dialect::write("krl", &plan.layers, &profile.job("propeller")).map_err(|e| wrong(&e))?.into_iter().collect();
     let names: BTreeSet<&String> = files.iter().map(|(name, _)| name).collect();
     lines.push(format!("KRL of our hybrid: {} files next to the page", names.len()));
-    Ok(Reproduced { page, lines, files })
+    Ok(Reproduced { page, goals, pictures: Vec::new(), lines, files })
 }
 
 fn wrong(error: &dyn std::fmt::Display) -> ReproduceError {

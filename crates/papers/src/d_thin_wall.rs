@@ -98,6 +98,8 @@ pub struct Frame {
     pub starts: usize,
     /// Heights after 8 and after 18 layers.
     pub heights: [Heights; 2],
+    /// Heights after 8 layers by place: corners, junctions of the outer walls, middle, and elsewhere.
+    pub places: [Heights; 4],
     /// The first layer.
     picture: Option<Picture>,
 }
@@ -116,8 +118,10 @@ pub struct Figures {
     pub blade_by_frame: usize,
     /// The frame as planned.
     pub planned: Frame,
-    /// The frame welded straight through its junctions: the paper's first plan.
+    /// The frame welded straight through its junctions: the paper's initial plan.
     pub straight: Frame,
+    /// The frame in two passes with as many turns as there can be: a plan like the paper's path 1.
+    pub turning: Frame,
 }
 
 /// Runs the experiment.
@@ -159,27 +163,32 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     page.heading("Junctions of the frame");
     page.text(
         "Heights are those of the deposit model, where metal does not flow, in multiples of the wall's mean. The paper \
-         measured 25.6 mm on its second path, and 22 to 24 mm on its first, whose many turns it blames; that path is \
-         only a picture there, so it is not repeated. Its initial plan, three passes a layer straight through the \
-         junctions, was given up after 8 layers; it is what is called straight through here. The lowest points are in corners \
-         that a rounded path cuts.",
+         measured 25.6 mm on its path 2, which the plan is like. Its path 1 measured 22 to 24 mm, and it blames the many turns, \
+         where the torch slows down. That path is only a picture there; what is shown as such here has two passes that turn at \
+         every junction, sharply. The model's torch does not slow down: with round turns, turns cost it nothing. The initial \
+         plan, three passes a layer straight through the junctions, was given up after 8 layers.",
     );
-    page.table(&FRAME_HEAD, &[frame_row("planned", &plain.planned), frame_row("straight through", &plain.straight)]);
-    let maps = [&plain.planned, &plain.straight].map(|frame| vec![frame.picture.as_ref()]);
-    let [planned, straight] = maps;
-    page.maps(&["layer 1".to_owned()], &[("planned".to_owned(), planned), ("straight through".to_owned(), straight)]);
+    let frames = [("planned", &plain.planned), ("two passes that turn at every junction", &plain.turning)];
+    let frames: Vec<_> = frames.into_iter().chain([("straight through", &plain.straight)]).collect();
+    page.table(&FRAME_HEAD, &frames.iter().map(|(name, frame)| frame_row(name, frame)).collect::<Vec<_>>());
+    page.table(&PLACE_HEAD, &frames.iter().map(|(name, frame)| place_row(name, frame)).collect::<Vec<_>>());
+    page.text(CORNERS);
+    let maps = frames.iter().map(|(name, frame)| ((*name).to_owned(), vec![frame.picture.as_ref()]));
+    page.maps(&["layer 1".to_owned()], &maps.collect::<Vec<_>>());
     page.heading("Paths");
-    let mut files = Vec::new();
+    let (mut files, mut pictures) = (Vec::new(), Vec::new());
     for Built { plan, profile, .. } in &plain.built {
         let layer = &plan.layers[plan.layers.len() / 3];
         page.text(&format!("{}, layer {} at z {:.2} mm", plan.header.part, layer.index + 1, layer.z));
-        page.svg(&svg::layer(layer, &plan.header.part));
+        let drawn = svg::layer(layer, &plan.header.part);
+        page.svg(&drawn);
+        pictures.extend((plan.header.part == "tian").then_some(("d-frame.svg", drawn)));
         files.extend(dialect::write("rapid", &plan.layers, &profile.job(&plan.header.part)).map_err(wrong)?);
     }
     let mut lines: Vec<String> = goals.iter().map(Goal::line).collect();
     lines.extend([one, window]);
     lines.push("RAPID of the four parts next to the page".to_owned());
-    Ok(Reproduced { page, lines, files })
+    Ok(Reproduced { page, goals, pictures, lines, files })
 }
 
 fn wrong(error: impl std::fmt::Display) -> ReproduceError {
@@ -204,11 +213,9 @@ pub fn figures(degrees: f64, task: &Task) -> Result<Figures, ReproduceError> {
         pot_by_gourd: count(pot.part, gourd.wall.area())?,
         blade_by_pot: count(blade.part, slower * pot.wall.area())?,
         blade_by_frame: count(blade.part, for_each_ampere * blade.part.current / pot.part.speed)?,
-        planned: Frame::new(&tian.plan.layers, &tian.profile, task)?,
-        straight: {
-            let straight: Vec<Layer> = tian.plan.layers.iter().map(|layer| straight_through(layer, degrees)).collect();
-            Frame::new(&straight, &tian.profile, task)?
-        },
+        planned: Frame::new(&tian.plan.layers, &tian.profile, degrees, task)?,
+        straight: Frame::by_hand(&tian, degrees, &STRAIGHT, task)?,
+        turning: Frame::by_hand(&tian, degrees, &TURNING, task)?,
         built: vec![tian, blade, gourd, pot],
     })
 }
@@ -233,6 +240,9 @@ fn profile(part: &Part, area: f64) -> Result<Profile, ReproduceError> {
     (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(part.wall));
     profile.bead.width = part.wall;
     profile.bead.height = profile.bead.section.height_of(part.wall, area);
+    // Paths that touch at a junction keep this far from its middle, and ends this far from paths that run through: of all, the
+    // nearest with which nothing is higher than 1.25 × the mean.
+    (profile.wall.junction_gap, profile.wall.end_gap) = (0.29, 0.37);
     profile.process.current = Some(part.current);
     profile.process.deposition_speed = part.speed;
     let wire = wire_area(profile.wire.diameter) * profile.process.efficiency;
@@ -284,7 +294,12 @@ impl Built {
 }
 
 impl Frame {
-    fn new(layers: &[Layer], profile: &Profile, task: &Task) -> Result<Self, ReproduceError> {
+    fn by_hand(tian: &Built, degrees: f64, passes: &[ByHand], task: &Task) -> Result<Self, ReproduceError> {
+        let layers: Vec<Layer> = tian.plan.layers.iter().map(|layer| by_hand(layer, degrees, passes)).collect();
+        Self::new(&layers, &tian.profile, degrees, task)
+    }
+
+    fn new(layers: &[Layer], profile: &Profile, degrees: f64, task: &Task) -> Result<Self, ReproduceError> {
         let settings = plan::deposit_settings(profile);
         let mut picture = None;
         let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
@@ -294,48 +309,100 @@ impl Frame {
             }
         });
         let judged = judged.map_err(wrong)?;
-        let heights = piled(layers, &settings, judged.total.mean());
+        let (heights, places) = piled(layers, &settings, judged.total.mean(), degrees);
         let starts = layers.iter().map(|layer| layer.passes.len()).max().unwrap_or_default();
-        Ok(Self { starts, heights, picture })
+        Ok(Self { starts, heights, places, picture })
+    }
+}
+
+impl Heights {
+    const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    fn with(self, height: f64) -> Self {
+        Self { low: self.low.min(height), high: self.high.max(height) }
+    }
+
+    fn within(self, (low, high): (f64, f64)) -> bool {
+        self.low >= low && self.high <= high
     }
 }
 
 /// Lowest and highest point after each of [`JUDGED`] layers, in multiples of their `mean` (mm), where the metal of a bead
-/// stays as it would lie on a plate: what the paper's welders saw at junctions, before metal flows.
-fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64) -> [Heights; 2] {
+/// stays as it would lie on a plate: what the paper's welders saw at junctions, before metal flows. And the same by place,
+/// after the first of these numbers of layers, for a frame turned by some degrees.
+fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64, degrees: f64) -> ([Heights; 2], [Heights; 4]) {
     let points = layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| &pass.points);
     let Some(bounds) = Bounds::of(points.map(|point| point.truncate())) else {
-        return [Heights { low: 0.0, high: f64::INFINITY }; 2];
+        return ([Heights::NONE; 2], [Heights::NONE; 4]);
     };
     let grid = Grid::covering(&bounds, settings.nominal.bead.width, settings.step);
     let mut excess = vec![0.0; grid.points()];
-    let mut heights = [Heights { low: 0.0, high: f64::INFINITY }; 2];
+    let (mut heights, mut places) = ([Heights::NONE; 2], [Heights::NONE; 4]);
     for (k, layer) in layers.iter().enumerate() {
         let strokes: Vec<_> = layer.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
         let rows = field::bands(&strokes, &grid, |band| band.heights);
         let (rows, mask): (Vec<f64>, _) = (rows.concat(), Mask::new(&layer.islands, settings, &grid));
-        for row in 0..grid.rows {
-            for at in mask.core(row).iter().flat_map(|c| row * grid.columns + c.start..row * grid.columns + c.end) {
-                excess[at] += rows[at] - settings.nominal.rise;
-            }
+        let core = |row: usize| mask.core(row).iter().flat_map(|c| c.start..c.end).map(move |column| (column, row));
+        let index = |(column, row): (usize, usize)| row * grid.columns + column;
+        for at in (0..grid.rows).flat_map(core).map(index) {
+            excess[at] += rows[at] - settings.nominal.rise;
         }
         let (nominal, mean) = (settings.nominal.rise * (k + 1) as f64, mean * (k + 1) as f64);
-        let [low, high] = [f64::min, f64::max].map(|of| excess.iter().copied().fold(0.0, of));
-        let reached = JUDGED.iter().position(|count| *count == k + 1);
-        reached.into_iter().for_each(|at| {
-            heights[at] = Heights { low: (nominal + low).max(0.0) / mean, high: (nominal + high) / mean };
-        });
+        let over_mean = |excess: f64| (nominal + excess).max(0.0) / mean;
+        let Some(at) = JUDGED.iter().position(|count| *count == k + 1) else { continue };
+        // Where nothing deviates counts as well.
+        heights[at] = excess.iter().fold(Heights::NONE, |all, excess| all.with(over_mean(*excess)));
+        if at == 0 {
+            for point in (0..grid.rows).flat_map(core) {
+                let place = place(grid.place(point.0, point.1), degrees, settings.nominal.bead.width);
+                places[place] = places[place].with(over_mean(excess[index(point)]));
+            }
+        }
     }
-    heights
+    (heights, places)
 }
 
-/// The frame as the paper's initial plan: around, and straight through the middle, along and across.
-fn straight_through(layer: &Layer, degrees: f64) -> Layer {
+/// Half of the frame, from middle to middle of its outer walls, mm.
+const HALF: f64 = 47.75;
+/// A point belongs to a junction or corner within this distance, in bead widths.
+const AROUND: f64 = 1.6;
+
+/// Which of the places of [`Frame::places`] a point belongs to.
+fn place(point: DVec2, degrees: f64, width: f64) -> usize {
+    let upright = DVec2::from_angle(-degrees.to_radians()).rotate(point).abs();
+    let near = |x: f64, y: f64| upright.distance(DVec2::new(x, y)) < AROUND * width;
+    match () {
+        () if near(HALF, HALF) => 0,
+        () if near(HALF, 0.0) || near(0.0, HALF) => 1,
+        () if near(0.0, 0.0) => 2,
+        () => 3,
+    }
+}
+
+/// A pass by the corners it runs through, in halves of the frame, and whether it is closed.
+type ByHand = (bool, &'static [(f64, f64)]);
+
+/// The paper's initial plan (figure 3a): around, and straight through the middle, along and across.
+const STRAIGHT: [ByHand; 3] = [
+    (true, &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),
+    (false, &[(-1.0, 0.0), (1.0, 0.0)]),
+    (false, &[(0.0, -1.0), (0.0, 1.0)]),
+];
+
+/// Two passes that turn at every junction: of the plans whose passes do not cross, the one with the most turns, ten. The paper's
+/// path 1 (figure 3b) is only a picture; it has two passes and "too many turns".
+const TURNING: [ByHand; 2] = [
+    (false, &[(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0), (-1.0, 0.0), (-1.0, 1.0), (0.0, 1.0)]),
+    (false, &[(0.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0), (0.0, -1.0), (-1.0, -1.0), (-1.0, 0.0)]),
+];
+
+/// A layer of the frame with passes laid by hand, turned by some degrees like the frame itself.
+fn by_hand(layer: &Layer, degrees: f64, passes: &[ByHand]) -> Layer {
     let [turn, back] = [degrees, -degrees].map(|degrees| DVec2::from_angle(degrees.to_radians()));
     let upright = |p: &DVec3| back.rotate(p.truncate()).abs().max_element();
     let half = layer.passes.iter().flat_map(|p| &p.points).map(upright).fold(0.0, f64::max);
     let Some(first) = layer.passes.first() else { return layer.clone() };
-    let pass = |closed: bool, points: &[(f64, f64)]| Pass {
+    let pass = |&(closed, points): &ByHand| Pass {
         kind: PassKind::Wall,
         closed,
         points: points.iter().map(|&p| turn.rotate(half * DVec2::from(p)).extend(layer.z)).collect(),
@@ -343,12 +410,7 @@ fn straight_through(layer: &Layer, degrees: f64) -> Layer {
         pace: Along::Same(first.pace.after(0)),
         wait: 0.0,
     };
-    let passes = [
-        pass(true, &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),
-        pass(false, &[(-1.0, 0.0), (1.0, 0.0)]),
-        pass(false, &[(0.0, -1.0), (0.0, 1.0)]),
-    ];
-    Layer { passes: passes.to_vec(), ..layer.clone() }
+    Layer { passes: passes.iter().map(pass).collect(), ..layer.clone() }
 }
 
 /// What is judged, by the worst of the figures.
@@ -371,6 +433,9 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
     let (pot, pot_fits) = count(&|f| f.pot_by_gourd as f64, (66.0, 1.0));
     let (blade, blade_fits) = count(&|f| f.blade_by_frame as f64, (74.0, 1.0));
     let low = least(&|f| f.planned.heights.iter().map(|h| h.low).fold(f64::INFINITY, f64::min));
+    let turning = least(&|f| f.turning.heights.iter().map(|h| h.high).fold(f64::INFINITY, f64::min));
+    let low_at = |place: usize| least(&|f| f.planned.places[place].low);
+    let lows: Vec<String> = PLACES.iter().enumerate().map(|(i, name)| format!("{name} {:.2}", low_at(i))).collect();
     let ratio = range(&|b| b.wall.ratio());
     let metal = range(&|b| b.metal);
     let covered = range(&|b| b.plan.summary.metrics.coverage());
@@ -390,7 +455,7 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
         ),
         Goal::new(
             "frame: lowest point over the mean, at least 0.8",
-            format!("{low:.2}; corners that a round path cuts stay bare"),
+            format!("{low:.2}; {}", lows.join(", ")),
             "not given",
             low >= 0.8,
         ),
@@ -399,6 +464,12 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
             format!("{piled:.2}"),
             "given up after 8 layers",
             piled >= 1.5,
+        ),
+        Goal::new(
+            "frame, two passes that turn at every junction: highest point over the mean, more than planned",
+            format!("{turning:.2} with sharp turns, {high:.2} planned"),
+            "path 1: 22 to 24 mm, higher where it turns",
+            turning > high,
         ),
         Goal::new("gourd: layers with the pot's bead, 168 ± 3", gourd, "168", gourd_fits),
         Goal::new("pot: layers with the gourd's bead, 66 ± 1", pot, "66", pot_fits),
@@ -439,6 +510,12 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
 
 /// Lengths of paths from solid and curves may differ by this: the path of a solid ends half a bead before its end.
 const LIKE: f64 = 0.05;
+
+/// What is asked of heights over the mean, everywhere.
+const BAND: (f64, f64) = (0.8, 1.25);
+
+/// The places of [`Frame::places`].
+const PLACES: [&str; 4] = ["corners", "junctions of the outer walls", "middle", "elsewhere"];
 
 const BEAD_HEAD: [&str; 11] = [
     "part",
@@ -498,6 +575,25 @@ fn frame_row(name: &str, frame: &Frame) -> Row {
     let cells = [name.to_owned(), frame.starts.to_string(), (JUDGED[1] * frame.starts).to_string(), eight, all];
     cells.map(|text| (text, false)).to_vec()
 }
+
+const PLACE_HEAD: [&str; 5] =
+    ["lowest to highest over the mean, 8 layers", "corners", "junctions of the outer walls", "middle", "elsewhere"];
+
+fn place_row(name: &str, frame: &Frame) -> Row {
+    let told = |h: Heights| (format!("{:.2} to {:.2}", h.low, h.high), h.within(BAND));
+    [(name.to_owned(), false)].into_iter().chain(frame.places.map(told)).collect()
+}
+
+/// Why corners are not within [`BAND`], after several ways were tried by searches over thousands of curves in the model of an endless
+/// corner.
+const CORNERS: &str = "Why not 0.8 to 1.25 everywhere: the example's outline has square corners, which the paper's frame, welded \
+     with a turning radius, does not have. A bead of constant metal around a square corner leaves 0.25 to 1.41 × the mean if \
+     it is sharp. Of 3,000 curves around it, those that swing out beyond the corner are best: 0.65 to 1.51, or 0.41 if \
+     nothing may be higher than 1.25. With half of the metal in the curve, so at twice the speed in a curve of 2 mm radius, \
+     0.78 to 1.25 would be reached. Curves that take turns from layer to layer, one cut short and one swung out by 0.45 bead \
+     widths, come to 0.79 and 1.25, but leave a bump on the outside at every second layer. At the junctions, the nearest \
+     paths and ends with which nothing is higher than 1.25 were chosen (wall.junction_gap 0.29, wall.end_gap 0.37; by \
+     default, 0.4 each, the lowest point there is 0.33 and 0.19); sharp ones would leave 0.68 and 0.81, and pile up to 1.47 and 2.15.";
 
 /// Where the plans lie in the paper's process window.
 fn window(figures: &Figures) -> String {

@@ -35,6 +35,17 @@ impl Goal {
     }
 }
 
+/// Goals as a table of the book.
+pub fn markdown(goals: &[Goal]) -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    let row = |goal: &Goal| {
+        let [what, ours, paper] = [&goal.what, &goal.ours, &goal.paper].map(|text| cell(text));
+        format!("| {what} | {paper} | {ours} | {} |\n", goal.verdict())
+    };
+    let rows: String = goals.iter().map(row).collect();
+    format!("| claim and conditions | the paper | ours | |\n| --- | --- | --- | --- |\n{rows}")
+}
+
 /// Puts goals on a page as a table.
 pub fn tabulate(page: &mut Sheet, goals: &[Goal]) {
     page.heading("Reached or not");

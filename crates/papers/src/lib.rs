@@ -8,11 +8,16 @@ pub mod goal;
 
 use beadwright::report::sheet::Sheet;
 use beadwright::task::Task;
+use goal::Goal;
 
 /// The result of an experiment.
 pub struct Reproduced {
     /// Tables and pictures.
     pub page: Sheet,
+    /// What it sets out to reach.
+    pub goals: Vec<Goal>,
+    /// Pictures for the book, SVG, with the names of their files.
+    pub pictures: Vec<(&'static str, String)>,
     /// The findings in a few lines, for the terminal.
     pub lines: Vec<String>,
     /// Programs, as texts to be appended to named files.

@@ -113,7 +113,7 @@ impl Ring {
     }
 
     /// The edges as (from, to), the closing one last.
-    pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+    pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + Clone + '_ {
         let closing = self.0.last().copied().zip(self.0.first().copied());
         self.0.windows(2).map(|w| (w[0], w[1])).chain(closing)
     }

@@ -50,6 +50,17 @@ pub struct Chain {
     pub via: Vec<DVec2>,
 }
 
+/// The next end of a span along the boundary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Neighbour {
+    /// Index of its span.
+    pub span: usize,
+    /// Which of the ends.
+    pub end: End,
+    /// Boundary vertices between the two ends, in the turned frame; often none.
+    pub via: Vec<DVec2>,
+}
+
 struct Crossing {
     line: usize,
     at: DVec2,
@@ -242,6 +253,39 @@ impl Scan {
             }
         };
         Some(Chain { to: to_span, via })
+    }
+
+    /// Where the boundary leads from an end of a span, up or down, until it meets a scan line again; there with the boundary
+    /// vertices on the way, in the turned frame.
+    pub fn neighbour(&self, span: usize, end: End, up: bool) -> Option<Neighbour> {
+        let from = self.crossing(span, end);
+        let crossing = &self.crossings[from];
+        let range = self.ring_starts[crossing.ring]..self.ring_starts[crossing.ring + 1];
+        let (ring, n) = (self.rings[crossing.ring].points(), self.rings[crossing.ring].points().len());
+        // Right ends lie on upward edges: the ring itself leads up.
+        let along = (end == End::Right) == up;
+        let to = match along {
+            true if from + 1 == range.end => range.start,
+            true => from + 1,
+            false if from == range.start => range.end - 1,
+            false => from - 1,
+        };
+        let target = &self.crossings[to];
+        let span = target.span?;
+        let end = if self.spans[span].left == to { End::Left } else { End::Right };
+        let via = if along {
+            let count = (target.edge + n - crossing.edge) % n;
+            (1..=count).map(|k| ring[(crossing.edge + k) % n]).collect()
+        } else {
+            let count = (crossing.edge + n - target.edge) % n;
+            (0..count).map(|k| ring[(crossing.edge + n - k) % n]).collect()
+        };
+        Some(Neighbour { span, end, via })
+    }
+
+    /// The edges of the region in the turned frame.
+    pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + Clone + '_ {
+        self.rings.iter().flat_map(Ring::edges)
     }
 
     /// From the turned frame back to the region's own.

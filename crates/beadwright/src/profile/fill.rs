@@ -1,7 +1,7 @@
 //! The section `[fill]`.
 
 use crate::bead::Overlap;
-use crate::fill::{ContourOrder, RasterSpacing, StrategyName};
+use crate::fill::{ContourOrder, LineEnds, RasterSpacing, StrategyName};
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +51,10 @@ pub struct FillSection {
     /// Spacing of the scan lines: spread evenly (`even`), exactly one stepover apart (`exact`, Liu et al. 2022, eq 11),
     /// or spread evenly between the long edges parallel to them (`fitted`).
     pub raster_spacing: RasterSpacing,
+    /// How scan lines end where they are not linked: straight (`plain`, Liu et al. 2022; the default) or with a hook along
+    /// a boundary that they meet at a slant (`hooked`), which leaves fewer voids there.
+    #[serde(default)]
+    pub line_ends: LineEnds,
     /// Minimum length of a pass, mm; shorter passes are left out with a warning, except an island's only pass.
     pub min_pass_length: f64,
     /// Whether `compound`, `hilbert` and `partition` lay the perimeters before the infill; default false.

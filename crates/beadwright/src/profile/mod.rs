@@ -392,6 +392,7 @@ impl Profile {
             machining_allowance: fill.machining_allowance,
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,
+            line_ends: fill.line_ends,
             // Where a strategy has the choice, its passes outlast the start of their arc.
             min_pass_length: fill.min_pass_length.max(self.steady_after() * self.process.deposition_speed),
             layer,

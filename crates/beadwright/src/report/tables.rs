@@ -4,7 +4,7 @@ use super::escape;
 use super::words::hinted;
 use crate::bead::Overlap;
 use crate::deposit::Figures;
-use crate::fill::{ContourOrder, RasterSpacing, StrategyName};
+use crate::fill::{ContourOrder, LineEnds, RasterSpacing, StrategyName};
 use crate::finding::Finding;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
@@ -182,7 +182,11 @@ fn scan_lines(profile: &Profile) -> String {
         RasterTurn::Increment => format!("at {}°, turned by {}° per layer", fill.raster_angle, fill.raster_increment),
         RasterTurn::Best => "at the fastest angle for each pair of layers".to_owned(),
     };
-    format!("scan lines {angle}, {spacing}")
+    let ends = match fill.line_ends {
+        LineEnds::Plain => "",
+        LineEnds::Hooked => ", with hooked ends",
+    };
+    format!("scan lines {angle}, {spacing}{ends}")
 }
 
 /// The colours of the kinds of passes that there are.

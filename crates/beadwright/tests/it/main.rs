@@ -46,6 +46,7 @@ mod holes;
 mod hybrid;
 mod iges;
 mod inherits;
+mod line_ends;
 mod matrix;
 mod models;
 mod motion;

@@ -5,15 +5,16 @@ use beadwright::curve::Nurbs;
 use beadwright::example;
 use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
-use beadwright::model::PartRef;
 use beadwright::model::iges::{self, IgesFile, WriteOptions};
 use beadwright::model::wall_curves::{CurvesAre, WallCurves, WallCurvesError};
+use beadwright::model::{Model, Part, PartError, PartRef, Placement};
 use beadwright::pass::Pass;
 use beadwright::plan;
 use beadwright::planar::polyline;
 use beadwright::profile::Profile;
+use beadwright::slice::Surface;
 use beadwright::task::Task;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
 fn profile(width: f64, height: f64) -> Profile {
@@ -206,4 +207,95 @@ fn curves_that_are_no_pairs_are_refused_as_sides() {
     profile.wall.curves = None;
     let apart = curves(&[circle(20.0, 0.0), circle(40.0, 0.0)]).unwrap();
     assert!(plan::plan("wall", PartRef::Curves(&apart, 10.0), &profile, &Task::new()).is_ok());
+}
+
+/// Edges through a file, as a part.
+fn between(edges: &[Nurbs]) -> Result<Part, PartError> {
+    let named: Vec<(&str, &Nurbs)> = edges.iter().map(|n| ("edge", n)).collect();
+    let text = iges::write(&named, &WriteOptions::default());
+    Model::read(text.as_bytes(), &Task::new())?.place(&Placement::default(), None, 4.0)
+}
+
+/// The layers of a wall between edges.
+fn laid_between(edges: &[Nurbs], profile: &Profile) -> Vec<Layer> {
+    let part = between(edges).unwrap();
+    let mut profile = profile.clone();
+    profile.slice.surface = Some(Surface::Wall);
+    plan::plan("wall", &part, &profile, &Task::new()).unwrap().layers
+}
+
+/// The left end of a wall leans along it, the right end also across: at a height z its level cut is the straight line between
+/// both, and there the right end leans by the angle whose tangent is its way across that line, over z (Li et al., eq 8).
+#[test]
+fn a_wall_between_two_rising_edges_is_cut_level() {
+    let ends = |z: f64| [DVec2::new(z / 6.0, 0.0), DVec2::new(80.0 - z / 6.0, 0.4 * z)];
+    let edge = |k: usize| {
+        let at = |z: f64| ends(z)[k].extend(z);
+        Nurbs::line(at(0.0), at(60.0)).unwrap()
+    };
+    let profile = profile(4.0, 1.8);
+    let laid = laid_between(&[edge(0), edge(1)], &profile);
+    let rise = profile.single_wall().unwrap().rise();
+    for layer in &laid {
+        assert_eq!(layer.passes.len(), 1, "layer {}", layer.index);
+        let [a, b] = ends(layer.z - layer.height / 2.0);
+        let way = (b - a).normalize();
+        for p in layer.passes[0].points.iter().map(|p| p.truncate()) {
+            let off = way.perp_dot(p - a).abs();
+            assert!(off < 0.05 && (-0.05..=(b - a).length() + 0.05).contains(&way.dot(p - a)), "{}: {off}", layer.z);
+        }
+        let most = way.perp_dot(DVec2::new(-1.0 / 6.0, 0.4)).abs().atan();
+        let whole = layer.index > 0 && layer.index + 1 < laid.len();
+        // The very end is not asked: the bead ends before it.
+        assert!(
+            !whole || (0.998..1.015).contains(&(layer.height / (rise * most.cos()))),
+            "{}: {}",
+            layer.z,
+            layer.height
+        );
+    }
+    // Whichever comes first, and whichever way they run.
+    for edges in [[edge(1), edge(0)], [edge(0).reversed(), edge(1)]] {
+        let again = laid_between(&edges, &profile);
+        assert_eq!(again.len(), laid.len());
+        for (a, b) in again.iter().zip(&laid) {
+            let length = |layer: &Layer| layer.passes.iter().map(Pass::length).sum::<f64>();
+            assert!((a.z - b.z).abs() < 1e-6 && (length(a) - length(b)).abs() < 0.05, "{}", a.z);
+        }
+    }
+}
+
+/// A lower edge on the plate and an upper one that rises: every layer runs as far as the wall is that high.
+#[test]
+fn a_wall_under_a_rising_edge_ends_where_the_edge_does() {
+    let line = |a, b| Nurbs::line(DVec3::from(a), DVec3::from(b)).unwrap();
+    let laid = laid_between(
+        &[line((0.0, 0.0, 0.0), (100.0, 0.0, 0.0)), line((0.0, 0.0, 20.0), (100.0, 0.0, 60.0))],
+        &profile(4.0, 1.8),
+    );
+    assert!(laid.len() > 25, "{}", laid.len());
+    for layer in laid {
+        let z = layer.z - layer.height / 2.0;
+        let first = (z - 20.0).max(0.0) / 40.0 * 100.0;
+        // What is left of it at the tip is too short to be welded.
+        if first > 90.0 {
+            continue;
+        }
+        let xs = || layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.x);
+        let (low, high) = (xs().fold(f64::INFINITY, f64::min), xs().fold(0.0, f64::max));
+        assert!((low - first).abs() < 0.5 && (high - 100.0).abs() < 0.5, "at {z}: {low} to {high}, not from {first}");
+    }
+}
+
+/// Nothing is guessed: what a wall between edges stands for is asked, three curves that are not level are refused.
+#[test]
+fn edges_are_asked_about() {
+    let edge = |x: f64| Nurbs::line(DVec3::new(x, 0.0, 0.0), DVec3::new(x, 5.0, 40.0)).unwrap();
+    let part = between(&[edge(0.0), edge(50.0)]).unwrap();
+    let Part::Mesh(import) = &part else { panic!("a surface") };
+    assert!(import.notes.iter().any(|note| note.contains("edges of a wall")), "{:?}", import.notes);
+    let asked = plan::plan("wall", &part, &profile(4.0, 1.8), &Task::new()).unwrap_err().to_string();
+    assert!(asked.contains("slice.surface"), "{asked}");
+    let three = between(&[edge(0.0), edge(50.0), edge(90.0)]);
+    assert!(matches!(three, Err(PartError::Curves(WallCurvesError::NotLevel { entry: 1, .. }))), "{three:?}");
 }

@@ -6,15 +6,16 @@
 //! on the next. Two layers are planned, since scan lines alternate, and every plate is turned by 0 to 175° in steps of 5°:
 //! one layer of a well-placed plate shows whatever one likes.
 
+mod beside;
 mod plans;
 mod plate;
 mod turned;
 
 pub use plans::{ALIKE, COLUMNS, FIXED, LITERAL, Lines, Loops, OURS, Outcome, PLAIN, Plan, Raster, Saved, WHOLE};
-pub use plate::{Plate, plates};
+pub use plate::{Plate, Printed, plates};
 pub use turned::{Printer, Turned};
 
-use crate::{ReproduceError, Reproduced};
+use crate::{ReproduceError, Reproduced, goal};
 use beadwright::fill::angle;
 use beadwright::fill::compound::Compound;
 use beadwright::order::tour::{self, Ends};
@@ -94,25 +95,30 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
          of the two, on a machine with 1000 mm/s² that passes corners at 10 mm/s and loses no time where a path starts \
          (ours: the paper gives none of these).",
     );
-    let (mut lines, mut goals, mut swept) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut lines, mut rows, mut goals, mut swept) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for plate in plates() {
         let at = |degrees: f64| task.check().map(|()| At::new(&plate, degrees, &printer));
         let sweep: Result<Vec<At>, _> = rotations().map(at).collect();
         let sweep = sweep.map_err(|e| ReproduceError(e.to_string()))?;
         let found = goals_of(&plate, &sweep);
         lines.extend(summary(&plate, &sweep, &found));
-        goals.extend(found.iter().map(|goal| goal.row(&plate)));
+        rows.extend(found.iter().map(|goal| goal.row(&plate)));
+        goals.extend(found.iter().map(|goal| goal.told(&plate)));
         swept.push((plate, sweep));
     }
-    page.heading("Reached and not reached").table(&GOAL_HEAD, &goals);
+    page.heading("Reached and not reached").table(&GOAL_HEAD, &rows);
     page.text(
         "The paper counts one part at one rotation, the one it was drawn at. Where lines at 0° already run along the \
          plate (0° and 90°), the raster angle saves nothing, and only merging, order and start points are left.",
     );
+    beside::absolute(&mut page, &swept, &printer);
+    let ants = beside::colony(&mut page, &printer);
+    beside::corners(&mut page, &swept);
     for (plate, sweep) in &swept {
         tell(&mut page, plate, sweep, &printer);
     }
-    Ok(Reproduced { page, lines, files: Vec::new() })
+    let pictures = ants.into_iter().map(|svg| ("b-ants.svg", svg)).collect();
+    Ok(Reproduced { page, goals, pictures, lines, files: Vec::new() })
 }
 
 const GOAL_HEAD: [&str; 6] = ["plate", "saved, %", "goal", "ours: mean of 36 rotations", "worst", "verdict"];
@@ -130,6 +136,18 @@ impl Goal {
         let cells =
             [plate.name.to_owned(), self.what.to_owned(), format!("{:.1}", self.goal), mean, worst, self.verdict()];
         cells.map(|text| (text, false)).to_vec()
+    }
+
+    /// A saving of the paper is reached on the mean of all rotations; a loss is judged at each of them.
+    fn told(&self, plate: &Plate) -> goal::Goal {
+        let [mean, worst, _] = self.ours.cells();
+        let what = format!("{}: {}, saved on the mean of 36 rotations", plate.name, self.what);
+        let (paper, judged) = if self.goal < 0.0 {
+            (format!("not given (ours: nowhere more than {} % lost)", -self.goal), self.ours.least.0)
+        } else {
+            (format!("{:.1} %", self.goal), self.ours.mean)
+        };
+        goal::Goal::new(&what, format!("{mean} %, worst {worst}"), &paper, judged >= self.goal)
     }
 
     fn line(&self) -> String {
@@ -279,8 +297,8 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
         page.svg(&turned.sketch(&PLAIN, "plain").svg()).svg(&turned.sketch(&OURS, &lines).svg());
     }
     let curves = angle::curves(&Compound, std::slice::from_ref(&plate.polygon), &printer.profile.fill_settings(0));
-    let [turns, ..] = angles::plots(&curves, None);
-    page.svg(&turns.svg());
+    let [turns, _, corners] = angles::plots(&curves, None);
+    page.svg(&turns.svg()).svg(&corners.svg());
 }
 
 const STEP_HEAD: [&str; 9] = [

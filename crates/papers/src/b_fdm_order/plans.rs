@@ -22,6 +22,8 @@ pub enum Raster {
     Alike,
     /// The least turns on the first layer (the paper, eq 9), the second turned by 90°.
     FewestTurns,
+    /// This angle, radians, the second layer turned by 90°.
+    At(f64),
     /// What `raster_turn = "best"` chooses for both layers, the second turned by 90°.
     Best,
 }
@@ -126,6 +128,8 @@ pub struct Outcome {
     pub paths: f64,
     /// Turns, a layer.
     pub turns: f64,
+    /// Area laid twice at the turns, which is as large as the area missed there (eqs 10 and 11), mm² a layer.
+    pub corner_area: f64,
 }
 
 /// What is saved between two outcomes.

@@ -8,6 +8,7 @@ use beadwright::fill::compound::Compound;
 use beadwright::fill::zigzag::regions::Weave;
 use beadwright::fill::{FillSettings, Strategy as _};
 use beadwright::motion::Motion;
+use beadwright::order::ant_colony::{self, Colony, Round};
 use beadwright::order::begin_at;
 use beadwright::order::tour::{self, Ends, Gate, Stop, Visit};
 use beadwright::plan::{self, ToFill};
@@ -81,10 +82,25 @@ impl<'a> Turned<'a> {
         Weave::new(&self.scan(0.0), self.settings.stepover).regions().len()
     }
 
+    /// The number of regions that remain of them when they are merged (3.2).
+    pub fn merged_regions(&self) -> usize {
+        Weave::new(&self.scan(0.0), self.settings.stepover).merged().len()
+    }
+
+    /// How the tours of the ants through the contours become shorter (figure 4).
+    pub fn convergence(&self) -> Vec<Round> {
+        ant_colony::convergence(&self.stops(), &Colony::default())
+    }
+
+    fn stops(&self) -> Vec<Stop> {
+        self.loops.iter().map(|ring| Stop::ring(ring.points().to_vec())).collect()
+    }
+
     /// What a plan takes.
     pub fn outcome(&self, plan: &Plan) -> Outcome {
         let laid = self.laid(plan);
         let count = |of: fn(&Laid) -> usize| laid.iter().map(of).sum::<usize>() as f64 / 2.0;
+        let corners = |layer: &Laid| angle::corner_area(&self.core, layer.angle, &self.settings);
         let all: Vec<&Vec<DVec2>> = laid.iter().flat_map(Laid::paths).collect();
         let contours: Vec<&Vec<DVec2>> = laid[0].contours.iter().collect();
         let between = length(travels(&contours));
@@ -95,6 +111,7 @@ impl<'a> Turned<'a> {
             seconds: self.printer.seconds(&all) / 2.0,
             paths: count(|layer| layer.fill.len()),
             turns: count(|layer| layer.turns),
+            corner_area: laid.iter().map(corners).sum::<f64>() / 2.0,
         }
     }
 
@@ -102,6 +119,7 @@ impl<'a> Turned<'a> {
     fn laid(&self, plan: &Plan) -> [Laid; 2] {
         let first = match plan.raster {
             Raster::Zero | Raster::Alike => 0.0,
+            Raster::At(angle) => angle,
             Raster::FewestTurns => self.fewest_turns,
             Raster::Best => self.best,
         };
@@ -109,7 +127,7 @@ impl<'a> Turned<'a> {
         [first, second].map(|angle| {
             let (contours, scan) = (self.contours(plan.loops), self.scan(angle));
             let from = contours.last().map_or(DVec2::ZERO, |path| path[0]);
-            Laid { fill: self.fill(plan, &scan, from), contours, turns: 2 * scan.spans().len() }
+            Laid { fill: self.fill(plan, &scan, from), contours, turns: 2 * scan.spans().len(), angle }
         })
     }
 
@@ -119,7 +137,7 @@ impl<'a> Turned<'a> {
 
     /// The tour through the contours.
     pub(super) fn tour(&self, loops: Loops) -> Vec<Visit> {
-        let stops: Vec<Stop> = self.loops.iter().map(|ring| Stop::ring(ring.points().to_vec())).collect();
+        let stops = self.stops();
         let one_by_one = |order: &mut dyn Iterator<Item = usize>| {
             order.filter_map(|i| Some(Visit::new(i, stops[i].gates().next()?))).collect()
         };
@@ -180,6 +198,8 @@ struct Laid {
     contours: Vec<Vec<DVec2>>,
     fill: Vec<Vec<DVec2>>,
     turns: usize,
+    /// Of the scan lines, radians.
+    angle: f64,
 }
 
 impl Laid {

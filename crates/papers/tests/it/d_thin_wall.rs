@@ -116,6 +116,12 @@ fn the_frame_takes_two_arc_starts_and_stays_low_at_its_junctions() {
             assert!(planned.high <= 1.25, "{planned:?}");
             assert!(straight.high > 1.9, "{straight:?}");
         }
+        // Two passes with as many turns as there can be.
+        assert_eq!(figures.turning.starts, 2);
+        assert!(figures.turning.heights[0].high > 1.5, "{:?}", figures.turning.heights);
+        let [corners, rim, middle, elsewhere] = figures.planned.places;
+        println!("{corners:?} {rim:?} {middle:?} {elsewhere:?}");
+        assert!(rim.low > 0.3 && middle.low > 0.55 && elsewhere.low >= 0.8, "{:?}", figures.planned.places);
     }
 }
 
@@ -132,7 +138,7 @@ fn the_blade_is_the_same_from_solid_and_curves() {
 #[test]
 fn the_page_names_each_goal_and_the_two_that_are_not_reached() {
     let goals = d_thin_wall::goals(all());
-    assert_eq!(goals.len(), 12);
+    assert_eq!(goals.len(), 13);
     for goal in goals {
         println!("{goal:?}");
         let open = ["frame: lowest point", "four parts: B₁ over h₁"];

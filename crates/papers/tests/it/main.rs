@@ -2,4 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
 
 mod b_fdm_order;
+mod book;
+mod c_compound;
 mod d_thin_wall;

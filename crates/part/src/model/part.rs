@@ -5,7 +5,7 @@ use super::iges::{self, IgesError, IgesFile};
 use super::outline::{self, Outlines};
 use super::stand;
 use super::units::{self, UnitsUnclear};
-use super::wall_curves::{WallCurves, WallCurvesError};
+use super::wall_curves::{self, WallCurves, WallCurvesError};
 use super::{
     Import, ImportError, MAX_REACH_MM, Mesh, Milled, RepairReport, Units, decoded, import, import_damaged, is_iges,
 };
@@ -265,6 +265,11 @@ impl Placement {
         let turn = DQuat::from_rotation_z(turn.z) * DQuat::from_rotation_y(turn.y) * DQuat::from_rotation_x(turn.x);
         let place = DAffine3::from_scale_rotation_translation(DVec3::splat(unit * self.scale), turn, DVec3::ZERO);
         check_reach(file, unit * self.scale, self.shift)?;
+        if let Some((mesh, repair)) = wall_curves::ruled(file, &place) {
+            let (objects, notes, units) = (Vec::new(), file.warnings.clone(), Some(Units::Millimetre));
+            let import = Import { mesh, repair, format: "IGES", units, objects, notes, milled: None };
+            return self.between_edges(import, height);
+        }
         let mut curves = WallCurves::of_iges(file, &place)?;
         let height = height.or(Some(curves.height()).filter(|height| *height > 0.0)).ok_or(PartError::NoHeight)?;
         let middle = if self.centre { curve_bounds(&curves, height).center() } else { DVec2::ZERO };
@@ -276,6 +281,19 @@ impl Placement {
         let unread = unread.map(|e| format!("{} of entity {} ({}) not read.", e.unread, e.entity, e.name));
         let warnings = file.warnings.iter().cloned().chain(unread).collect();
         Ok(Part::Curves { curves, height, warnings })
+    }
+
+    /// The wall between two edges that are not level, scaled and turned already.
+    fn between_edges(&self, mut import: Import, height: Option<f64>) -> Result<Part, PartError> {
+        if height.is_some() {
+            return Err(PartError::HeightOfSolid);
+        }
+        let note =
+            "The two curves are not level: they are taken for the edges of a wall, which is straight between them.";
+        import.notes.push(note.to_owned());
+        let placed = Self { units: None, scale: 1.0, turn: DVec3::ZERO, ..*self };
+        // The unit is known, so no bead is needed to guess it.
+        Ok(Part::Mesh(placed.solid(import, 0.0)?))
     }
 
     /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is

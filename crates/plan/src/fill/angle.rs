@@ -109,8 +109,8 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
 
 /// Area laid twice at all turns, mm²: `S = r² (cot(θ/2) + θ/2 − π/2)` at a turn of the angle θ between line and edge,
 /// r half a bead (eqs 10 and 11). An edge has as many turns as lines fit across it, half of them at π − θ: together
-/// `r² (2 / sin θ − π/2)` for two, and none along the lines.
-fn corner_area(region: &Region, angle: f64, settings: &FillSettings) -> f64 {
+/// `r² (2 / sin θ − π/2)` for two, and none along the lines. The angle is in radians.
+pub fn corner_area(region: &Region, angle: f64, settings: &FillSettings) -> f64 {
     let (r, line) = (settings.bead.width / 2.0, DVec2::from_angle(angle));
     let edge = |(a, b): (DVec2, DVec2)| {
         let (length, across) = (a.distance(b), line.perp_dot(b - a).abs());

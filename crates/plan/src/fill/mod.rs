@@ -176,6 +176,18 @@ pub enum RasterSpacing {
     Fitted,
 }
 
+/// How scan lines end where they are not linked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum LineEnds {
+    /// Straight, at the boundary (Liu et al. 2022).
+    #[default]
+    Plain,
+    /// With a hook along the boundary where it leaves the lines at a slant, so that no wedge stays bare there.
+    Hooked,
+}
+
 /// What a strategy needs to know; lengths in mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FillSettings<'a> {
@@ -205,6 +217,8 @@ pub struct FillSettings<'a> {
     pub raster_angle: f64,
     /// How scan lines are spread.
     pub raster_spacing: RasterSpacing,
+    /// How scan lines end where they are not linked.
+    pub line_ends: LineEnds,
     /// Passes shorter than this are left out, mm: they would end before the arc is steady.
     pub min_pass_length: f64,
     /// Thresholds of the hybrid.

@@ -33,8 +33,31 @@ impl Default for Colony {
     }
 }
 
+/// What the ants of one round walked, mm (figure 4 of the paper).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Round {
+    /// Mean length of the tours of this round.
+    pub mean: f64,
+    /// The shortest tour so far; before the first round that of the improved nearest neighbour.
+    pub shortest: f64,
+}
+
 /// The best tour that an ant walked.
 pub fn tour(stops: &[Stop], ends: Ends, colony: &Colony) -> Vec<Visit> {
+    let (tour, _) = search(stops, colony);
+    match ends {
+        Ends::Closed => tour,
+        Ends::From(point) => nearest::opened(tour, point),
+    }
+}
+
+/// How the closed tours of the ants become shorter, round by round.
+pub fn convergence(stops: &[Stop], colony: &Colony) -> Vec<Round> {
+    search(stops, colony).1
+}
+
+/// The best closed tour, and what was walked in each round.
+fn search(stops: &[Stop], colony: &Colony) -> (Vec<Visit>, Vec<Round>) {
     let start = nearest::improved(stops, Ends::Closed);
     let n = start.len();
     let length = |order: &[usize]| {
@@ -46,14 +69,16 @@ pub fn tour(stops: &[Stop], ends: Ends, colony: &Colony) -> Vec<Visit> {
     let amount = colony.amount * least.max(f64::MIN_POSITIVE);
     let nearness: Vec<f64> = pairs(n).map(|(i, j)| nearness(&start, i, j, colony.nearness_weight)).collect();
     let mut pheromone = vec![1.0; n * n];
-    let mut order = Vec::with_capacity(n);
+    let (mut order, mut rounds) = (Vec::with_capacity(n), Vec::with_capacity(colony.rounds));
     for _ in 0..colony.rounds {
         let pull: Vec<f64> =
             pheromone.iter().zip(&nearness).map(|(p, n)| f64::powf(*p, colony.pheromone_weight) * n).collect();
         pheromone.iter_mut().for_each(|p| *p *= 1.0 - colony.evaporation);
+        let mut sum = 0.0;
         for _ in 0..colony.ants {
             walk(n, &pull, &mut random, &mut order);
             let walked = length(&order);
+            sum += walked;
             for w in 0..n {
                 let (i, j) = (order[w], order[(w + 1) % n]);
                 pheromone[i * n + j] += amount / walked.max(f64::MIN_POSITIVE);
@@ -64,12 +89,9 @@ pub fn tour(stops: &[Stop], ends: Ends, colony: &Colony) -> Vec<Visit> {
                 best.clone_from(&order);
             }
         }
+        rounds.push(Round { mean: sum / colony.ants.max(1) as f64, shortest: least });
     }
-    let tour = best.into_iter().map(|i| start[i]).collect();
-    match ends {
-        Ends::Closed => tour,
-        Ends::From(point) => nearest::opened(tour, point),
-    }
+    (best.into_iter().map(|i| start[i]).collect(), rounds)
 }
 
 fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {

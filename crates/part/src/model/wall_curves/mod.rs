@@ -4,9 +4,12 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `sides` | the middle between curves that are the two sides of a wall |
+//! | `edges` | the surface between two edges that are not level |
 
+mod edges;
 mod sides;
 
+pub(super) use edges::ruled;
 pub use sides::{CurvesAre, Sides};
 
 use super::iges::IgesFile;
@@ -64,7 +67,8 @@ pub enum WallCurvesError {
     /// A curve is not level.
     #[error(
         "the curve of directory entry {entry} is not level: it runs from z {low:.2} to z {high:.2} mm. The centre-lines \
-         of a wall must be level, one set for each height."
+         of a wall must be level, one set for each height. Only two curves, without any other, may be its edges and need not \
+         be level."
     )]
     NotLevel {
         /// Number of the directory entry.

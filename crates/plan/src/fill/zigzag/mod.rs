@@ -2,12 +2,14 @@
 //! (Liu et al. 2022, eqs 11–13). Consecutive, directly joined lines are one sub-region; sub-regions are merged where
 //! the end of one meets a key point of another (Han et al. 2018, 3.2), so that few paths remain.
 //!
-//! The link follows the boundary itself, so it neither leaves the region nor crosses another line.
+//! The link follows the boundary itself, so it neither leaves the region nor crosses another line. On the other side, where
+//! two line ends are not linked, one of them may hook along the boundary ([`LineEnds`]).
 
+mod hooks;
 pub mod regions;
 
 use super::thin;
-use super::{Fill, FillSettings, PassKind, Path, RasterSpacing, Strategy};
+use super::{Fill, FillSettings, LineEnds, PassKind, Path, RasterSpacing, Strategy};
 use planar::scan::{Scan, Spacing};
 use planar::{Polygon, Region};
 use regions::Weave;
@@ -56,6 +58,11 @@ pub(super) fn zigzag_spaced(region: &Region, settings: &FillSettings, spacing: S
 
 fn woven(scan: &Scan, distance: f64, settings: &FillSettings) -> Vec<Path> {
     let weave = Weave::new(scan, distance);
-    let passes = weave.paths(&weave.merged()).into_iter();
-    passes.map(|points| Path::line(PassKind::Infill, points, settings.bead.width)).collect()
+    // Sparse lines leave gaps on purpose.
+    let dense = distance <= settings.stepover;
+    let passes = match settings.line_ends {
+        LineEnds::Hooked if dense => weave.hooked(&weave.merged(), settings.bead.width),
+        LineEnds::Hooked | LineEnds::Plain => weave.paths(&weave.merged()),
+    };
+    passes.into_iter().map(|points| Path::line(PassKind::Infill, points, settings.bead.width)).collect()
 }

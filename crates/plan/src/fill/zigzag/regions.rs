@@ -6,6 +6,7 @@
 //! its lower right point; where the exit of one sub-region is the entry of the next, the two merge. The ways are chosen
 //! so that as many as possible merge.
 
+use super::hooks::{Hooks, Place};
 use glam::DVec2;
 use planar::scan::{Chain, End, Scan};
 
@@ -17,7 +18,7 @@ const SHORT_LINK: f64 = 2.0;
 
 /// Scan lines as sub-regions.
 pub struct Weave<'a> {
-    scan: &'a Scan,
+    pub(super) scan: &'a Scan,
     stepover: f64,
     regions: Vec<SubRegion>,
     joints: Vec<Joint>,
@@ -148,26 +149,44 @@ impl<'a> Weave<'a> {
 
     /// The points of some ways, mm.
     pub fn paths(&self, ways: &[Way]) -> Vec<Vec<DVec2>> {
-        ways.iter().map(|way| self.path(way)).collect()
+        ways.iter().map(|way| self.path(way, None)).collect()
     }
 
-    fn path(&self, way: &Way) -> Vec<DVec2> {
+    /// The same, with line ends that hook along the boundary on the side that is not linked; `width` of a bead, mm.
+    pub fn hooked(&self, ways: &[Way], width: f64) -> Vec<Vec<DVec2>> {
+        let hooks = Hooks::new(self, width);
+        ways.iter().map(|way| self.path(way, Some(&hooks))).collect()
+    }
+
+    fn path(&self, way: &Way, hooks: Option<&Hooks>) -> Vec<DVec2> {
+        let hook = |place, span, end| hooks.map_or_else(Vec::new, |hooks| hooks.lay(place, span, end));
         let mut points = Vec::new();
         for (i, &(region, entry)) in way.iter().enumerate() {
             let (spans, mut from) = (&self.regions[region].spans, entry);
             for (k, &span) in spans.iter().enumerate() {
                 let to = from.other();
-                points.extend([self.scan.end(span, from), self.scan.end(span, to)]);
+                if points.is_empty() {
+                    points.extend(hook(Place::Begin, span, from));
+                }
+                points.push(self.scan.end(span, from));
+                points.extend(hook(Place::Above, span, from));
+                points.extend(hook(Place::Below, span, to));
+                points.push(self.scan.end(span, to));
                 let more = k + 1 < spans.len() || i + 1 < way.len();
                 points.extend(more.then(|| self.scan.chain_up(span, to)).flatten().into_iter().flat_map(|c| c.via));
+                if !more {
+                    points.extend(hook(Place::Finish, span, to));
+                }
                 from = to;
             }
         }
         points.dedup_by(|a, b| a.distance_squared(*b) < 1e-8);
+        let points = if let Some(hooks) = hooks { hooks.blunt(points) } else { points };
         points.into_iter().map(|p| self.scan.turn_back(p)).collect()
     }
 
-    fn link(&self, span: usize, end: End) -> Option<Chain> {
+    /// The link up from an end of a span, unless it would lie along a line.
+    pub(super) fn link(&self, span: usize, end: End) -> Option<Chain> {
         self.scan.chain_up(span, end).filter(|chain| !self.hugs_a_line(span, end, chain))
     }
 
