@@ -2,8 +2,9 @@
 
 use crate::{file, model, profile, progress, say};
 use anyhow::{Context, ensure};
-use beadwright::chart::{Chart, Guide, middle_line};
+use beadwright::chart::{Chart, Guide};
 use beadwright::glam::DVec3;
+use beadwright::middle_line::middle_line;
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;

@@ -2,10 +2,11 @@
 //!
 //! | module | what it holds |
 //! | --- | --- |
-//! | [`chart`] | layers that are not level: around an axis, on a cone, square to any direction |
+//! | [`chart`] | layers that are not level: around an axis, on a cone, square to a direction or a curve |
 //! | [`curve`] | NURBS curves, fits and lengths |
 //! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
+//! | [`middle_line`] | the curve in the middle of a bent tube, from its sections |
 //! | [`deviation`] | signed distances of measured points to a mesh |
 //! | [`example`] | parametric example parts |
 //! | [`finding`], [`warning`] | what is wrong or doubtful, and what was lost or repaired |
@@ -17,6 +18,7 @@ pub mod curve;
 pub mod deviation;
 pub mod example;
 pub mod finding;
+pub mod middle_line;
 pub mod model;
 pub mod slice;
 pub mod task;

@@ -10,6 +10,7 @@ mod convert;
 mod deviation;
 mod exports;
 mod folder;
+mod guide;
 mod heat;
 mod height;
 mod opened_elsewhere;

@@ -17,6 +17,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["model"],
             &["chart"],
             &["deviation", "example", "slice"],
+            &["middle_line"],
         ],
     ),
     (

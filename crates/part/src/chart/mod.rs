@@ -6,7 +6,6 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | `middle_line` | the guide of a bent tube, from the middles of its sections |
 //! | `plane` | level layers, and layers square to any direction |
 //! | `cylinder` | layers around an axis, outwards or inwards |
 //! | `cone` | layers on a cone |
@@ -19,7 +18,6 @@
 mod cone;
 mod cylinder;
 mod guide;
-mod middle_line;
 mod plane;
 mod polar;
 pub mod seam;
@@ -29,7 +27,6 @@ pub mod warp;
 pub use cone::Cone;
 pub use cylinder::{Cylinder, Side};
 pub use guide::{Guide, GuideError};
-pub use middle_line::{NoMiddleLine, middle_line};
 pub use plane::Plane;
 pub use text::ChartError;
 

@@ -1,7 +1,8 @@
 //! Charts: their closed forms, meshes in their coordinates, and slices of parts around an axis.
 
 use bead_part::chart::warp::{self, WarpError};
-use bead_part::chart::{Chart, Guide, NoMiddleLine, middle_line};
+use bead_part::chart::{Chart, Guide};
+use bead_part::middle_line::{NoMiddleLine, middle_line};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
 use bead_part::slice::{Slab, Slice, SliceOptions, Slicer};
@@ -326,6 +327,8 @@ fn middle_lines_of_bent_bars_are_found() {
         bar.vertices.iter_mut().for_each(|p| *p = chart.sheet(p.z).at(*p).place);
         let found = middle_line(&bar, &Task::new()).unwrap();
         assert!((found.length() - guide.length()).abs() < 0.01 * radius, "{} {}", found.length(), guide.length());
+        let tightest = guide.tightest().unwrap();
+        assert!((found.tightest().unwrap() / tightest - 1.0).abs() < 0.08, "{:?} {tightest}", found.tightest());
         let found = Chart::Guide(Arc::new(found));
         for k in 0..=200 {
             let h = guide.length() * f64::from(k) / 200.0;
