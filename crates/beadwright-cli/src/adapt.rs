@@ -89,6 +89,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let context = || format!("{}: plans are adapted; give the plan.json of the build", arguments.plan.display());
     let plan = source.plan().with_context(context)?;
     let profile = source.profile(&arguments.wanted)?;
+    anyhow::ensure!(
+        profile.layers.chart.is_level(),
+        "{}: scans are compared with level layers only, and these are not level (layers.chart)",
+        arguments.plan.display()
+    );
     let (task, bar) = progress::task()?;
     let context = || format!("{}", arguments.scan.display());
     let scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;

@@ -160,7 +160,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
              --heat.",
             path.display()
         );
-        return Ok((plan.header.part.clone(), plan.layers.clone(), profile));
+        return Ok((plan.header.part.clone(), even(&plan.layers, &profile)?, profile));
     }
     let profile = profile::load(wanted.profile.as_deref().unwrap_or(profile::USUAL), &wanted.set)?;
     let law = profile.bead.by_heat;
@@ -173,7 +173,19 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
     let mut profile = choice::choose(&part, &profile, false, task)?.profile;
     let plan = plan::plan(&model.part(), &part, &profile, task)?;
     profile.bead.by_heat = law;
-    Ok((plan.header.part, plan.layers, profile))
+    Ok((plan.header.part, even(&plan.layers, &profile)?, profile))
+}
+
+/// Layers as their chart shows them.
+fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
+    if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
+        anyhow::bail!(
+            "layer {}: layers of which the outer side of a bend takes two are not built here. Bend the guide less, or raise \
+             layers.max_height.",
+            layer.index + 1
+        );
+    }
+    Ok(layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())
 }
 
 /// The plate of a plan, and what heat does to its beads.

@@ -11,8 +11,6 @@ use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A bent tube or bar that stands on one end, in whose sections the curve is found; or the curve itself: IGES, or a table
-    /// (CSV) with the columns x, y, z in mm.
     #[command(flatten)]
     model: model::Model,
     #[command(flatten)]
@@ -26,18 +24,33 @@ const PLACES: f64 = 1e3;
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let path = &arguments.model.model;
+    let placed = arguments.model.placing.moves();
+    let as_it_is = || {
+        ensure!(
+            !placed,
+            "{}: a part can be turned, scaled and moved; a curve is taken as it is, in mm",
+            path.display()
+        );
+        Ok(())
+    };
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     let guide = match ending.as_ref().and_then(|ending| ending.to_str()) {
-        Some("csv" | "txt") => rounded(&table(path)?)?,
+        Some("csv" | "txt") => {
+            as_it_is()?;
+            rounded(&table(path)?).with_context(|| path.display().to_string())?
+        }
         Some("igs" | "iges") => match iges(path)? {
-            Some(points) => rounded(&points)?,
+            Some(points) => {
+                as_it_is()?;
+                rounded(&points).with_context(|| path.display().to_string())?
+            }
             None => found(arguments)?,
         },
         _ => found(arguments)?,
     };
     let (length, radius) = (guide.length(), guide.tightest());
     writeln!(std::io::stdout(), "{}", Chart::Guide(Arc::new(guide)))?;
-    let mut out = say::warnings();
+    let mut out = say::done(true);
     match radius {
         Some(radius) => writeln!(out, "{length:.1} mm long, bent at {radius:.1} mm radius where it is tightest")?,
         None => writeln!(out, "{length:.1} mm long, straight")?,

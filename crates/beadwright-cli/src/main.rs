@@ -60,7 +60,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Make the preform of a model: the part with what is milled off again, with its weights, hours and prices.
     Preform(preform::Arguments),
-    /// Print the curve to which the layers of a bent part are square, for plan --chart.
+    /// Print the curve to which the layers of a bent part are square, for plan --chart: found in a bent tube or bar that stands on one
+    /// end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
     Guide(guide::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),

@@ -51,6 +51,15 @@ pub(crate) struct Placing {
     accept_damaged: bool,
 }
 
+impl Placing {
+    /// Whether anything is asked for.
+    pub(crate) fn moves(&self) -> bool {
+        let Self { units, scale, turn, lay_flat, orient, centre, shift, accept_damaged: _ } = self;
+        let moved = *turn != DVec3::ZERO || *shift != DVec2::ZERO || *scale != 1.0 || units.is_some();
+        moved || *lay_flat || *orient || *centre
+    }
+}
+
 /// What is made of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Use {

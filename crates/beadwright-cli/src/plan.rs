@@ -162,6 +162,10 @@ impl Arguments {
 
     /// What is built.
     pub(crate) fn build(&self, profile: &Profile, task: &Task) -> anyhow::Result<Build> {
+        anyhow::ensure!(
+            !profile.layers.chart.has_wedges() || self.several.with.is_empty(),
+            "--with: a guide (layers.chart) leads through one part"
+        );
         self.several.stand(&self.model, |model| {
             let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
             let part = model.part_placed(profile, use_as, self.height, task)?;

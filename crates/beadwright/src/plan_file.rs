@@ -17,7 +17,7 @@ use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
 use crate::plan::{self, Header, charted};
 use crate::profile::{Profile, ProfileError};
-use crate::slice::Half;
+use crate::slice::{Half, middle};
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;
@@ -380,7 +380,7 @@ impl FileLayer {
         };
         let mut passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
         if !chart.is_level() {
-            let sheet = chart.sheet(z - height / 2.0);
+            let sheet = chart.sheet(middle(z, height, half));
             passes = passes.into_iter().map(|pass| charted::on_layer(pass, &sheet, &islands)).collect();
         }
         let slice_area = islands.iter().map(Polygon::area).sum();

@@ -151,7 +151,10 @@ impl ReadBack {
         Self {
             name: name.to_owned(),
             language: "plan",
-            layers: plan.layers,
+            layers: match profile.layers.chart.has_wedges() {
+                true => plan.layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect(),
+                false => plan.layers,
+            },
             totals: Totals::of_plan(&metrics),
             settings,
             over: Some(plan::grid_over(profile, (low, high))),

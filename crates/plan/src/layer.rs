@@ -1,7 +1,7 @@
 //! A layer: the outlines of a slice, and the passes that fill it.
 
 use crate::pass::Pass;
-use bead_part::slice::Half;
+use bead_part::slice::{Half, middle};
 use bead_part::warning::Warning;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Join, Polygon, Region};
@@ -79,9 +79,9 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Height of its middle, mm.
+    /// Height of its middle, mm; of two layers with the same underside, that of the pair.
     pub fn middle(&self) -> f64 {
-        self.z - self.height / 2.0
+        middle(self.z, self.height, self.half)
     }
 }
 

@@ -101,4 +101,10 @@ fn curves_and_open_surfaces_have_no_preform() {
         assert!(refused.status.code() == Some(1) && once(&why) && why.contains("--surface solid"), "{why}");
     }
     assert!(!folder.path().join("open_preform.stl").exists());
+    // A leg that is open on two opposite sides has no closed contour as it stands.
+    fs::write(folder.path().join("side.stl"), [&facets[..4], &facets[6..8], &facets[10..12]].concat().concat())
+        .unwrap();
+    let refused = run(folder.path(), &["plan", "side.stl", "--preform", "--surface", "solid"]);
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(1) && why.contains("no slice of the part has a closed contour"), "{why}");
 }

@@ -26,25 +26,53 @@ pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Co
 
 /// Parts whose middle lies farther than this part of their size from the axis of their layers may have been placed elsewhere.
 const ASIDE: f64 = 0.1;
+/// Metal below the first plane counts from this part of the whole.
+const MISSING: f64 = 1e-3;
 
-/// What people should know about the chart of a part, as sentences. `placed` is the part as it stands on the table.
-pub(super) fn notes(placed: &Mesh, profile: &Profile) -> Vec<String> {
+/// What people should know about the chart of a part, as sentences. `placed` is the part as it stands on the table, `unrolled` the
+/// same in the chart.
+pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<String> {
     let chart = &profile.layers.chart;
-    let (low, high) = placed.bounds();
-    let (middle, size) = (low.midpoint(high), (high - low).length());
-    let aside = chart.off_axis(middle).filter(|aside| *aside > ASIDE * size).map(|aside| {
-        format!(
-            "The axis of layers.chart passes {aside:.1} mm beside the middle of the part (x {:.1} y {:.1} z {:.1} mm as it stands on \
-             the table): check through and axis.",
-            middle.x, middle.y, middle.z
-        )
-    });
     let inside = matches!(chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })).then(|| {
         "The first move goes straight to the first layer inside the bore: bring the torch in along the axis before it starts, and out \
          after it ends."
             .to_owned()
     });
-    aside.into_iter().chain(inside).collect()
+    [aside(placed, unrolled, chart), below(placed, unrolled, chart), inside].into_iter().flatten().collect()
+}
+
+/// That a part may have been placed elsewhere.
+fn aside(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
+    let (low, high) = placed.bounds();
+    let (middle, size) = (low.midpoint(high), (high - low).length());
+    if let Some(aside) = chart.off_axis(middle).filter(|aside| *aside > ASIDE * size) {
+        return Some(format!(
+            "The axis of layers.chart passes {aside:.1} mm beside the middle of the part (x {:.1} y {:.1} z {:.1} mm as it stands on \
+             the table): check through and axis.",
+            middle.x, middle.y, middle.z
+        ));
+    }
+    let (low, high) = unrolled.bounds();
+    let (aside, wide) = (low.midpoint(high).truncate().length(), (high - low).truncate().length());
+    (chart.has_wedges() && aside > ASIDE * wide).then(|| {
+        format!(
+            "The guide of layers.chart passes up to {aside:.1} mm beside the middle of the part's sections: check its points; they are \
+             those of the part as it stands on the table. beadwright guide finds them."
+        )
+    })
+}
+
+/// That part of a solid lies below the first of its planes, and is not welded.
+fn below(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
+    let (whole, above) = (placed.volume(), chart.volume(unrolled));
+    let missing = whole - above;
+    (!chart.goes_around() && missing > MISSING * whole).then(|| {
+        format!(
+            "{:.1} of {:.1} cm³ of the part lie below the first plane of layers.chart and are not welded.",
+            missing / 1e3,
+            whole / 1e3
+        )
+    })
 }
 
 /// Why the programs of a part inside a bore should not be started: the torch would travel through the axis into the other side.

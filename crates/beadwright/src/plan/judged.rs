@@ -2,35 +2,37 @@
 
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
-use crate::pass::Pass;
 use crate::profile::Profile;
-use crate::wedge::Wedge;
 use crate::weld;
 use glam::DVec3;
 use planar::Bounds;
 use std::borrow::Cow;
 
+/// A layer as its chart shows it: where it is a wedge, with the metal of a layer of even thickness.
+pub fn even<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let Some(wedge) = profile.layers.wedge(layer) else { return Cow::Borrowed(layer) };
+    let mut even = layer.clone();
+    wedge.even(&mut even.passes);
+    Cow::Owned(even)
+}
+
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
-/// profile has them. Where it is a wedge, its metal is that of a layer of even thickness, as the chart shows it.
+/// profile has them, and [`even`].
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    let even = |wedge: &Wedge<'_>, passes: &mut Vec<Pass>| wedge.even(passes);
-    changed(layer, profile, even)
+    match even(layer, profile) {
+        Cow::Borrowed(layer) => as_welded(layer, profile),
+        Cow::Owned(layer) => Cow::Owned(as_welded(&layer, profile).into_owned()),
+    }
 }
 
 /// The same for a judgement of the layer alone, which knows one height of beads only: the two layers of a pair are judged as if
 /// each were of that.
 pub fn welded_alone<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    changed(layer, profile, |wedge, passes| {
-        wedge.even(passes);
-        wedge.single(passes, profile.usual_height(layer.height));
-    })
-}
-
-fn changed<'a>(layer: &'a Layer, profile: &Profile, change: impl Fn(&Wedge<'_>, &mut Vec<Pass>)) -> Cow<'a, Layer> {
-    let Some(wedge) = profile.layers.wedge(layer) else { return as_welded(layer, profile) };
-    let mut even = layer.clone();
-    change(&wedge, &mut even.passes);
-    Cow::Owned(as_welded(&even, profile).into_owned())
+    let mut welded = welded(layer, profile);
+    if let Some(wedge) = profile.layers.wedge(layer).filter(|_| layer.half.is_some()) {
+        wedge.single(&mut welded.to_mut().passes, profile.usual_height(layer.height));
+    }
+    welded
 }
 
 fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {

@@ -56,7 +56,7 @@ pub mod warm;
 mod wedges;
 
 pub use expected::{Expected, expected};
-pub use judged::{deposit_settings, deposit_settings_over, grid_over, welded, welded_alone};
+pub use judged::{deposit_settings, deposit_settings_over, even, grid_over, welded, welded_alone};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
@@ -138,7 +138,7 @@ pub fn plan_into<'a, S: Sink + Send>(
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
     let mut summary = plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
-        summary.notes.extend(charted::notes(placed, profile));
+        summary.notes.extend(charted::notes(placed, mesh, profile));
         summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
     }
     Ok(summary)

@@ -41,7 +41,8 @@ impl Stocked {
     ///
     /// # Errors
     /// [`PlanError::NoSolid`] for curves, [`PlanError::PreformOfChart`] for layers that are not level, [`PlanError::Open`] for a
-    /// surface that is not closed, unless the profile says that it is the skin of a solid, and [`PlanError::Cancelled`].
+    /// surface that is not closed, unless the profile says that it is the skin of a solid, [`PlanError::Empty`] where no contour closes, and
+    /// [`PlanError::Cancelled`].
     pub fn of(part: Part, profile: &Profile, task: &Task) -> Result<Self, PlanError<Infallible>> {
         let Part::Mesh(mut import) = part else { return Err(PlanError::NoSolid) };
         if !profile.layers.chart.is_level() {
@@ -50,13 +51,20 @@ impl Stocked {
         is_closed(&import.mesh, profile)?;
         let settings = profile.preform_settings();
         let preform = Preform::of(&import.mesh, &settings, task)?;
+        let solid = preform.mesh();
+        if solid.triangles.is_empty() {
+            return Err(PlanError::Empty(EMPTY.to_owned()));
+        }
         let figures = Figures::of(&import.mesh, &preform, &settings, &profile.preform_rates());
-        let mut mesh = std::mem::replace(&mut import.mesh, preform.mesh());
+        let mut mesh = std::mem::replace(&mut import.mesh, solid);
         mesh.vertices.iter_mut().for_each(|vertex| vertex.z += preform.lift);
         let milled = Milled { stock: faces::stock(&mesh, &preform, settings.plate), mesh };
         Ok(Self { part: Part::Mesh(Import { milled: Some(Box::new(milled)), ..import }), preform, figures })
     }
 }
+
+const EMPTY: &str = "no slice of the part has a closed contour, so it has no preform. The skin of a solid that is open at one end has \
+                     closed contours only where it stands on that end: turn it.";
 
 /// Refuses a surface that is not closed, unless the profile says that it is the skin of a solid.
 ///

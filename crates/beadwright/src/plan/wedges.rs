@@ -51,12 +51,19 @@ fn within(planned: &[Known], layers: &LayersSection) -> Vec<Slab> {
     let Some(top) = planned.last().map(|last| last.slab.z) else { return Vec::new() };
     let (thinnest, thickest) = layers.window();
     let at = |z: f64| &planned[planned.partition_point(|known| known.slab.z <= z).min(planned.len() - 1)];
-    let height = |z: f64| {
+    let fitting = |z: f64, middle: f64| {
         let usual = at(z).slab.height;
-        let (low, high) = at(z + usual / 2.0).rises(z + usual / 2.0, &layers.chart);
+        let (low, high) = at(middle).rises(middle, &layers.chart);
         let (least, most) = (thinnest / low, thickest / high);
         // In two layers where it is thickest, if need be.
         if least > most { usual.min(2.0 * most).max(least) } else { usual.clamp(least, most) }
+    };
+    // Its middle depends on its height, and where a bend ends, either may lie on the other side of that.
+    let height = |z: f64| {
+        let first = fitting(z, z + at(z).slab.height / 2.0);
+        let second = fitting(z, z + first / 2.0);
+        let third = fitting(z, z + second / 2.0);
+        if (third - second).abs() < TOLERANCE * second { second } else { first }
     };
     let mut slabs: Vec<Slab> = Vec::new();
     let mut z = 0.0;

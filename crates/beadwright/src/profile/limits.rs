@@ -64,8 +64,11 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if let (thin, thick) = p.layers.window()
         && thin >= thick
     {
-        let reason = format!("must be less than layers.max_height ({thick} mm).");
-        return Some(Broken { key: "layers.min_height".to_owned(), value: format!("{thin}"), reason });
+        let (key, value, reason) = match p.layers.min_height {
+            Some(_) => ("layers.min_height", thin, format!("must be less than layers.max_height ({thick} mm).")),
+            None => ("layers.max_height", thick, format!("must be more than layers.min_height ({thin} mm).")),
+        };
+        return Some(Broken { key: key.to_owned(), value: value.to_string(), reason });
     }
     if let (Some(_), Err(lacks)) = (&p.bead.by_heat, p.heat_settings()) {
         let reason = lacks.to_string();

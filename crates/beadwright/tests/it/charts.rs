@@ -9,8 +9,9 @@ use beadwright::pass::Pass;
 use beadwright::plan::{self, Plan};
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::Profile;
+use beadwright::read_back::ReadBack;
 use beadwright::task::Task;
-use beadwright::{Metrics, check, dialect, example, plan_file};
+use beadwright::{Metrics, check, compare, dialect, example, plan_file};
 use common::profile;
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot};
 use std::f64::consts::TAU;
@@ -294,10 +295,10 @@ fn torches_that_stand_overhead_are_found() {
     assert!(leaning.len() == 1 && (leaning[0].size.unwrap() - 90.0).abs() < 1e-6, "{leaning:?}");
 }
 
-/// A thick pipe along a guide of one bend: 50 mm straight, the bend, 50 mm straight; and its chart.
-fn bent_pipe(radius: f64, degrees: f64, turn: DQuat) -> (Mesh, Chart) {
+/// A thick pipe along a guide of one bend, with a straight line of this length (mm) at both ends; and its chart.
+fn bent_pipe(straight: f64, radius: f64, degrees: f64, turn: DQuat) -> (Mesh, Chart) {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let leg = 50.0 + radius * (degrees.to_radians() / 2.0).tan();
+    let leg = straight + radius * (degrees.to_radians() / 2.0).tan();
     let corner = turn * (DVec3::Z * leg);
     let points = vec![DVec3::ZERO, corner, corner + turn * (DVec3::new(sin, 0.0, cos) * leg)];
     let guide = Guide::new(points, vec![radius]).unwrap();
@@ -319,7 +320,7 @@ fn bent_pipe(radius: f64, degrees: f64, turn: DQuat) -> (Mesh, Chart) {
 fn elbows_are_laid_square_to_their_guide() {
     for (radius, degrees, paired) in [(120.0, 90.0_f64, false), (110.0, 150.0, false), (75.0, 90.0, true)] {
         let turn = DQuat::from_rotation_x(0.3);
-        let (mesh, chart) = bent_pipe(radius, degrees, turn);
+        let (mesh, chart) = bent_pipe(50.0, radius, degrees, turn);
         let mut profile = profile("cmt-al2319-kuka");
         profile.layers.chart = chart.clone();
         let plan = planned(&mesh, &profile);
@@ -364,7 +365,7 @@ fn elbows_are_laid_square_to_their_guide() {
 /// The file keeps which of two layers is which, and points lie on the plane square to the guide.
 #[test]
 fn plan_files_of_elbows_are_read_back() {
-    let (mesh, chart) = bent_pipe(75.0, 90.0, DQuat::IDENTITY);
+    let (mesh, chart) = bent_pipe(50.0, 75.0, 90.0, DQuat::IDENTITY);
     let mut profile = profile("cmt-al2319-kuka");
     profile.layers.chart = chart;
     let plan = planned(&mesh, &profile);
@@ -390,4 +391,53 @@ fn parts_between_two_stretches_of_a_guide_are_refused() {
     let profile = charted("guide:points=0/0/0:0/0/200:200/0/200:200/0/0,radius=100");
     let refused = plan::plan("part", &mesh, &profile, &Task::new()).unwrap_err().to_string();
     assert!(refused.contains("as near to one stretch of the guide as to another"), "{refused}");
+}
+
+/// Wherever the bend ends between two layers, those near its end are neither too thin nor too thick.
+#[test]
+fn tight_bends_are_planned_wherever_their_ends_lie() {
+    for (straight, radius) in [(29.0, 75.0), (30.0, 64.0), (30.5, 75.0), (31.3, 66.0), (32.0, 75.0), (32.6, 70.0)] {
+        let (mesh, chart) = bent_pipe(straight, radius, 90.0, DQuat::IDENTITY);
+        let mut profile = profile("cmt-al2319-kuka");
+        profile.layers.chart = chart;
+        let plan = planned(&mesh, &profile);
+        assert!(plan.summary.forbidden.is_empty(), "{straight}, {radius}: {:?}", plan.summary.forbidden);
+        assert!(plan.layers.iter().all(|layer| !layer.passes.is_empty()), "{straight}, {radius}");
+        let metrics = &plan.summary.metrics;
+        assert!((metrics.deposited_volume_mm3 / metrics.mesh_volume_mm3.unwrap() - 1.0).abs() < 0.03);
+    }
+}
+
+/// What is read back from a plan file is judged as the plan was.
+#[test]
+fn elbows_are_judged_alike_before_and_after_they_are_written() {
+    let (mesh, chart) = bent_pipe(30.0, 120.0, 60.0, DQuat::IDENTITY);
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.layers.chart = chart;
+    let plan = planned(&mesh, &profile);
+    let read = ReadBack::plan("elbow", plan_file::read(&text(&plan, &profile)).unwrap(), &profile);
+    let settings = read.deposit_settings(None).unwrap();
+    let entry = compare::program("elbow", &read.layers, read.totals, settings, &None, &Task::new()).unwrap();
+    let built = entry.built.unwrap();
+    assert!(built.mean.abs() < 0.5 && built.within > 0.95, "{built:?}");
+}
+
+/// People hear of a guide that passes beside the part, and of metal below its first plane.
+#[test]
+fn guides_that_do_not_fit_are_noted() {
+    let (mesh, chart) = bent_pipe(50.0, 120.0, 60.0, DQuat::IDENTITY);
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.layers.chart = chart;
+    let notes = |mesh: &Mesh| planned(mesh, &profile).summary.notes.join(" ");
+    assert!(!notes(&mesh).contains("layers.chart"), "{}", notes(&mesh));
+    let mut moved = mesh.clone();
+    moved.vertices.iter_mut().for_each(|p| *p += DVec3::new(0.0, 12.0, 0.0));
+    assert!(
+        notes(&moved).contains("passes up to 12.0 mm beside the middle of the part's sections"),
+        "{}",
+        notes(&moved)
+    );
+    let mut lower = mesh;
+    lower.vertices.iter_mut().for_each(|p| p.z -= 5.0);
+    assert!(notes(&lower).contains("lie below the first plane of layers.chart"), "{}", notes(&lower));
 }

@@ -32,6 +32,8 @@ struct Span {
     /// Where it begins and ends along the guide, mm.
     from: f64,
     to: f64,
+    /// The place halfway.
+    middle: DVec3,
     /// Towards the centre of the arc in (u, v), 1 / radius long, 1/mm; 0 on straight lines.
     bend: DVec2,
 }
@@ -155,6 +157,10 @@ impl Guide {
         let last = self.spans.len() - 1;
         let mut best = (f64::INFINITY, DVec3::ZERO);
         for (k, span) in self.spans.iter().enumerate() {
+            let is_end = k == 0 || k == last;
+            if !is_end && p.distance(span.middle) - (span.to - span.from) / 2.0 > best.0 {
+                continue;
+            }
             let at = span.coordinates(p);
             let low = if k == 0 { f64::NEG_INFINITY } else { span.from };
             let high = if k == last { f64::INFINITY } else { span.to };
@@ -167,16 +173,29 @@ impl Guide {
         best.1
     }
 
+    /// Where an edge crosses the first plane between its heights (mm) in which a line and an arc meet.
+    pub(super) fn joint_between(&self, [a, b]: [DVec3; 2], heights: [f64; 2]) -> Option<DVec3> {
+        let (low, high) = (heights[0].min(heights[1]) + AT_JOINT, heights[0].max(heights[1]) - AT_JOINT);
+        let first = self.spans.partition_point(|span| span.to < low);
+        let span = self.spans[..self.spans.len() - 1].get(first).filter(|span| span.to < high)?;
+        let joint = span.frame(span.to);
+        let [from, to] = [a, b].map(|p| (p - joint.origin).dot(joint.forth));
+        let part = from / (from - to);
+        (part > 0.0 && part < 1.0).then(|| a.lerp(b, part))
+    }
+
     /// A point with these coordinates in space.
     pub(super) fn place(&self, p: DVec3) -> DVec3 {
         let Frame { origin, along: [u, v], .. } = self.span(p.z).frame(p.z);
         origin + u * p.x + v * p.y
     }
 
-    /// A point near the layer with this middle (mm): straight out of it, as far as the layer is thick there.
+    /// A point near the layer with this middle (mm): straight out of it, within the layer as far as that is thick there, and travels
+    /// above it as far as they are.
     pub(super) fn at(&self, p: DVec3, middle: f64) -> At {
         let Frame { origin, along, forth } = self.span(middle).frame(middle);
-        let out = (p.z - middle) * self.rise(p.truncate(), middle);
+        let (rise, out) = (self.rise(p.truncate(), middle), p.z - middle);
+        let out = rise * out.min(WITHIN) + (out - WITHIN).max(0.0);
         At { place: origin + along[0] * p.x + along[1] * p.y + forth * out, along, normal: forth }
     }
 
@@ -185,7 +204,9 @@ impl Guide {
         let Frame { origin, along, forth } = self.span(middle).frame(middle);
         let from = p - origin;
         let on_it = DVec2::new(from.dot(along[0]), from.dot(along[1]));
-        on_it.extend(middle + from.dot(forth) / self.rise(on_it, middle))
+        let (rise, out) = (self.rise(on_it, middle), from.dot(forth));
+        let above = (out - rise * WITHIN).max(0.0);
+        on_it.extend(middle + (out - above) / rise + above)
     }
 
     fn span(&self, height: f64) -> &Span {
@@ -220,6 +241,10 @@ const STRAIGHT: f64 = 1e-9;
 const SHARPEST: f64 = 3.0;
 /// Arcs that fill a line may be longer than it by this part.
 const ROUNDING: f64 = 1e-9;
+/// Heights this close to where two spans meet lie on it, mm.
+const AT_JOINT: f64 = 1e-6;
+/// Up to so far above its middle, mm, a layer is as thick as it is there; higher up there are only travels.
+const WITHIN: f64 = 2.5;
 /// How much a place beyond the end of a span is worse than one aside of it.
 const BEYOND: f64 = 1e3;
 
@@ -230,7 +255,8 @@ fn spans(start: DVec3, legs: &[DVec3], bends: &[Option<Bend>]) -> Vec<Span> {
     let mut frame = Frame { origin: start, along: [turn * DVec3::X, turn * DVec3::Y], forth };
     let (mut spans, mut from) = (Vec::new(), 0.0);
     let mut add = |frame: &mut Frame, length: f64, bend: DVec2| {
-        let span = Span { start: *frame, from, to: from + length, bend };
+        let mut span = Span { start: *frame, from, to: from + length, middle: frame.origin, bend };
+        span.middle = span.frame(from + length / 2.0).origin;
         *frame = span.frame(span.to);
         from = span.to;
         spans.push(span);

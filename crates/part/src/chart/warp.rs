@@ -45,8 +45,8 @@ pub enum WarpError {
     Cancelled(#[from] Cancelled),
     /// Metal on both sides of a place that lies as near to one stretch of a guide as to another.
     #[error(
-        "near x {:.1} y {:.1} z {:.1} mm the part lies as near to one stretch of the guide as to another, so it is not clear which \
-         layers it belongs to. Bend the guide less, or divide the part.",
+        "near x {:.1} y {:.1} z {:.1} mm the part lies as near to one stretch of the guide as to another, or in the centre of a bend, so \
+         it is not clear which layers it belongs to. Bend the guide less, or divide the part.",
         .0.x, .0.y, .0.z
     )]
     Torn(DVec3),
@@ -61,13 +61,13 @@ fn mapped(mut mesh: Mesh, coordinates: impl Fn(DVec3) -> DVec3) -> Mesh {
 }
 
 fn along(guide: &Guide, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
-    let divided = Divided::of(mesh, |a, b| is_bent_along(a, b, guide, tolerance), task)?;
+    let divided = Divided::of(mesh, |a, b| cut_along(a, b, guide, tolerance), task)?;
     let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
     Ok(mapped(whole, |p| guide.coordinates(p)))
 }
 
 fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
-    let divided = Divided::of(mesh, |a, b| Ok(is_bent(a, b, polar, tolerance)), task)?;
+    let divided = Divided::of(mesh, |a, b| Ok(is_bent(a, b, polar, tolerance).then(|| a.midpoint(b))), task)?;
     let mut cut = Cut::opened(&divided, polar);
     let (low, high) = cut.bounds();
     let middle = low.midpoint(high);
@@ -268,10 +268,10 @@ struct Divided {
 }
 
 impl Divided {
-    /// Edges are halved as long as they are bent.
+    /// Edges are cut where `cut` says, as long as they are bent.
     fn of(
         mesh: &Mesh,
-        is_bent: impl Fn(DVec3, DVec3) -> Result<bool, WarpError>,
+        cut: impl Fn(DVec3, DVec3) -> Result<Option<DVec3>, WarpError>,
         task: &Task,
     ) -> Result<Self, WarpError> {
         let (mut vertices, mut open, mut done) = (mesh.vertices.clone(), mesh.triangles.clone(), Vec::new());
@@ -281,8 +281,8 @@ impl Divided {
                 return Ok(*known);
             }
             let [a, b] = ends.map(|end| vertices[end as usize]);
-            let middle = is_bent(a, b)?.then(|| {
-                vertices.push(a.midpoint(b));
+            let middle = cut(a, b)?.map(|place| {
+                vertices.push(place);
                 vertices.len() as u32 - 1
             });
             middles.insert(ends, middle);
@@ -330,21 +330,25 @@ fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
     })
 }
 
-/// Whether an edge bends along a guide by more than `tolerance` (mm).
-fn is_bent_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<bool, WarpError> {
+/// Where an edge is cut that bends along a guide by more than `tolerance` (mm): first where lines and arcs meet, since it has a
+/// corner there.
+fn cut_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<Option<DVec3>, WarpError> {
     let ([from, to], length) = ([a, b].map(|p| guide.coordinates(p)), a.distance(b));
     if length < tolerance || from.z.max(to.z) < 0.0 {
-        return Ok(false);
+        return Ok(None);
     }
-    if length < SHORT && from.distance(to) > JUMP * SHORT {
+    if length < SHORT && from.distance(to) > JUMP * length {
         return Err(WarpError::Torn(a));
     }
+    if let Some(place) = guide.joint_between([a, b], [from.z, to.z]) {
+        return Ok(Some(place));
+    }
     let off = |part: f64| guide.coordinates(a.lerp(b, part)).distance(from.lerp(to, part));
-    Ok([0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance))
+    Ok([0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance).then(|| a.midpoint(b)))
 }
 
-/// An edge shorter than the first (mm) that is longer than so many times that in the chart leads from one stretch of a guide to
-/// another.
+/// An edge shorter than this (mm) leads from one stretch of a guide to another, or past the centre of a bend, where the chart makes it
+/// so many times as long.
 const SHORT: f64 = 1.0;
 const JUMP: f64 = 20.0;
 

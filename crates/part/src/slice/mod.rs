@@ -75,6 +75,14 @@ pub enum Half {
     Upper,
 }
 
+/// Height of a layer's middle, mm; of two layers with the same underside, that of the pair.
+pub fn middle(z: f64, height: f64, half: Option<Half>) -> f64 {
+    match half {
+        Some(Half::Lower) => z,
+        Some(Half::Upper) | None => z - height / 2.0,
+    }
+}
+
 impl Half {
     /// The word in plan.json.
     pub fn name(self) -> &'static str {
@@ -224,11 +232,12 @@ impl<'a> Slicer<'a> {
         let (h, count) = (options.layer_height, slabs.len());
         let top = mesh.bounds().1.z;
         // A layer whose middle lies above the part is cut in the middle of what it holds of the part.
-        let plane = |slab: &Slab| {
-            let (low, middle) = (slab.z - slab.height, slab.z - slab.height / 2.0);
+        let plane = |k: usize| {
+            let Slab { z, height } = slabs[k];
+            let (low, middle) = (z - height, middle(z, height, half(&slabs, k)));
             if middle >= top && low < top { low.midpoint(top) } else { middle }
         };
-        let planes: Vec<f64> = slabs.iter().map(plane).collect();
+        let planes: Vec<f64> = (0..slabs.len()).map(plane).collect();
         let levels: Vec<u32> = mesh.vertices.par_iter().map(|v| level(&planes, h, v.z)).collect();
         task.check()?;
         let batches = |t: &[u32; 3]| {
@@ -372,7 +381,7 @@ impl<'a> Slicer<'a> {
     fn cut(&self, index: usize, triangles: &[u32]) -> Slice {
         let (Slab { z, height }, simplify) = (self.slabs[index], self.options.simplify);
         let (Trace { rings, open }, warnings) = self.traced(index, triangles);
-        let mut layer = Slice { index, z, height, half: self.half(index), warnings, ..Slice::default() };
+        let mut layer = Slice { index, z, height, half: half(&self.slabs, index), warnings, ..Slice::default() };
         let dropped = |line: &Vec<DVec2>| {
             let (kind, place, size) =
                 (WarningKind::OpenContourDropped, line[line.len() / 2], planar::polyline::length(line));
@@ -385,7 +394,7 @@ impl<'a> Slicer<'a> {
         layer.islands = match self.chart {
             None => region.into_polygons(),
             Some(chart) => {
-                let (cut, middle) = (chart.sheet(self.planes[index]), chart.sheet(z - height / 2.0));
+                let (cut, middle) = (chart.sheet(self.planes[index]), chart.sheet(middle(z, height, layer.half)));
                 seam::joined(self.halved(region, index, chart).into_polygons(), index, &cut, &middle)
             }
         };
@@ -393,25 +402,26 @@ impl<'a> Slicer<'a> {
         layer
     }
 
-    fn half(&self, index: usize) -> Option<Half> {
-        let underside = |slab: &Slab| slab.z - slab.height;
-        let own = underside(&self.slabs[index]);
-        let is_same = |other: Option<&Slab>| other.is_some_and(|other| (underside(other) - own).abs() < SAME_MM);
-        if is_same(self.slabs.get(index + 1)) {
-            return Some(Half::Lower);
-        }
-        is_same(index.checked_sub(1).and_then(|below| self.slabs.get(below))).then_some(Half::Upper)
-    }
-
     /// What a layer covers of its slice: the lower of two only where the upper one is too thick.
     fn halved(&self, region: Region, index: usize, chart: &Chart) -> Region {
-        let upper = self.slabs.get(index + 1).filter(|_| self.half(index) == Some(Half::Lower));
+        let upper = self.slabs.get(index + 1).filter(|_| half(&self.slabs, index) == Some(Half::Lower));
         let (Some(upper), Some(bounds)) = (upper, region.bounds()) else { return region };
         match chart.sheet(upper.z - upper.height / 2.0).rising(self.thickest / upper.height, &bounds) {
             Some(thick) => region.intersection(&Region::from(thick)),
             None => Region::default(),
         }
     }
+}
+
+/// Which of two layers with the same underside one is.
+fn half(slabs: &[Slab], index: usize) -> Option<Half> {
+    let underside = |slab: &Slab| slab.z - slab.height;
+    let own = underside(&slabs[index]);
+    let is_same = |other: Option<&Slab>| other.is_some_and(|other| (underside(other) - own).abs() < SAME_MM);
+    if is_same(slabs.get(index + 1)) {
+        return Some(Half::Lower);
+    }
+    is_same(index.checked_sub(1).and_then(|below| slabs.get(below))).then_some(Half::Upper)
 }
 
 /// Undersides this close together are the same, mm.

@@ -2,6 +2,7 @@
 
 use bead_part::chart::warp::{self, WarpError};
 use bead_part::chart::{Chart, Guide};
+use bead_part::example;
 use bead_part::middle_line::{NoMiddleLine, middle_line};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
@@ -354,4 +355,32 @@ fn parts_without_a_middle_line_are_refused() {
     two.vertices.extend(more.vertices);
     two.triangles.extend(more.triangles.iter().map(|t| t.map(|i| i + first)));
     assert_eq!(middle_line(&mesh(two), &Task::new()), Err(NoMiddleLine::Start(2)));
+}
+
+/// A guide of many short arcs unrolls a part as its own few do, into triangles that are not many more: edges are cut where arcs meet.
+#[test]
+fn guides_of_many_points_divide_a_mesh_no_further_than_need_be() {
+    let exact: Chart = "guide:points=0/0/0:0/0/145:145/0/145,radius=120".parse().unwrap();
+    let elbow = example::find("elbow").unwrap().mesh();
+    let Chart::Guide(guide) = &exact else { panic!() };
+    // Unevenly spaced, as a drawing's curve is.
+    let heights = (0..=60).map(|k| guide.length() * (f64::from(k) + 0.3 * f64::from(k % 3)) / 60.6);
+    let points = heights.map(|h| exact.sheet(h).at(DVec3::Z * h).place).collect();
+    let dense = Chart::Guide(Arc::new(Guide::new(points, vec![]).unwrap()));
+    let [few, many] = [&exact, &dense].map(|chart| warp::warped(chart, &elbow, 0.02, &Task::new()).unwrap());
+    assert!(many.triangles.len() < 6 * few.triangles.len(), "{} {}", many.triangles.len(), few.triangles.len());
+    assert!((dense.volume(&many) / elbow.volume() - 1.0).abs() < 1e-3);
+}
+
+/// Above a layer, a travel is as high as it is asked to be, on the inner side of a bend, too.
+#[test]
+fn travels_over_a_wedge_keep_their_height() {
+    let chart: Chart = "guide:points=0/0/0:0/0/145:145/0/145,radius=120".parse().unwrap();
+    let sheet = chart.sheet(120.0);
+    for x in [-45.0, 0.0, 45.0] {
+        let at = |z: f64| sheet.at(DVec3::new(x, 5.0, z)).place;
+        let [top, above] = [at(121.0), at(141.0)];
+        assert!((top.distance(at(119.0)) - 2.0 * (1.0 - x / 120.0)).abs() < 1e-9, "{x}");
+        assert!(above.distance(top) > 19.3, "{x}: {}", above.distance(top));
+    }
 }
