@@ -102,9 +102,9 @@ fn curves_and_open_surfaces_have_no_preform() {
     }
     assert!(!folder.path().join("open_preform.stl").exists());
     // A leg that is open on two opposite sides has no closed contour as it stands.
-    fs::write(folder.path().join("side.stl"), [&facets[..4], &facets[6..8], &facets[10..12]].concat().concat())
-        .unwrap();
-    let refused = run(folder.path(), &["plan", "side.stl", "--preform", "--surface", "solid"]);
+    let side = [&facets[..4], &facets[6..8], &facets[10..12], &facets[24..]].concat().concat();
+    fs::write(folder.path().join("side.stl"), side).unwrap();
+    let refused = run(folder.path(), &["plan", "side.stl", "--preform", "--surface", "solid", "--scale", "3"]);
     let why = String::from_utf8(refused.stderr).unwrap();
     assert!(refused.status.code() == Some(1) && why.contains("no slice of the part has a closed contour"), "{why}");
 }

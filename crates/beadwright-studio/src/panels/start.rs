@@ -32,10 +32,10 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             ui.weak(&parsed.profile.description);
         }
         ui.add_space(6.0);
+        recent(studio, ui);
+        ui.add_space(6.0);
         ui.strong(studio.t("start-examples"));
         ui.horizontal_wrapped(|ui| examples(studio, ui));
-        ui.add_space(6.0);
-        recent(studio, ui);
     });
 }
 

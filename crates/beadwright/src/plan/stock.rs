@@ -1,14 +1,15 @@
 //! A part becomes its preform, which is planned in its place.
 
-use super::PlanError;
+use super::{PlanError, TORN};
 use crate::model::holes::{self, Opening};
 use crate::model::{Import, Mesh, Milled, Part};
 use crate::preform::Preform;
 use crate::preform::faces;
 use crate::preform::figures::Figures;
 use crate::profile::Profile;
-use crate::slice::Surface;
-use crate::task::Task;
+use crate::slice::{Slice, Slicer, Surface};
+use crate::task::{Cancelled, Task};
+use crate::warning::WarningKind;
 use std::convert::Infallible;
 
 /// A part with what is milled off again.
@@ -49,6 +50,7 @@ impl Stocked {
             return Err(PlanError::PreformOfChart);
         }
         is_closed(&import.mesh, profile)?;
+        import.notes.extend(lost(&import.mesh, profile, task)?);
         let settings = profile.preform_settings();
         let preform = Preform::of(&import.mesh, &settings, task)?;
         let solid = preform.mesh();
@@ -61,6 +63,28 @@ impl Stocked {
         let milled = Milled { stock: faces::stock(&mesh, &preform, settings.plate), mesh };
         Ok(Self { part: Part::Mesh(Import { milled: Some(Box::new(milled)), ..import }), preform, figures })
     }
+}
+
+/// What an open skin loses where its contours do not close, as a sentence.
+fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, Cancelled> {
+    let is_open = holes::openings(mesh).first().is_some_and(|opening| opening.width > profile.bead.width);
+    if !is_open {
+        return Ok(None);
+    }
+    let slices = Slicer::new(mesh, profile.slice_options(), task)?.all(task)?;
+    let dropped = |slice: &Slice| {
+        let dropped = slice.warnings.iter().filter(|warning| warning.kind == WarningKind::OpenContourDropped);
+        let longest = dropped.max_by(|a, b| a.size.total_cmp(&b.size))?;
+        Some((longest.size, longest.place.extend(slice.z - slice.height / 2.0)))
+    };
+    let longest = slices.iter().filter_map(dropped).max_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(longest.filter(|(length, _)| *length > TORN * profile.bead.width).map(|(length, at)| {
+        format!(
+            "The preform lacks part of the solid: as its open skin stands, contours do not close and are left out, the longest \
+             {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on its opening, or mend the model.",
+            at.x, at.y, at.z
+        )
+    }))
 }
 
 const EMPTY: &str = "no slice of the part has a closed contour, so it has no preform. The skin of a solid that is open at one end has \

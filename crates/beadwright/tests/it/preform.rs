@@ -14,7 +14,7 @@ use beadwright::preform::figures::Figures;
 use beadwright::preform::section::PreformSection;
 use beadwright::preform::{Plate, Preform, PreformSettings, orient};
 use beadwright::profile::Profile;
-use beadwright::slice::{Slab, SliceOptions, Slicer};
+use beadwright::slice::{Slab, SliceOptions, Slicer, Surface};
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use common::profile_by;
@@ -417,4 +417,23 @@ fn figures_add_up() {
     near(figures.arc_hours, preform.volume() / rates.deposition / 3600.0, 1e-9);
     let hours = figures.arc_hours + figures.milling_hours;
     near(figures.price.unwrap(), 60.0 * hours + 20.0 * figures.preform_kg + 5.0 * figures.plate_kg, 1e-9);
+}
+
+/// The skin of a box without its lid is a solid as it stands. Turned aside, its contours do not close at the top, and people hear of
+/// it.
+#[test]
+fn what_an_open_skin_loses_is_said() {
+    let square = [[0.0, 0.0], [90.0, 0.0], [90.0, 60.0], [0.0, 60.0]].map(DVec2::from_array);
+    let whole = Solid::extrude(&Polygon::simple(Ring::new(square.to_vec())), 0.0, 50.0);
+    let is_lid = |t: &[u32; 3]| t.iter().all(|corner| whole.vertices[*corner as usize].z > 49.0);
+    let triangles = whole.triangles.iter().filter(|t| !is_lid(t)).copied().collect();
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    profile.slice.surface = Some(Surface::Solid);
+    let notes = |degrees: f64| {
+        let mut mesh = Mesh::from_triangles(whole.vertices.clone(), Vec::clone(&triangles)).0;
+        mesh.place(1.0, DVec3::new(degrees, 0.0, 0.0));
+        stocked(&mesh, &profile).notes().join(" ")
+    };
+    assert!(!notes(0.0).contains("lacks"), "{}", notes(0.0));
+    assert!(notes(17.0).contains("The preform lacks part of the solid"), "{}", notes(17.0));
 }
