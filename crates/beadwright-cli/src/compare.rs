@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let source = program::Source::open(path)?;
         let own = source.profile(&wanted)?;
         let loaded = source.load(&arguments.reading, &wanted, &own, Some(&import), &task)?;
-        entries.push(compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &chosen, &task)?);
+        entries.push(compare::program(&loaded.name, &loaded.judged(&own), loaded.totals, settings, &chosen, &task)?);
         notes.extend(loaded.notes.into_iter().map(|note| format!("{}: {note}", loaded.name)));
     }
     bar.finish_and_clear();

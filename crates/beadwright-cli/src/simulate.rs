@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let settings = loaded
         .deposit_settings(arguments.grid)
         .with_context(|| format!("--grid {}", arguments.grid.unwrap_or_default()))?;
-    let entry = compare::program(&loaded.name, &loaded.layers, loaded.totals, settings, &None, &task)?;
+    let entry = compare::program(&loaded.name, &loaded.judged(&profile), loaded.totals, settings, &None, &task)?;
     bar.finish_and_clear();
     let lead = format!(
         "{} in {} layers, judged by the deposit model with beads of {} mm.",

@@ -13,6 +13,7 @@ use crate::profile::{BUILT_IN, Profile};
 use crate::simulate;
 use crate::task::{Cancelled, Task};
 use planar::Bounds;
+use std::borrow::Cow;
 
 /// How a program is read.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -140,7 +141,18 @@ pub fn named_profile(text: &str) -> Option<&'static str> {
     text.lines().take(HEAD).find_map(named)
 }
 
+/// What a plan calls its language.
+const PLAN: &str = "plan";
+
 impl ReadBack {
+    /// The layers as the deposit model judges them: those of a plan as its chart shows them ([`plan::even`]).
+    pub fn judged(&self, profile: &Profile) -> Cow<'_, [Layer]> {
+        if self.language != PLAN || !profile.layers.chart.has_wedges() {
+            return Cow::Borrowed(&self.layers);
+        }
+        Cow::Owned(self.layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())
+    }
+
     /// A plan, judged with the profile that it carries or the one that was asked for.
     pub fn plan(name: &str, plan: PlanFile, profile: &Profile) -> Self {
         let own = plan.settings.filter(|_| plan.profile.is_none());
@@ -150,11 +162,8 @@ impl ReadBack {
         let Extent { low, high, .. } = plan.header.extent;
         Self {
             name: name.to_owned(),
-            language: "plan",
-            layers: match profile.layers.chart.has_wedges() {
-                true => plan.layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect(),
-                false => plan.layers,
-            },
+            language: PLAN,
+            layers: plan.layers,
             totals: Totals::of_plan(&metrics),
             settings,
             over: Some(plan::grid_over(profile, (low, high))),

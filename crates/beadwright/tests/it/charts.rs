@@ -417,7 +417,7 @@ fn elbows_are_judged_alike_before_and_after_they_are_written() {
     let plan = planned(&mesh, &profile);
     let read = ReadBack::plan("elbow", plan_file::read(&text(&plan, &profile)).unwrap(), &profile);
     let settings = read.deposit_settings(None).unwrap();
-    let entry = compare::program("elbow", &read.layers, read.totals, settings, &None, &Task::new()).unwrap();
+    let entry = compare::program("elbow", &read.judged(&profile), read.totals, settings, &None, &Task::new()).unwrap();
     let built = entry.built.unwrap();
     assert!(built.mean.abs() < 0.5 && built.within > 0.95, "{built:?}");
 }
