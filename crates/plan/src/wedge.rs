@@ -3,7 +3,7 @@
 //! Everything between slicing and welding sees a layer of even thickness. Only at the end, more metal is laid where it is thicker
 //! ([`Wedge::laid`]); the deposit model, which looks at the chart, is shown it as it was before ([`Wedge::even`]).
 //!
-//! A bead can only be so thin and so thick. Where a bend is so tight that the outer side of a layer would be too thick, that side is
+//! How thin and how thick a bead can be is limited. Where a bend is so tight that the outer side of a layer would be too thick, that side is
 //! welded in two layers, of which the lower covers it alone: the upper one has the same underside, and half of its thickness where
 //! the lower one lies ([`Half`]).
 
@@ -21,6 +21,8 @@ const STEP: f64 = 0.03;
 pub const THINNEST: f64 = 0.05;
 /// Where the rise differs by no more than this from that at an edge, the edge is near.
 const AT_EDGE: f64 = 0.02;
+/// Points of a piece lie farther apart than this part of its steps.
+const APART: f64 = 0.05;
 /// A layer may leave its window by this part, which is what rounding to whole layers takes.
 pub const TOLERANCE: f64 = 0.03;
 
@@ -145,7 +147,7 @@ fn parts([from, to]: [f64; 2], thick: Option<f64>) -> Vec<f64> {
     let count = ((to / from).ln().abs() / STEP).ceil().max(1.0);
     let mut parts: Vec<f64> = (0..count as usize).map(|k| k as f64 / count).collect();
     let at = thick.map(|thick| (thick - from) / (to - from)).filter(|at| *at > 0.0 && *at < 1.0);
-    if let Some(at) = at.filter(|at| parts.iter().all(|part| (part - at).abs() > THINNEST / count)) {
+    if let Some(at) = at.filter(|at| parts.iter().all(|part| (part - at).abs() > APART / count)) {
         parts.push(at);
         parts.sort_by(f64::total_cmp);
     }

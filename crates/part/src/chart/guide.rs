@@ -1,4 +1,4 @@
-//! Layers square to a curve: elbows, bent tubes, branches.
+//! Layers square to a curve: elbows, bent tubes and bars.
 //!
 //! The curve is what a pipe is drawn by: points, and a radius at which each corner is bent. So it is straight lines and arcs, and
 //! everything about it is closed form. h is the length along it, (u, v) lie in the plane square to it, which is carried along without
@@ -53,7 +53,7 @@ pub enum GuideError {
         /// How many points are corners.
         corners: usize,
     },
-    /// A corner that is hardly one.
+    /// A corner too sharp for a bend.
     #[error("at point {point} the guide turns back on itself")]
     Back {
         /// Number of the point, from 1.

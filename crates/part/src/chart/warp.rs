@@ -1,8 +1,8 @@
 //! A mesh in the coordinates of a chart: its triangles are divided until their edges are straight there, too, what lies below
 //! the surface on which the build begins is cut off, and a mesh around an axis is cut open at the seam.
 //!
-//! Between a part around an axis and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's underside
-//! are planes.
+//! Between a part around an axis and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's
+//! underside are planes.
 
 use super::polar::{Around, Polar, near};
 use super::{Chart, Guide, Lie};
@@ -347,9 +347,9 @@ fn cut_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<Option
     Ok([0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance).then(|| a.midpoint(b)))
 }
 
-/// An edge shorter than this (mm) leads from one stretch of a guide to another, or past the centre of a bend, where the chart makes it
-/// so many times as long.
+/// Edges shorter than this are looked at, mm:
 const SHORT: f64 = 1.0;
+/// one that the chart makes longer by this factor leads from one stretch of a guide to another, or past the centre of a bend.
 const JUMP: f64 = 20.0;
 
 /// The pieces of a triangle some of whose edges have a middle.

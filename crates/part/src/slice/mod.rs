@@ -278,8 +278,7 @@ impl<'a> Slicer<'a> {
         Self { chart: (!chart.is_level()).then_some(chart), ..self }
     }
 
-    /// Layers are no thicker than this (mm): one with the same underside as the next is a part layer, and lies only where that
-    /// one is thicker.
+    /// Layers are no thicker than this (mm): of two with the same underside, the lower lies only where the upper would be thicker.
     pub fn no_thicker_than(self, thickest: f64) -> Self {
         Self { thickest, ..self }
     }
